@@ -1,0 +1,64 @@
+"""The package hazard_ms, with the folder `assets/` inside it as `hazard_ms/_assets`."""
+
+import ast
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+ROOT = Path(__file__).resolve().parent
+ASSETS = "hazard_ms._assets"
+
+
+def version() -> str:
+    """`__version__` of hazard_ms, read without importing it."""
+    for node in ast.parse((ROOT / "hazard_ms/__init__.py").read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__version__":
+            return str(ast.literal_eval(node.value))
+    raise ValueError("hazard_ms/__init__.py has no __version__")
+
+
+def asset_files() -> list[str]:
+    """Every file of `assets/` that belongs to the package: not `build`, the scripts that made them, nor hidden files."""
+    folder = ROOT / "assets"
+    files = [path.relative_to(folder) for path in folder.rglob("*") if path.is_file()]
+    return [str(path) for path in files if path.parts[0] != "build" and not any(part[0] in "._" for part in path.parts)]
+
+
+setup(
+    name="hazard_ms",
+    version=version(),
+    description="Fire, flood and wind rescue tasks for ManiSkill and SAPIEN",
+    long_description=(ROOT / "README.md").read_text(encoding="utf-8") if (ROOT / "README.md").exists() else "",
+    long_description_content_type="text/markdown",
+    license="Apache-2.0",
+    python_requires=">=3.10,<3.13",
+    packages=[*find_packages(include=["hazard_ms", "hazard_ms.*"]), ASSETS],
+    package_dir={ASSETS: "assets"},
+    package_data={ASSETS: asset_files(), "hazard_ms": ["**/*"]},
+    exclude_package_data={"hazard_ms": ["_assets/*", "_assets/**/*"]},  # a checkout's own copy gives way to `assets/`
+    include_package_data=False,
+    entry_points={"console_scripts": ["hazard-ms = hazard_ms.cli:main"]},
+    install_requires=[
+        "sapien>=3.0.3",
+        "mani-skill>=3.0.1",
+        "gymnasium>=1.2",
+        "torch>=2.10",  # earlier ones have known holes in torch.load
+        "torchvision>=0.25",
+        "opencv-python-headless>=4.10",
+        "numpy>=2.0",
+        "trimesh>=4.5",
+        "coacd>=1.0.5",
+        "scipy>=1.13",
+        "h5py>=3.11",
+        "jinja2>=3.1.4",
+        "tqdm>=4.66",
+        "imageio>=2.34",
+        "imageio-ffmpeg>=0.5",
+        "pillow>=10.3",
+        "tyro>=0.9",
+    ],
+    extras_require={
+        "rl": ["stable-baselines3>=2.7"],
+        "test": ["pytest>=8", "pytest-timeout>=2.3", "hypothesis>=6.100", "ruff>=0.8", "mypy>=1.13"],
+    },
+)

@@ -1,0 +1,129 @@
+"""The true free floor of a scene: where a disc fits between furniture, walls and objects. For generators, tests, the oracle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from hazard_ms.assets import asset
+from hazard_ms.scenes.boxes import Array, Box, box_of
+from hazard_ms.spec import SceneSpec, Vec2
+
+CELL = 0.05  # edge of a cell [m]; cell (i, j) is centred on ((i + 0.5) CELL, (j + 0.5) CELL)
+FLAT = 0.03  # fixtures lower than this are driven over: rugs [m] [ours]
+OVERHEAD = 1.3  # what begins above this hangs over a robot: Fetch's head is at 1.1 m [ours]
+
+Grid = NDArray[np.bool_]
+
+
+def cells(size: Vec2) -> tuple[Array, Array]:
+    """Centres of the cells of a room [m]: x as a column, [X, 1], y as a row, [1, Y]."""
+    nx, ny = (math.floor(s / CELL + 1e-6) for s in size)
+    return np.linspace(0.5, nx - 0.5, nx)[:, None] * CELL, np.linspace(0.5, ny - 0.5, ny)[None, :] * CELL
+
+
+def cell_of(point: Vec2) -> tuple[int, int]:
+    """The cell that holds `point` [m]."""
+    return math.floor(point[0] / CELL), math.floor(point[1] / CELL)
+
+
+def centre_of(cell: tuple[int, int]) -> Vec2:
+    """The middle of a cell [m]."""
+    return round((cell[0] + 0.5) * CELL, 4), round((cell[1] + 0.5) * CELL, 4)
+
+
+def within_walls(size: Vec2, radius: float) -> Grid:
+    """Cells at which a disc of `radius` [m] keeps within the walls, [X, Y]."""
+    x, y = cells(size)
+    return (x >= radius) & (x <= size[0] - radius) & (y >= radius) & (y <= size[1] - radius)
+
+
+def take(free: Grid, size: Vec2, boxes: Iterable[Box], radius: float) -> Grid:
+    """`free` without the cells at which a disc of `radius` [m] would touch a box, [X, Y]."""
+    x, y = cells(size)
+    free = free.copy()
+    for box in boxes:
+        far = math.hypot(box.half_x, box.half_y) + radius + CELL
+        i0, j0 = (max(0, c) for c in cell_of((box.x - far, box.y - far)))
+        i1, j1 = (max(0, c + 1) for c in cell_of((box.x + far, box.y + far)))
+        free[i0:i1, j0:j1] &= box.distance(x[i0:i1], y[:, j0:j1]) >= radius
+    return free
+
+
+def free_for(size: Vec2, fixtures: Iterable[Box], bodies: Iterable[Box], radius: float) -> Grid:
+    """Cells at which a disc of `radius` [m] touches neither wall nor thing in a room of `size` [m], [X, Y]."""
+    standing = [b for b in fixtures if b.low < OVERHEAD and b.high > FLAT] + [b for b in bodies if b.low < OVERHEAD]
+    return take(within_walls(size, radius), size, standing, radius)
+
+
+def boxes_of(spec: SceneSpec) -> tuple[list[Box], list[Box]]:
+    """What the fixtures and what the bodies of a scene occupy."""
+    fixtures = [box_of(f, asset(f.asset).extent) for f in spec.fixtures]
+    return fixtures, [box_of(b, asset(b.asset).extent) for b in spec.bodies]
+
+
+def free_floor(spec: SceneSpec, radius: float) -> Grid:
+    """Cells at which a disc of `radius` [m] touches neither wall nor thing at the start of a scene, [X, Y]."""
+    return free_for(spec.room.size, *boxes_of(spec), radius)
+
+
+def largest(free: Grid) -> Grid:
+    """The largest connected part (over edges, not corners), [X, Y]."""
+    label, count = ndimage.label(free)
+    if count == 0:
+        return free.copy()
+    return label == 1 + int(np.argmax(np.bincount(label.ravel())[1:]))
+
+
+def connected(free: Grid, start: Vec2) -> Grid:
+    """The part of `free` that is connected with the cell of `start` [m], [X, Y]; nothing where that is not free."""
+    i, j = cell_of(start)
+    if not (0 <= i < free.shape[0] and 0 <= j < free.shape[1] and free[i, j]):
+        return np.zeros_like(free)
+    label, _ = ndimage.label(free)
+    return label == label[i, j]
+
+
+def distance_to(part: Grid) -> Array:
+    """Distance of every cell's centre from the nearest cell of `part` [m], [X, Y]."""
+    if not part.any():
+        return np.full(part.shape, np.inf)
+    return ndimage.distance_transform_edt(~part) * CELL
+
+
+def steps_from(free: Grid, start: tuple[int, int]) -> NDArray[np.int64]:
+    """Number of steps from the cell `start`, by turns over edges only and over corners too; -1 where it cannot get, [X, Y]."""
+    steps = np.full(free.shape, -1)
+    reached = np.zeros_like(free)
+    reached[start] = True
+    for n in range(free.size):
+        new = reached & (steps < 0)
+        if not new.any():
+            break
+        steps[new] = n
+        grown = new.copy()
+        grown[1:] |= new[:-1]
+        grown[:-1] |= new[1:]
+        across = grown if n % 2 else new  # of what has grown along x already: that adds the corners
+        wider = grown.copy()
+        wider[:, 1:] |= across[:, :-1]
+        wider[:, :-1] |= across[:, 1:]
+        reached |= wider & free
+    return steps
+
+
+def path(steps: NDArray[np.int64], end: tuple[int, int]) -> list[tuple[int, int]]:
+    """Cells of a shortest way from `end` down to the start of `steps`."""
+    way = [end]
+    while steps[way[-1]] > 0:
+        i, j = way[-1]
+        around = [(i + a, j + b) for a in (-1, 0, 1) for b in (-1, 0, 1) if 0 <= i + a < steps.shape[0] and 0 <= j + b < steps.shape[1]]
+        nearer = [c for c in around if 0 <= steps[c] < steps[i, j]]
+        if not nearer:
+            break
+        way.append(min(nearer, key=lambda c: steps[c]))
+    return way

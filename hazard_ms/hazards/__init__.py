@@ -1,0 +1,1 @@
+"""Processes that change a world: parameters, state and pure kernels."""

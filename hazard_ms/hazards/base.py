@@ -1,0 +1,111 @@
+"""The contract that every hazard keeps: parameters (frozen) + state (declared tensors) + three verbs.
+
+A quantity is declared once; allocation, partial reset, save, restore and documentation all come from the declaration.
+"""
+
+from __future__ import annotations
+
+import abc
+import dataclasses
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import torch
+from torch import Tensor
+
+if TYPE_CHECKING:
+    from hazard_ms.world import World
+
+DTYPES = {"float": torch.float32, "int": torch.int64, "bool": torch.bool}
+
+
+def quantity(shape: str, unit: str, meaning: str, dtype: str = "float", fill: float = 0) -> Any:
+    """A field of a state. `shape` names its axes: E environments, B bodies, a number, or a name that the hazard's `sizes` has."""
+    if not shape.split() or shape.split()[0] != "E":
+        raise ValueError(f"shape {shape!r} of the quantity {meaning!r} must begin with the axis E")
+    if dtype not in DTYPES:
+        raise ValueError(f"dtype {dtype!r} of the quantity {meaning!r} is none of {sorted(DTYPES)}")
+    return dataclasses.field(metadata={"shape": shape.split(), "unit": unit, "meaning": meaning, "dtype": dtype, "fill": fill})
+
+
+def nobody(mask: Tensor) -> bool:
+    """Whether `mask` holds nowhere, so that work can be skipped. False on a GPU, where asking would make the host wait."""
+    return mask.device.type == "cpu" and not bool(mask.any())
+
+
+class State:
+    """Base of hazard states: dataclasses whose fields are all `quantity(...)`."""
+
+    @classmethod
+    def allocate(cls, sizes: dict[str, int], device: torch.device | str) -> Any:
+        """All quantities at their fill value; `sizes` gives each axis letter its length."""
+        made = {}
+        for f in dataclasses.fields(cls):  # type: ignore[arg-type]
+            shape = [int(axis) if axis.isdigit() else sizes[axis] for axis in f.metadata["shape"]]
+            made[f.name] = torch.full(shape, f.metadata["fill"], dtype=DTYPES[f.metadata["dtype"]], device=device)
+        return cls(**made)
+
+    def clear(self, rows: Tensor) -> None:
+        """Put the environments `rows` back to the fill values."""
+        for f in dataclasses.fields(self):  # type: ignore[arg-type]
+            getattr(self, f.name)[rows] = f.metadata["fill"]
+
+    def save(self) -> dict[str, Tensor]:
+        return {f.name: getattr(self, f.name).clone() for f in dataclasses.fields(self)}  # type: ignore[arg-type]
+
+    def restore(self, saved: dict[str, Tensor], rows: Tensor | slice = slice(None)) -> None:
+        """Write `saved` (as `save` gave it, [len(rows), ...]) into the environments `rows`."""
+        names = {f.name for f in dataclasses.fields(self)}  # type: ignore[arg-type]
+        if set(saved) != names:
+            raise ValueError(f"saved state has {sorted(saved)}, {type(self).__name__} needs {sorted(names)}")
+        for name in names:
+            getattr(self, name)[rows] = saved[name].to(getattr(self, name))
+
+
+@dataclasses.dataclass
+class Push:
+    """What a hazard does to the bodies over the coming physics step, [E, B, 3], world frame.
+
+    Mean force [N], and torque about the centre of mass [N m].
+    """
+
+    force: Tensor
+    torque: Tensor | None = None
+
+
+class Hazard(abc.ABC):
+    """One physical process. Parameters live on the hazard (a frozen dataclass), evolving tensors on its state."""
+
+    name: ClassVar[str]
+    state_type: ClassVar[type[State]]
+
+    def sizes(self, world: World) -> dict[str, int]:
+        """Lengths of the axes of its quantities beyond E and B."""
+        return {}
+
+    @abc.abstractmethod
+    def reset(self, state: Any, world: World, rows: Tensor) -> None:
+        """Start an episode in the environments `rows` (state is already at its fill values there); touch no other row."""
+
+    def force(self, state: Any, world: World, dt: float) -> Push | None:
+        """What it does to the bodies over the coming physics step of `dt` seconds. Changes nothing. None: never any force."""
+        return None
+
+    @abc.abstractmethod
+    def advance(self, state: Any, world: World, dt: float) -> None:
+        """Carry `state` over one frame of `dt` seconds. Changes `state` and nothing else."""
+
+    @abc.abstractmethod
+    def damaged(self, state: Any, world: World) -> Tensor:
+        """Bodies that this hazard is damaging now, [E, B], bool. The damage record keeps what was ever damaged."""
+
+    @abc.abstractmethod
+    def image(self, state: Any, world: World, points: Tensor) -> Tensor:
+        """The hazard's level at `points` [m], [E, P, 3], world frame -> [E, P]: temperature [C], water level [m]."""
+
+    def forbids(self, state: Any, world: World, points: Tensor) -> Tensor:
+        """Where an agent that the hazard affects must not go: [E, P] of `points` [m], [E, P, 3]. By default nowhere."""
+        return torch.zeros(points.shape[:2], dtype=torch.bool, device=points.device)
+
+    def agent_info(self, state: Any, world: World) -> dict[str, Tensor]:
+        """What the hazard does to the agent, for `info`: name -> [E]."""
+        return {}

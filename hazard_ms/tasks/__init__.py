@@ -1,0 +1,10 @@
+"""Tasks by the name under which gymnasium knows them: preset of physics -> task."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from hazard_ms.spec import Task
+from hazard_ms.tasks.fire import hazard_fire
+
+TASKS: dict[str, Callable[[str], Task]] = {"HazardFire-v1": hazard_fire}

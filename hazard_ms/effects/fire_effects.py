@@ -1,0 +1,228 @@
+"""Flames, scorch marks, smoke, charring and the light of a fire, driven by the state of `hazard_ms.hazards.fire.Fire`.
+
+Everything is made when a scene is built. A picture then only moves effect entities and writes scalars of materials, both functions of
+the world, the fire and the frame alone: the same state gives the same pixels, whatever was shown before.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import sapien
+from sapien.render import RenderBodyComponent, RenderMaterial, RenderPointLightComponent, RenderShapeTriangleMesh
+from torch import Tensor
+
+from hazard_ms.effects import meshes, shader_pack
+from hazard_ms.effects.charring import char_codes, materials
+from hazard_ms.effects.glsl import SMOKE_PERIOD
+from hazard_ms.effects.textures import noise_texture
+from hazard_ms.hazards.fire import FireState, body_flames, floor_flames
+from hazard_ms.hazards.spread import SCALE_LAST, roster_length
+from hazard_ms.spec import SceneSpec
+from hazard_ms.world import World
+
+FRAMES_PER_SECOND = 30.0  # of the animation, as videos play
+LONGEST = 1500  # frames of a fire, for which patches are made (benchmark.md 1)
+PATCH = 0.34  # edge of a burning patch of floor, more than its cell so that neighbours merge [m] [ours]
+MOST_PATCHES = 160  # flames on the floor that are shown at once; the oldest ones
+COLUMNS = 8  # of smoke
+UNDER_CEILING = 0.15  # where smoke has faded, below the ceiling [m] [ours]
+SMOKE_STRENGTH = 0.30  # opacity of a puff [ours]
+GLOW_COLOUR = np.array([1.0, 0.42, 0.10])  # linear RGB of firelight, about 1900 K
+LIGHT_PER_FLAME = 0.8  # radiant intensity in SAPIEN's units [ours]
+LIGHT_HEIGHT = 1.1  # above the middle of all that burns [m] [ours]
+BRIGHTEST = 4.0  # of the light, however much burns [ours]
+
+
+@dataclass
+class _Effect:
+    """One effect entity with its own material."""
+
+    entity: sapien.Entity
+    material: RenderMaterial
+    seed: float
+    shown: bool = False
+
+    def show(self, pose: sapien.Pose, strength: float, time: float) -> None:
+        self.entity.set_pose(pose)
+        self.material.transmission = strength
+        self.material.transmission_roughness = time + 10.0 * self.seed
+        self.shown = True
+
+    def hide(self) -> None:
+        if self.shown:
+            self.entity.set_pose(_HIDDEN)
+            self.shown = False
+
+
+_HIDDEN = sapien.Pose([0.0, 0.0, meshes.NOWHERE])
+
+
+class _SceneFire:
+    """The effects of one scene."""
+
+    def __init__(self, scene: sapien.Scene, spec: SceneSpec, names: tuple[str, ...], patches: int, rich: bool) -> None:
+        self.scene, self.noise = scene, noise_texture()
+        entities = _entities(scene, names)
+        self.charred = [materials(e) for e in entities]
+        self.codes = [0.0] * len(names)
+        self.things = [self._effect(partial(meshes.thing_flames, e), k) for k, e in enumerate(entities)]
+        patch = [self._effect(partial(meshes.floor_flames, PATCH, _seed(k)), k) for k in range(patches)]
+        ceiling = spec.room.height - UNDER_CEILING
+        smoke = [self._effect(partial(meshes.smoke_column, ceiling, _seed(k)), k) for k in range(COLUMNS if rich else 0)]
+        self.patches = [e for e in patch if e is not None]
+        self.columns = [e for e in smoke if e is not None]
+        self.light = _lamp(scene) if rich else None
+
+    def _effect(self, make: Callable[[RenderMaterial], RenderShapeTriangleMesh | None], number: int) -> _Effect | None:
+        """An effect with the mesh that `make(material)` gives; None where it gives none."""
+        material = RenderMaterial(base_color=[1.0, 1.0, 1.0, 1.0])
+        material.base_color_texture = self.noise
+        material.base_color = [1.0, 1.0, 1.0, 1.0]  # a texture is only seen after a scalar has been set (SAPIEN 3.0.3)
+        shape = make(material)
+        if shape is None:
+            return None
+        body = RenderBodyComponent()
+        body.attach(shape)
+        body.disable_render_id()
+        entity = sapien.Entity()
+        entity.name = f"effect_{number}"
+        entity.add_component(body)
+        entity.set_pose(_HIDDEN)
+        self.scene.add_entity(entity)
+        body.shading_mode = shader_pack.EFFECT_PASS
+        for node in body._internal_node.children:
+            node.cast_shadow = False  # nothing to cast, but each would cost a draw in every shadow map
+        return _Effect(entity, material, _seed(number))
+
+    def show_things(self, pose: np.ndarray, strength: np.ndarray, time: float) -> None:
+        """Flames on things. `pose` of their bases, [B, 7]; `strength` 0..1, [B]."""
+        for effect, place, s in zip(self.things, pose, strength, strict=False):
+            if effect is None:
+                continue
+            if s > 0.0:
+                effect.show(sapien.Pose(place[:3], place[3:]), float(s), time)
+            else:
+                effect.hide()
+
+    def show_floor(self, place: np.ndarray, strength: np.ndarray, time: float) -> None:
+        """Flames on the floor. `place` [m], [F, 3]; `strength` 0..1, [F]."""
+        for k, effect in enumerate(self.patches):
+            if k < len(place) and strength[k] > 0.0:
+                effect.show(sapien.Pose(place[k]), float(strength[k]), time)
+            else:
+                effect.hide()
+
+    def show_smoke(self, place: np.ndarray, strength: np.ndarray, time: float) -> None:
+        """Smoke above the first places that burn. `place` [m], [N, 3]; `strength` 0..1, [N]."""
+        burning = np.flatnonzero(strength > 0.0)
+        chosen = burning[np.linspace(0, len(burning) - 1, min(len(burning), len(self.columns))).astype(int)] if len(burning) else burning
+        for k, effect in enumerate(self.columns):
+            if k >= len(chosen):
+                effect.hide()
+                continue
+            half = math.pi * ((time / SMOKE_PERIOD + effect.seed) % 1.0)
+            turn = [math.cos(half), 0.0, 0.0, math.sin(half)]
+            effect.show(sapien.Pose(place[chosen[k]], turn), SMOKE_STRENGTH * float(strength[chosen[k]]), time)
+
+    def show_light(self, place: np.ndarray, strength: np.ndarray, time: float) -> None:
+        """One flickering light in the middle of all that burns."""
+        if self.light is None:
+            return
+        total = float(strength.sum())
+        flicker = 1.0 + 0.10 * math.sin(11.0 * time) + 0.07 * math.sin(23.7 * time + 1.0) + 0.05 * math.sin(41.3 * time + 2.0)
+        power = min(LIGHT_PER_FLAME * math.sqrt(total), BRIGHTEST) * flicker if total > 0.0 else 0.0
+        middle = (place * strength[:, None]).sum(0) / max(total, 1e-6)
+        self.light.entity.set_pose(sapien.Pose(middle + [0.0, 0.0, LIGHT_HEIGHT]))
+        self.light.color = GLOW_COLOUR * power
+
+    def char(self, codes: np.ndarray) -> None:
+        """Blacken and heat things. `codes`: see glsl.py, [B]."""
+        for k, parts in enumerate(self.charred):
+            code = float(codes[k])
+            if code != self.codes[k]:
+                for material in parts:
+                    material.transmission_roughness = code
+                self.codes[k] = code
+
+
+class FireEffects:
+    """What a fire looks like, in each of E scenes."""
+
+    def __init__(self, scenes: list[_SceneFire], mode: str, device: sapien.Device | None) -> None:
+        self._scenes, self._mode, self._device = scenes, mode, device
+
+    @classmethod
+    def build(cls, scenes: list[sapien.Scene], specs: tuple[SceneSpec, ...], world: World, mode: str = "full") -> FireEffects:
+        """Effects of `mode` (full; fast: without smoke and firelight; off) for `scenes` in which the things of `specs` stand.
+
+        Without a renderer, or with a SAPIEN whose shaders are unknown, nothing is shown.
+        """
+        shader_pack.shader_config(mode)
+        if not all(_draws(s) for s in scenes):
+            return cls([], mode, None)
+        device = scenes[0].render_system.device
+        if not shader_pack.available(mode):
+            return cls([], mode, device)
+        lattices = max(1, *(len(spec.fires) for spec in specs))
+        patches = min(roster_length(LONGEST, lattices), MOST_PATCHES)
+        rows = zip(scenes, specs, world.names, strict=True)
+        return cls([_SceneFire(scene, spec, names, patches, mode == "full") for scene, spec, names in rows], mode, device)
+
+    def update(self, world: World, fire: FireState, frame: Tensor) -> None:
+        """Show `world` and `fire` at `frame` [E]. Call it before a picture is taken; it changes nothing but the picture."""
+        if self._device is not None:
+            shader_pack.keep_warm(self._mode, self._device)
+        if not self._scenes:
+            return
+        base = world.base_of(world.position, world.rotation, world.extent).cpu().numpy()
+        rotation, centre = world.rotation.cpu().numpy(), world.position.cpu().numpy()
+        on_things = (body_flames(fire) * (world.exists & ~world.safe) / SCALE_LAST).cpu().numpy()
+        place, scale = (t.cpu().numpy() for t in floor_flames(fire, frame))
+        on_floor = scale / SCALE_LAST
+        times = frame.cpu().numpy() / FRAMES_PER_SECOND
+        codes = char_codes(fire, times)
+        for e, scene in enumerate(self._scenes):
+            time = float(times[e])
+            scene.char(codes[e])
+            scene.show_things(np.concatenate([base[e], rotation[e]], -1), on_things[e], time)
+            scene.show_floor(place[e], on_floor[e], time)
+            sources, strength = np.concatenate([centre[e], place[e]]), np.concatenate([on_things[e], on_floor[e]])
+            scene.show_smoke(sources, strength, time)
+            scene.show_light(sources, strength, time)
+
+
+def _lamp(scene: sapien.Scene) -> RenderPointLightComponent:
+    """A light for the fire, dark as yet."""
+    light = RenderPointLightComponent()
+    light.color = np.zeros(3)
+    light.shadow = False  # SAPIEN's default is True: six shadow maps, three times the time of a picture
+    entity = sapien.Entity()
+    entity.add_component(light)
+    scene.add_entity(entity)
+    return light
+
+
+def _draws(scene: sapien.Scene) -> bool:
+    """Whether the scene has a renderer."""
+    try:
+        return scene.render_system is not None
+    except RuntimeError:  # SAPIEN's way of saying that there is none
+        return False
+
+
+def _entities(scene: sapien.Scene, names: tuple[str, ...]) -> list[sapien.Entity]:
+    """The entities of things: called by the thing's name, after whatever prefix the builder of the scene gives."""
+    found = {e.name.rsplit("/", 1)[-1]: e for e in scene.entities}
+    missing = [n for n in names if n not in found]
+    if missing:
+        raise ValueError(f"the scene has no entity for {', '.join(missing)}; it has {', '.join(sorted(found))}")
+    return [found[n] for n in names]
+
+
+def _seed(number: int) -> float:
+    return (number + 1) * meshes.GOLDEN % 1.0

@@ -1,0 +1,189 @@
+"""Our own shader text: charring of opaque things, and the pass that draws flames, scorch marks, smoke and embers.
+
+Effect geometry is a set of quads whose four corners coincide; only EFFECT_VERT spreads them out. So every other shader (shadows,
+labels, ray tracing, SAPIEN's stock packs) sees triangles without area, that is: nothing. A corner carries
+
+    position  anchor in the entity's frame [m]
+    normal    (half width [m], height [m], kind + seed), seed in [0, 1)
+    uv        (-1 or 1, 0 or 1): the corner
+
+and the material's otherwise unused scalars carry transmission = strength 0..1 and transmission_roughness = time [s]. In materials of
+solid things transmission_roughness holds `char code`: 0 untouched, else 1 + floor(255 char) + glow, char in 0..1, glow in [0, 1).
+"""
+
+from __future__ import annotations
+
+FLAME, SCORCH, SMOKE, EMBER = range(4)  # kinds of quads
+SMOKE_PERIOD = 4.0  # from floor to ceiling [s]; an entity's turn about z tells the phase, since only poses reach the vertex shader
+
+_SETS = """
+#define SET_NUM 0
+#include "./camera_set.glsl"
+#undef SET_NUM
+#define SET_NUM 1
+#include "./object_set.glsl"
+#undef SET_NUM
+"""
+
+EFFECT_VERT = (
+    "#version 450\n"
+    + _SETS
+    + """
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 uv;
+layout(location = 3) in vec3 tangent;
+layout(location = 4) in vec3 bitangent;
+layout(location = 0) out vec2 outCorner;
+layout(location = 1) out vec4 outLife;  // kind, seed, age 0..1, visible near the camera 0..1
+
+void main() {
+  mat4 model = objectTransformBuffer.modelMatrix;
+  mat4 camera = cameraBuffer.viewMatrixInverse;
+  vec3 anchor = (model * vec4(position, 1)).xyz, toEye = camera[3].xyz - anchor, aloft = vec3(0, 0, 1);
+  float kind = floor(normal.z), seed = fract(normal.z), age = 0.0;
+  vec3 across, up;
+  vec2 size = normal.xy;
+  if (kind > 1.5) {  // smoke and embers rise from the anchor and start again
+    float phase = atan(model[0].y, model[0].x) * 0.15915494;
+    float turns = kind > 2.5 ? 1.0 + floor(seed * 3.0) : 1.0;
+    age = fract(phase * turns + seed * 7.0);
+    float rise = max(normal.y - model[3].z, 0.3);
+    float sway = 6.2831853 * (seed * 5.0 + age);
+    vec3 origin = model[3].xyz + position;  // the turn tells the phase and must not turn the column
+    anchor = origin + vec3(0.10 * age * cos(sway), 0.10 * age * sin(sway), rise * (kind > 2.5 ? 0.8 * age : sqrt(age)));
+    if (kind > 2.5) anchor.xy += 0.35 * age * vec2(cos(seed * 40.0), sin(seed * 57.0));
+    size = kind > 2.5 ? vec2(normal.x * (1.0 - 0.6 * age)) : vec2(normal.x * (0.35 + 1.3 * age));
+    toEye = camera[3].xyz - anchor;
+    across = camera[0].xyz;
+    up = camera[1].xyz;
+  } else if (kind > 0.5) {  // scorch lies on the floor
+    across = vec3(cos(seed * 6.28), sin(seed * 6.28), 0);
+    up = cross(aloft, across);
+    size.y = size.x;
+  } else {  // flames stand upright, and lean back a little for those who look from above
+    up = normalize(aloft + 0.45 * camera[1].xyz);
+    across = normalize(cross(up, toEye));
+    anchor += normalize(toEye) * min(0.6 * size.x, 0.3 * length(toEye));  // not cut by the thing that burns
+  }
+  float y = kind > 0.5 ? 2.0 * uv.y - 1.0 : uv.y;
+  vec3 place = anchor + across * uv.x * size.x + up * y * size.y;
+  outCorner = vec2(uv.x, y);
+  outLife = vec4(kind, seed, age, smoothstep(0.15, 0.50, length(toEye)));
+  gl_Position = cameraBuffer.projectionMatrix * (cameraBuffer.viewMatrix * vec4(place, 1));
+}
+"""
+)
+
+EFFECT_FRAG = """#version 450
+#define SET_NUM 2
+#include "./material_set.glsl"
+#undef SET_NUM
+layout(location = 0) in vec2 corner;
+layout(location = 1) in vec4 life;
+layout(location = 0) out vec4 outLighting;  // the only target: labels, depth and normals stay those of the solid scene
+
+float noise(vec2 p) { return texture(colorTexture, p).r; }
+
+vec4 flame(vec2 p, float seed, float time, float strength) {
+  p /= vec2(mix(0.5, 1.0, strength), max(strength, 0.02));
+  if (p.y > 1.0) return vec4(0);
+  vec2 drift = vec2(seed * 17.3, seed * 5.1);
+  float broad = noise(vec2(p.x * 0.16, p.y * 0.26 - 0.42 * time) + drift) - 0.5;
+  float fine = noise(vec2(p.x * 0.42, p.y * 0.62 - 0.95 * time) + drift.yx) - 0.5;
+  float x = p.x + (2.2 * broad + 0.7 * fine) * pow(p.y, 0.8);
+  float tongues = 0.22 * cos(p.x * 9.0 + seed * 31.0 + 3.0 * broad) * p.y;  // several tips rather than one
+  float width = 0.80 * pow(1.0 - p.y, 0.8) * smoothstep(-0.10, 0.20, p.y);
+  float heat = 1.0 - abs(x) / max(width, 1e-3) + (0.5 + 1.5 * p.y) * fine + tongues - 0.3 * p.y * p.y;
+  heat *= clamp((1.0 - abs(p.x)) * 5.0, 0.0, 1.0) * clamp((1.0 - p.y) * 4.0, 0.0, 1.0) * smoothstep(-0.02, 0.10, p.y);
+  heat = clamp(heat, 0.0, 1.0);
+  vec3 colour = mix(vec3(0.80, 0.07, 0.0), vec3(1.0, 0.27, 0.02), smoothstep(0.05, 0.32, heat));
+  colour = mix(colour, vec3(1.1, 0.62, 0.09), smoothstep(0.30, 0.70, heat));
+  colour = mix(colour, vec3(1.4, 1.15, 0.5), smoothstep(0.72, 1.1, heat));
+  return vec4(colour, 0.94 * smoothstep(0.03, 0.38, heat));
+}
+
+vec4 scorch(vec2 p, float seed, float time, float strength) {
+  float grain = noise(p * 0.18 + seed * 9.0);
+  float reach = length(p) / (0.35 + 0.65 * strength);
+  float alpha = 0.9 * smoothstep(1.0, 0.35, reach + 1.1 * (grain - 0.5));
+  float cell = noise(p * 0.55 + seed * 3.0);
+  float glow = smoothstep(0.60, 0.72, cell) * smoothstep(0.8, 0.2, reach) * (0.7 + 0.3 * sin(time * 3.0 + seed * 40.0));
+  return vec4(mix(vec3(0.012, 0.010, 0.009), vec3(1.0, 0.20, 0.02), glow * strength), alpha);
+}
+
+vec4 smoke(vec2 p, float seed, float age, float strength) {
+  float grain = noise(p * 0.14 + vec2(seed * 11.0, seed * 5.0 - 0.25 * age));
+  float body = smoothstep(1.0, 0.15, length(p) + 1.3 * (grain - 0.5));
+  float alpha = body * strength * smoothstep(0.0, 0.12, age) * pow(1.0 - age, 0.8);
+  return vec4(mix(vec3(0.05, 0.045, 0.04), vec3(0.16), age) * (0.5 + grain), alpha);
+}
+
+void main() {
+  float time = materialBuffer.transmissionRoughness, strength = materialBuffer.transmission;
+  vec4 colour;
+  if (life.x < 0.5) colour = flame(corner, life.y, time, strength);
+  else if (life.x < 1.5) colour = scorch(corner, life.y, time, strength);
+  else if (life.x < 2.5) colour = smoke(corner, life.y, life.z, strength);
+  else colour = vec4(1.6, 0.55, 0.08, step(length(corner), 1.0) * step(life.z, 0.95) * step(0.05, strength));
+  colour.a *= life.w;
+  if (colour.a < (life.x < 0.5 ? 0.10 : 0.02)) discard;  // what is drawn hides flames behind it: do not draw faint rims
+  outLighting = colour;
+}
+"""
+
+CHAR = """
+float hazardHash(vec3 p) {
+  p = fract(p * vec3(0.1031, 0.1030, 0.0973));
+  p += dot(p, p.yzx + 33.33);
+  return fract((p.x + p.y) * p.z);
+}
+
+float hazardNoise(vec3 p) {
+  vec3 i = floor(p), f = fract(p);
+  f = f * f * (3.0 - 2.0 * f);
+  vec4 low = vec4(hazardHash(i), hazardHash(i + vec3(1, 0, 0)), hazardHash(i + vec3(0, 1, 0)), hazardHash(i + vec3(1, 1, 0)));
+  i.z += 1.0;
+  vec4 high = vec4(hazardHash(i), hazardHash(i + vec3(1, 0, 0)), hazardHash(i + vec3(0, 1, 0)), hazardHash(i + vec3(1, 1, 0)));
+  vec4 plane = mix(low, high, f.z);
+  vec2 edge = mix(plane.xy, plane.zw, f.y);
+  return mix(edge.x, edge.y, f.x);
+}
+
+// Blackens patch by patch; the rim of a patch glows.
+void hazardChar(inout vec3 albedo, inout vec3 emission, inout float specular, inout float roughness, vec3 place) {
+  float code = materialBuffer.transmissionRoughness - 1.0;
+  float charred = floor(code) / 255.0, glow = fract(code);
+  float patches = 0.62 * hazardNoise(place * 13.0 + 7.0) + 0.26 * hazardNoise(place * 31.0 + 3.0) + 0.12 * hazardNoise(place * 83.0);
+  float front = charred * 1.25 - 0.12;
+  float black = smoothstep(patches - 0.10, patches + 0.06, front);
+  vec3 toasted = albedo * mix(vec3(1.0), vec3(0.55, 0.40, 0.28), smoothstep(0.0, 0.35, charred));
+  albedo = mix(toasted, vec3(0.016, 0.014, 0.013) * (0.4 + 1.2 * patches), black);
+  float rim = exp(-pow((front - patches) * 24.0, 2.0));
+  emission += glow * (rim * vec3(1.3, 0.30, 0.03) + black * vec3(0.05, 0.010, 0.0));
+  specular *= 1.0 - 0.8 * black;
+  roughness = mix(roughness, 0.95, black);
+}
+
+bool hazardTouched() { return materialBuffer.transmissionRoughness >= 1.0; }
+
+vec3 hazardPlace() {  // on the thing [m], whatever the scale of its mesh
+  mat3 model = mat3(objectTransformBuffer.modelMatrix);
+  return objectCoord * vec3(length(model[0]), length(model[1]), length(model[2]));
+}
+"""
+
+CHAR_DEFERRED = """
+  if (hazardTouched()) {
+    vec3 hazardGlow = outEmission.rgb * outEmission.a;
+    hazardChar(outAlbedo.rgb, hazardGlow, outSpecular.r, outSpecular.g, hazardPlace());
+    outEmission = vec4(hazardGlow, 1.0);
+  }
+"""
+
+CHAR_FORWARD = """
+  if (hazardTouched()) {
+    emission = vec4(emission.rgb * emission.a, 1.0);
+    hazardChar(albedo.rgb, emission.rgb, frm.x, frm.y, hazardPlace());
+  }
+"""

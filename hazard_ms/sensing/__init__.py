@@ -1,0 +1,1 @@
+"""What the agent senses: camera, hazard image, target table, semantic map."""

@@ -1,0 +1,168 @@
+"""The robot: its speed limits, its collisions, its camera, its kinematics, against the benchmark's rules and the simulator."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+import torch
+from mani_skill.agents.robots.fetch import Fetch
+
+from hazard_ms.robots import ROBOTS, robot_uid
+from tests.arena import Arena, Box
+
+WALK = 1.0 / 62.0  # m per frame (benchmark rules 1)
+TURN = np.deg2rad(6.0)  # rad per frame (benchmark rules 1)
+BASE = 0.26  # half the width of Fetch's base hull at its narrowest [m] (URDF: 0.264)
+
+BOXES = (
+    Box("wall", (1.5, 0.0, 0.5), (0.2, 6.0, 1.0)),
+    Box("table", (0.0, 2.0, 0.37), (1.0, 1.0, 0.74)),
+    Box("bag", (0.0, -1.0, 0.1), (0.2, 0.2, 0.2), 0.3),
+    Box("barrier", (0.0, -2.0, 0.5), (6.0, 0.1, 1.0)),
+    Box("pen", (-0.6, 0.0, 0.004), (0.14, 0.008, 0.008), 0.01),
+)
+
+
+@pytest.fixture(scope="module", params=[(120, 30), (100, 100)], ids=["30Hz", "100Hz"])
+def arena(request: pytest.FixtureRequest) -> Iterator[Arena]:
+    made = Arena(BOXES, request.param)
+    yield made
+    made.close()
+
+
+def drive(arena: Arena, frames: int, forward: float = 0.0, turn: float = 0.0) -> np.ndarray:
+    """x, y, heading before and after every frame, [frames + 1, 3]."""
+    track = [arena.agent.base()]
+    for _ in range(frames):
+        arena.step(arena.agent.action(forward, turn, arena.agent.tucked, True))
+        track.append(arena.agent.base())
+    return np.array(track)
+
+
+def test_forward_speed_is_the_limit_per_frame_and_straight(arena: Arena) -> None:
+    arena.restart(-1.0, 0.5)
+    track = drive(arena, 40, forward=1.0)  # asks for more than is allowed
+    steps = np.diff(track[:, 0])
+    assert steps.max() <= WALK * 1.005
+    np.testing.assert_allclose(steps[-10:], WALK, rtol=0.01)
+    assert np.abs(track[:, 1] - 0.5).max() < 0.002 and np.abs(track[:, 2]).max() < 0.002
+    rest = drive(arena, 12)
+    assert np.abs(np.diff(rest[-3:, 0])).max() < 0.1 * WALK
+    assert rest[-1, 0] - rest[0, 0] < 0.06
+
+
+def test_turning_speed_is_the_limit_per_frame_on_the_spot(arena: Arena) -> None:
+    arena.restart(-1.0, 0.5)
+    track = drive(arena, 30, turn=1.0)
+    np.testing.assert_allclose(np.diff(track[:, 2])[-10:], TURN, rtol=0.01)
+    assert np.abs(track[:, :2] - (-1.0, 0.5)).max() < 0.01
+    assert abs(drive(arena, 5)[-1, 2] - track[-1, 2]) < TURN
+
+
+@pytest.mark.parametrize(("heading", "axis", "stop"), [(0.0, 0, 1.4), (np.pi / 2, 1, 1.5)])
+def test_fixed_things_stop_it(arena: Arena, heading: float, axis: int, stop: float) -> None:
+    arena.restart(heading=heading)
+    track = drive(arena, 150, forward=WALK)
+    assert stop - 0.32 < track[-1, axis] < stop - BASE
+    assert np.linalg.norm(np.diff(track[:, :2], axis=0), axis=1).max() < 1.05 * WALK
+    spin = drive(arena, 60, forward=WALK, turn=TURN)
+    assert np.linalg.norm(np.diff(spin[:, :2], axis=0), axis=1).max() < 2.0 * WALK
+
+
+def test_it_pushes_light_things_without_flinging_them_through_walls(arena: Arena) -> None:
+    arena.restart(heading=-np.pi / 2)
+    drive(arena, 150, forward=WALK)
+    bag = arena.world.position[0, arena.index("bag")]
+    assert -1.95 < float(bag[1]) < -1.1
+    assert arena.agent.base()[1] > -2.0 + BASE
+
+
+def test_it_does_not_climb_what_lies_on_the_floor(arena: Arena) -> None:
+    arena.restart(heading=np.pi)
+    drive(arena, 80, forward=WALK)
+    assert float(arena.agent.base_link.pose.p[0, 2]) == pytest.approx(0.01, abs=1e-3)
+    assert abs(arena.agent.base()[0] + 80 * WALK) < 0.1
+
+
+def test_tucked_it_fits_into_its_radius_below_its_camera(arena: Arena) -> None:
+    arena.restart()
+    highest = 0.0
+    for link in arena.agent.robot.links:
+        for shape in link._objs[0].collision_shapes:
+            pose = (link._objs[0].entity_pose * shape.local_pose).to_transformation_matrix()
+            points = (np.asarray(shape.vertices) * shape.scale) @ pose[:3, :3].T + pose[:3, 3]
+            assert np.hypot(points[:, 0], points[:, 1]).max() < arena.agent.build.radius, link.name
+            if "head" not in link.name and "torso" not in link.name:
+                highest = max(highest, float(points[:, 2].max()))
+    assert highest < float(arena.agent.head_camera_link.pose.p[0, 2]) - 0.1
+
+
+def test_arm_does_not_sag(arena: Arena) -> None:
+    arena.restart(-1.0, 0.0)
+    stretched = arena.agent.stretched[0]
+    for _ in range(120):
+        arena.step(arena.agent.action(0.0, 0.0, stretched, True))
+    assert np.abs(arena.agent.arm() - stretched).max() < 0.02
+
+
+def test_kinematics_agree_with_the_simulator_and_with_finite_differences(arena: Arena) -> None:
+    arena.restart(-1.0, 0.3, 0.7)
+    agent = arena.agent
+    for posture in (agent.tucked, *agent.stretched):
+        joints = agent.robot.get_qpos().clone()
+        joints[0, agent._arm] = torch.as_tensor(posture, dtype=joints.dtype)
+        agent.robot.set_qpos(joints)
+        hand, turn, jacobian = agent.kinematics(posture)
+        np.testing.assert_allclose(hand, agent.hand(), atol=1e-4)
+        np.testing.assert_allclose(turn, agent.tcp.pose.to_transformation_matrix()[0, :3, :3].numpy(), atol=1e-4)
+        for j in range(len(posture)):
+            step = np.zeros(len(posture))
+            step[j] = 1e-3
+            difference = (agent.kinematics(posture + step)[0] - agent.kinematics(posture - step)[0]) / 2e-3
+            np.testing.assert_allclose(jacobian[:3, j], difference, atol=2e-3)
+
+
+def test_every_control_mode_of_the_native_robot_is_there(arena: Arena) -> None:
+    native = set(Fetch._controller_configs.fget(arena.agent))
+    assert native == set(arena.agent.supported_control_modes) and len(native) == 12
+    assert np.isfinite(arena.agent.single_action_space.low).all()
+
+
+def test_head_camera_sees_120_degrees(arena: Arena) -> None:
+    (camera,) = arena.agent._sensor_configs
+    assert camera.uid == arena.agent.head_camera == "head"
+    assert camera.fov == pytest.approx(np.deg2rad(120.0))
+
+
+def test_it_is_kept_out_of_forbidden_floor_and_may_leave_it(arena: Arena) -> None:
+    arena.restart()
+    stopped = []
+
+    def forbidden(points: torch.Tensor) -> torch.Tensor:
+        return points[..., 0] > 0.7
+
+    arena.base._before_control_step = lambda: stopped.append(bool(arena.agent.keep_out(forbidden)[0]))
+    try:
+        there = drive(arena, 60, forward=WALK)
+        assert 0.2 < there[-1, 0] < 0.7 - arena.agent.build.radius + 0.01 and stopped[-1] and not stopped[0]
+        arena.agent.place(torch.tensor([0]), torch.tensor([[0.6, 0.0]]), torch.tensor([0.0]))
+        assert drive(arena, 20, forward=-WALK)[-1, 0] < 0.4
+    finally:
+        del arena.base._before_control_step
+
+
+def test_actions_of_skills_need_their_control_mode(arena: Arena) -> None:
+    arena.agent.set_control_mode("pd_joint_delta_pos")
+    try:
+        with pytest.raises(ValueError, match="pd_joint_pos"):
+            arena.agent.action(0.0, 0.0, arena.agent.tucked, True)
+    finally:
+        arena.agent.set_control_mode()
+
+
+def test_robots_are_found_by_their_name() -> None:
+    assert robot_uid("fetch") == ROBOTS["fetch"].uid
+    with pytest.raises(ValueError, match="'spot'.*fetch"):
+        robot_uid("spot")

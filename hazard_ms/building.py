@@ -1,0 +1,187 @@
+"""SceneSpec -> SAPIEN actors: the room's shell, furniture, movable bodies with their true masses. Built once per reconfiguration."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import sapien
+import torch
+from mani_skill.utils.sapien_utils import look_at
+from mani_skill.utils.structs import Actor
+from mani_skill.utils.structs.pose import Pose
+
+from hazard_ms.assets import Asset, asset, asset_path
+from hazard_ms.scenes.shell import shell
+from hazard_ms.simulator import CpuHandles, GpuHandles
+from hazard_ms.spec import Body, Fixture, SceneSpec
+from hazard_ms.surfaces import surface_material, textured_box
+from hazard_ms.world import World
+
+FRICTION = 0.5  # [-] Coulomb, static and dynamic: wood on wood 0.25-0.5, most household pairs 0.3-0.6 (Engineering ToolBox) [ours]
+FLAT = 0.03  # a robot's base glides over what lies lower on the floor: rugs [m] [ours]
+SLAB = 1.0  # thickness of what encloses a room [m]: a robot that leans on a thing cannot squeeze it through
+BAG, BAG_SCALE = "basket_2", 0.8  # the model that shows the bag, and its size
+TALL, NEARBY = 1.3, 1.8  # furniture this high, this close to a corner, hides the room from a camera there [m] [ours]
+GLIDE_BITS = (30, 31)  # of collision group 2: ManiSkill's bits for what Fetch's wheels and base do not collide with
+
+
+def extent_of(thing: Body | Fixture) -> tuple[float, float, float]:
+    """Edge lengths of the thing's box along its own axes [m]."""
+    x, y, z = (size * factor for size, factor in zip(asset(thing.asset).extent, thing.scale, strict=True))
+    return x, y, z
+
+
+def extent_of_bag() -> tuple[float, float, float]:
+    """Edge lengths of the bag that the agent carries [m]."""
+    x, y, z = (size * BAG_SCALE for size in asset(BAG).extent)
+    return x, y, z
+
+
+def mass_of(thing: Body | Fixture) -> float:
+    """Mass [kg]: the scene's word, else the asset's, scaled with its volume."""
+    if isinstance(thing, Body) and thing.mass is not None:
+        return thing.mass
+    return asset(thing.asset).mass * float(np.prod(thing.scale))
+
+
+def make_world(specs: tuple[SceneSpec, ...], device: torch.device) -> World:
+    """The world of `specs`, not yet tied to a simulator."""
+    things = [s.things for s in specs]
+    return World.of(specs, [[extent_of(t) for t in row] for row in things], [[mass_of(t) for t in row] for row in things], device)
+
+
+def build_scenes(scene: Any, specs: tuple[SceneSpec, ...]) -> list[list[Actor]]:
+    """Build every scene of `specs` into the sub-scene of the same number; per scene: the actors of its bodies, then of its fixtures."""
+    rows: list[list[Actor]] = []
+    for e, spec in enumerate(specs):
+        build_shell(scene, spec, e)
+        rows.append([build_thing(scene, t, e) for t in spec.things])
+    if len(specs) > 1:
+        _merge_bodies(scene, specs, rows)
+    return rows
+
+
+def build_shell(scene: Any, spec: SceneSpec, env: int) -> None:
+    """Floor, walls, ceiling, doors and windows of a room: what is seen, and six thick slabs through which nothing can be pushed."""
+    for i, box in enumerate(shell(spec.room) if scene.can_render() else ()):
+        builder = scene.create_actor_builder()
+        builder.set_scene_idxs([env])
+        builder._procedural_shapes.append(textured_box(box.size, surface_material(box.material)))
+        builder.initial_pose = sapien.Pose(list(box.centre))
+        builder.build_static(name=f"{env}/shell_{i}_{box.name}")
+    builder = scene.create_actor_builder()
+    builder.set_scene_idxs([env])
+    inner = np.array([*spec.room.size, spec.room.height])
+    for axis in range(3):
+        half = inner / 2 + SLAB
+        half[axis] = SLAB / 2
+        for place in (-SLAB / 2, inner[axis] + SLAB / 2):
+            centre = inner / 2
+            centre[axis] = place
+            builder.add_box_collision(sapien.Pose(centre), half_size=half, material=_friction())
+    builder.initial_pose = sapien.Pose()
+    builder.build_static(name=f"{env}/enclosure")
+
+
+def build_thing(scene: Any, thing: Body | Fixture, env: int) -> Actor:
+    """One body or fixture, at its place."""
+    builder = scene.create_actor_builder()
+    builder.set_scene_idxs([env])
+    kind = asset(thing.asset)
+    add_collision(builder, kind, thing.scale)
+    if kind.visual:
+        builder.add_visual_from_file(str(asset_path(kind.visual)), scale=list(thing.scale))
+    builder.initial_pose = sapien.Pose(list(thing.position), list(thing.rotation))
+    name = f"{env}/{thing.name}"
+    if isinstance(thing, Fixture):
+        fixture = builder.build_static(name=name)
+        if thing.position[2] + extent_of(thing)[2] < FLAT:
+            for bit in GLIDE_BITS:
+                fixture.set_collision_group_bit(group=2, bit_idx=bit, bit=1)
+        return fixture
+    actor = builder.build(name=name)
+    _set_inertia(actor, mass_of(thing), extent_of(thing))
+    return actor
+
+
+def build_bags(scene: Any, count: int) -> list[Actor]:
+    """The bag that each agent carries: a picture only, without weight or collision, and no part of the simulation's state."""
+    bags = []
+    for env in range(count if scene.can_render() else 0):
+        builder = scene.create_actor_builder()
+        builder.set_scene_idxs([env])
+        builder.add_visual_from_file(str(asset_path(asset(BAG).visual)), scale=[BAG_SCALE] * 3)
+        builder.initial_pose = sapien.Pose([0.0, 0.0, -5.0])
+        bag = builder.build_kinematic(name=f"{env}/rescue_bag")
+        scene.remove_from_state_dict_registry(bag)
+        bags.append(bag)
+    return bags
+
+
+def add_collision(builder: Any, kind: Asset, scale: tuple[float, float, float]) -> None:
+    """The asset's convex hulls or hand-made boxes."""
+    for cx, cy, cz, hx, hy, hz in kind.boxes:
+        centre = [c * s for c, s in zip((cx, cy, cz), scale, strict=True)]
+        half = [h * s for h, s in zip((hx, hy, hz), scale, strict=True)]
+        builder.add_box_collision(sapien.Pose(centre), half_size=half, material=_friction())
+    if kind.hulls:
+        builder.add_multiple_convex_collisions_from_file(str(asset_path(kind.hulls)), scale=list(scale), material=_friction())
+
+
+def connect(scene: Any, specs: tuple[SceneSpec, ...], rows: list[list[Actor]], device: torch.device) -> CpuHandles | GpuHandles:
+    """Handles of the moving bodies, after the simulator has been set up."""
+    entities = [[actor._objs[0] for actor in row[: len(spec.bodies)]] for row, spec in zip(rows, specs, strict=True)]
+    if scene.gpu_sim_enabled:
+        return GpuHandles(scene.px, entities, scene.scene_offsets, device)
+    return CpuHandles(entities[0])
+
+
+def _set_inertia(actor: Actor, mass: float, extent: tuple[float, float, float]) -> None:
+    """Mass and inertia of a homogeneous box, centred: they come from the scene, not from the hulls' volumes."""
+    x, y, z = extent
+    for body in actor._bodies:
+        body.set_mass(mass)
+        body.set_cmass_local_pose(sapien.Pose([0.0, 0.0, z / 2]))
+        body.set_inertia([mass / 12 * (y * y + z * z), mass / 12 * (x * x + z * z), mass / 12 * (x * x + y * y)])
+
+
+def _merge_bodies(scene: Any, specs: tuple[SceneSpec, ...], rows: list[list[Actor]]) -> None:
+    """One batched actor per place along B, so that ManiSkill's state holds [E, 13] for each; needs scenes of equal size."""
+    counts = {len(s.bodies) for s in specs}
+    if len(counts) != 1:
+        raise ValueError(f"scenes of one batch have {sorted(counts)} movable things; one number for all is allowed")
+    for b in range(counts.pop()):
+        for row in rows:
+            scene.remove_from_state_dict_registry(row[b])
+        scene.add_to_state_dict_registry(Actor.merge([row[b] for row in rows], name=f"body_{b}"))
+
+
+def _friction() -> sapien.physx.PhysxMaterial:
+    return sapien.physx.PhysxMaterial(FRICTION, FRICTION, 0.0)
+
+
+def pose_of(position: tuple[float, float, float], heading: float) -> Pose:
+    """A pose on the floor, turned about z by `heading` [rad]."""
+    return Pose.create_from_pq([*position], [np.cos(heading / 2), 0.0, 0.0, np.sin(heading / 2)])
+
+
+def build_lights(scene: Any, specs: tuple[SceneSpec, ...]) -> None:
+    """Daylight from above with one shadow, and a lamp under the ceiling."""
+    scene.set_ambient_light([0.45, 0.44, 0.42])
+    scene.add_directional_light([0.4, 0.6, -1.0], [0.9, 0.87, 0.8], shadow=True, shadow_scale=8, shadow_map_size=1024)
+    for e, spec in enumerate(specs):
+        (x, y), z = spec.room.size, spec.room.height
+        scene.add_point_light([x / 2, y / 2, z - 0.4], [2.0, 1.9, 1.7], scene_idxs=[e])
+
+
+def corner_view(spec: SceneSpec) -> sapien.Pose:
+    """Camera pose under the ceiling in a corner, looking at the middle of the room: far from the agent's start, behind nothing tall."""
+    (x, y), z = spec.room.size, spec.room.height
+    start = np.array(spec.agent_start.position)
+    corners = np.array([[a, b] for a in (0.15, x - 0.15) for b in (0.15, y - 0.15)])
+    tall = np.array([f.position[:2] for f in spec.fixtures if f.position[2] + extent_of(f)[2] > TALL]).reshape(-1, 2)
+    hidden = (np.linalg.norm(corners[:, None] - tall[None], axis=-1) < NEARBY).sum(axis=1)
+    corner = corners[np.argmax(np.linalg.norm(corners - start, axis=1) - NEARBY * 2 * hidden)]
+    target = np.array([x / 2, y / 2, 0.1]) * 0.8 + np.array([*start, 0.1]) * 0.2
+    return look_at([*corner, z - 0.15], target).sp

@@ -1,0 +1,72 @@
+"""Watches every step for what PhysX never reports: NaN, runaway speeds, bodies that left the world. A breach ends the episode."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import tempfile
+from collections import deque
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from hazard_ms.world import World
+
+MAX_SPEED = 50.0  # [m/s] reliability.md 5: nothing in a room moves faster
+MAX_SPIN = 1000.0  # [rad/s] PhysX itself limits bodies to 100
+MARGIN = 5.0  # how far outside the room a body may be before it counts as lost [m] [ours]
+HISTORY = 20  # states kept for the dump [frames]
+
+
+class Limits:
+    """What positions [m], rotations, velocities [m/s] and angular velocities [rad/s] of a scene's bodies can be: centre and half width."""
+
+    def __init__(self, world: World) -> None:
+        height = world.room.new_tensor([[s.room.height] for s in world.specs])
+        half = torch.cat([world.room, height], dim=1) / 2
+
+        def same(value: float, count: int) -> Tensor:
+            return torch.full((world.num_envs, count), value, device=world.device)
+
+        self.centre = torch.cat([half, same(0.0, 10)], dim=1)[:, None]
+        widths = [half + MARGIN, same(2.0, 4), same(MAX_SPEED, 3), same(MAX_SPIN, 3)]
+        self.half = torch.cat(widths, dim=1)[:, None]
+
+    def broken(self, world: World, qpos: Tensor) -> Tensor:
+        """Environments whose simulation cannot be trusted any more, [E]. `qpos`: the robot's joints, [E, J]."""
+        state = torch.cat([world.position, world.rotation, world.velocity, world.angular_velocity], dim=-1)
+        good = ((state - self.centre).abs() <= self.half).all(-1)  # NaN fails every comparison
+        unwatched = ~(world.exists & world.movable) | world.safe | world.held
+        return ~((good | unwatched).all(-1) & (qpos.abs() < torch.inf).all(-1))
+
+
+class FlightRecorder:
+    """Keeps the last states of the bodies, to be written to a file when an episode breaks."""
+
+    def __init__(self) -> None:
+        self.states: deque[dict[str, Tensor]] = deque(maxlen=HISTORY)
+
+    def keep(self, world: World) -> None:
+        self.states.append({"frame": world.frame.clone(), "position": world.position.clone(), "velocity": world.velocity.clone()})
+
+    def dump(self, world: World, env: int) -> Path:
+        """Write the last states of environment `env` as JSON to $HAZARD_MS_DUMPS, or the system's temporary folder."""
+        folder = Path(os.environ.get("HAZARD_MS_DUMPS", tempfile.gettempdir()))
+        folder.mkdir(parents=True, exist_ok=True)
+        rows = [{k: _plain(v[env]) for k, v in s.items()} for s in self.states]
+        seed = int(world.chance.seed[env])
+        path = folder / f"hazard_ms_sim_error_{world.specs[env].name.replace('/', '_')}_{seed}.json"
+        path.write_text(json.dumps({"scene": world.specs[env].name, "seed": seed, "names": world.names[env], "states": rows}))
+        return path
+
+
+def _plain(values: Tensor) -> Any:
+    """Numbers as JSON knows them: null for what is not finite."""
+    flat = [x if math.isfinite(x) else None for x in values.flatten().tolist()]
+    if values.ndim == 0:
+        return flat[0]
+    width = values.shape[-1]
+    return flat if values.ndim == 1 else [flat[i : i + width] for i in range(0, len(flat), width)]

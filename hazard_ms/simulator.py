@@ -1,0 +1,157 @@
+"""The only file that touches SAPIEN's handles of moving bodies: one class for PhysX on the CPU, one for PhysX on a GPU.
+
+CPU: one environment; a loop over its bodies, since SAPIEN's CPU interface is per body (3.5 us each to read).
+GPU: whole buffers, one call for the forces of all bodies of all environments in each physics step. Written from SAPIEN 3.0.3's
+interface (`cuda_rigid_body_data`, `cuda_rigid_body_force`, `gpu_apply_rigid_dynamic_force`); run the tests marked `gpu` on such a machine.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sapien
+import torch
+from sapien.physx import PhysxRigidDynamicComponent
+from torch import Tensor
+
+if TYPE_CHECKING:
+    from hazard_ms.world import World
+
+
+class CpuHandles:
+    """Bodies of one scene in PhysX on the CPU, in the order of World's B."""
+
+    def __init__(self, entities: list[sapien.Entity]) -> None:
+        self.bodies = [e.find_component_by_type(PhysxRigidDynamicComponent) for e in entities]
+        self._groups = [[s.get_collision_groups() for s in b.collision_shapes] for b in self.bodies]
+        self._frozen = [False] * len(self.bodies)
+        self._rows = np.zeros((len(self.bodies), 13), dtype=np.float32)  # position, rotation, velocity, angular velocity as last read
+        self._read_asleep = [False] * len(self.bodies)
+
+    def read(self, world: World) -> None:
+        for b, body in enumerate(self.bodies):
+            asleep = body.is_sleeping
+            if asleep and self._read_asleep[b]:
+                continue  # it has not moved since
+            pose, row = body.entity_pose, self._rows[b]
+            row[:3], row[3:7] = pose.p, pose.q
+            row[7:10], row[10:] = body.linear_velocity, body.angular_velocity
+            self._read_asleep[b] = asleep
+        data = torch.from_numpy(self._rows)
+        n = len(self.bodies)
+        world.rotation[0, :n] = data[:, 3:7]
+        world.position[0, :n] = world.centre_of(data[:, :3], data[:, 3:7], world.extent[0, :n])
+        world.velocity[0, :n] = data[:, 7:10]
+        world.angular_velocity[0, :n] = data[:, 10:]
+
+    def asleep(self) -> Tensor:
+        """Which bodies PhysX has put to rest, [1, M], bool."""
+        return torch.tensor([[b.is_sleeping for b in self.bodies]])
+
+    def put_to_sleep(self, asleep: Tensor) -> None:
+        """Let the bodies of the mask, [1, M], rest exactly where they are: a restored pile stays as it was."""
+        for body, still, frozen in zip(self.bodies, asleep[0].tolist(), self._frozen, strict=True):
+            if still and not frozen:
+                body.put_to_sleep()
+
+    def push(self, force: Tensor, torque: Tensor | None) -> None:
+        forces = force[0].numpy()
+        torques = np.zeros_like(forces) if torque is None else torque[0].numpy()
+        for b, body in enumerate(self.bodies):
+            if not self._frozen[b] and (forces[b].any() or torques[b].any()):
+                body.add_force_torque(forces[b], torques[b])
+
+    def place(self, rows: Tensor, base: Tensor, rotation: Tensor) -> None:
+        if len(rows) == 0:
+            return
+        for b, body in enumerate(self.bodies):
+            body.entity.set_pose(sapien.Pose(base[0, b].numpy(), rotation[0, b].numpy()))
+            self._read_asleep[b] = False
+            if not self._frozen[b]:
+                body.linear_velocity = body.angular_velocity = np.zeros(3)
+
+    def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
+        wanted = frozen[0].tolist()
+        for b, body in enumerate(self.bodies):
+            if wanted[b] != self._frozen[b]:
+                self._switch(b, wanted[b])
+            if wanted[b]:
+                self._read_asleep[b] = False
+                body.entity.set_pose(sapien.Pose(base[0, b].numpy(), rotation[0, b].numpy()))
+
+    def _switch(self, b: int, frozen: bool) -> None:
+        self._frozen[b] = frozen
+        body = self.bodies[b]
+        for shape, groups in zip(body.collision_shapes, self._groups[b], strict=True):
+            shape.set_collision_groups([0, 0, 0, 0] if frozen else groups)
+        body.kinematic = frozen
+        if not frozen:
+            body.linear_velocity = body.angular_velocity = np.zeros(3)
+        for other, still in zip(self.bodies, self._frozen, strict=True):  # what rested on it must fall: contacts alone do not wake it
+            if not still:
+                other.wake_up()
+
+
+class GpuHandles:
+    """Bodies of E scenes in PhysX on a GPU. `bodies`: E lists; shorter ones are padded."""
+
+    def __init__(self, px: Any, entities: list[list[sapien.Entity]], offsets: Tensor, device: torch.device) -> None:
+        self.px = px
+        self.offsets = offsets  # of each sub-scene within the shared PhysX scene [m], [E, 3]
+        found = [[e.find_component_by_type(PhysxRigidDynamicComponent).gpu_index for e in row] for row in entities]
+        width = max(len(row) for row in found)
+        self.index = torch.tensor([row + [-1] * (width - len(row)) for row in found], device=device)  # [E, M]
+        self.present = self.index >= 0
+        self._frozen = torch.zeros_like(self.present)
+
+    def read(self, world: World) -> None:
+        self.px.gpu_fetch_rigid_dynamic_data()
+        data = self.px.cuda_rigid_body_data.torch()[self.index.clamp(min=0)]
+        m = self.index.shape[1]
+        keep = self.present[..., None]
+        base = data[..., :3] - self.offsets[:, None]
+        centre = world.centre_of(base, data[..., 3:7], world.extent[:, :m])
+        for target, new in (
+            (world.position, centre),
+            (world.rotation, data[..., 3:7]),
+            (world.velocity, data[..., 7:10]),
+            (world.angular_velocity, data[..., 10:13]),
+        ):
+            target[:, :m] = torch.where(keep, new, target[:, :m])
+
+    def push(self, force: Tensor, torque: Tensor | None) -> None:
+        m = self.index.shape[1]
+        live = self.present & ~self._frozen
+        felt, here = live[..., None], self.present
+        self.px.cuda_rigid_body_force.torch()[self.index[here], :3] = torch.where(felt, force[:, :m], 0.0)[here]
+        self.px.gpu_apply_rigid_dynamic_force()
+        if torque is not None:
+            self.px.cuda_rigid_body_torque.torch()[self.index[here], :3] = torch.where(felt, torque[:, :m], 0.0)[here]
+            self.px.gpu_apply_rigid_dynamic_torque()
+
+    def asleep(self) -> Tensor:
+        """PhysX on a GPU does not tell which bodies rest: none, [E, M], bool."""
+        return torch.zeros_like(self.present)
+
+    def put_to_sleep(self, asleep: Tensor) -> None:
+        """Not offered by PhysX on a GPU: restored piles settle anew."""
+
+    def place(self, rows: Tensor, base: Tensor, rotation: Tensor) -> None:
+        moved = torch.zeros_like(self.present)
+        moved[rows] = True
+        self._write(moved, base, rotation)
+
+    def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
+        """A GPU body cannot become kinematic at run time: it is put back to its place every frame, and feels no hazard."""
+        self._frozen = frozen[:, : self.index.shape[1]]
+        self._write(self._frozen, base, rotation)
+
+    def _write(self, moved: Tensor, base: Tensor, rotation: Tensor) -> None:
+        m = self.index.shape[1]
+        rows = self.px.cuda_rigid_body_data.torch()
+        old = rows[self.index.clamp(min=0)]
+        pose = torch.cat([base[:, :m] + self.offsets[:, None], rotation[:, :m], torch.zeros_like(old[..., 7:13])], dim=-1)
+        new = torch.where((moved & self.present)[..., None], pose, old[..., :13])
+        rows[self.index[self.present], :13] = new[self.present]
+        self.px.gpu_apply_rigid_dynamic_data()

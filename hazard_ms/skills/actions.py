@@ -1,0 +1,46 @@
+"""The six actions of the benchmark as generators of low-level actions, by verb."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Result
+from hazard_ms.skills.grasping import drop, pick_up
+from hazard_ms.skills.motion import turn_by, wrap
+from hazard_ms.skills.stage import Skill, Stage
+from hazard_ms.skills.walking import WALK_FRAMES, walk_to
+
+LOOKS = 12  # of a look around (benchmark rules 3)
+
+
+def explore(stage: Stage) -> Skill:
+    """Turn once around in twelve turns of 30 degrees, looking each time."""
+    used = 0
+    start = stage.robot.base()[2]
+    for look in range(1, LOOKS + 1):
+        left = start + look * 2.0 * np.pi / LOOKS - stage.robot.base()[2]
+        used += (yield from turn_by(stage, wrap(left))).frames
+        stage.look()
+    return Result(True, frames=used)
+
+
+def stop(stage: Stage) -> Skill:
+    """Do nothing; the episode ends with it."""
+    return Result(True)
+    yield  # a generator, as every skill is
+
+
+def skill(stage: Stage, action: Action) -> Skill:
+    """The generator that does `action`. ValueError where it names nothing that there is."""
+    index = None if action.target is None else stage.world.index(0, action.target)
+    if action.verb == EXPLORE:
+        return explore(stage)
+    if action.verb == STOP:
+        return stop(stage)
+    if action.verb == DROP:
+        return drop(stage, index)
+    assert index is not None  # Action sees to it
+    if action.verb == PICK_UP:
+        return pick_up(stage, index)
+    assert action.verb in (WALK_TO, WALK_ONE_STEP)
+    return walk_to(stage, index, WALK_FRAMES, whole=action.verb == WALK_TO)

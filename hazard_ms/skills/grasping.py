@@ -1,0 +1,172 @@
+"""pick_up and drop: the arm goes to the thing; within a hand's breadth of it the hand shuts and holds it (assisted grasp)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.hand import GRASP_REACH
+from hazard_ms.skills import failures
+from hazard_ms.skills.arm import HOVER, NEARLY, OVER, REACH_FRAMES, THERE, go, ready, retract, unfold, way
+from hazard_ms.skills.decision import Result
+from hazard_ms.skills.kinematics import Posture
+from hazard_ms.skills.motion import drive, turn_to
+from hazard_ms.skills.stage import Skill, Stage
+from hazard_ms.skills.walking import way_to
+
+LIMIT = 2.5  # from the shoulder to the thing, for a pick-up to begin (benchmark rules 3) [m]
+GRASP = 0.8 * GRASP_REACH  # the hand shuts this close to the thing [m]
+CLEAR = 0.05  # the hand aims this far off the thing, so as not to push it away [m]
+APPROACH_FRAMES = 120  # budget for coming near enough
+ATTEMPTS = 2  # the second from nearer than the first
+PICK_FRAMES = 100  # after which no further attempt is begun
+LEG_ROOM = 0.4  # lower furniture does not hinder the unfolding arm [m]
+HANDS = 2  # postures that are tried from one place
+STAND_OFF = 0.85  # share of the arm's span at which the base stands for a pick-up
+SHUT_FRAMES = 4  # the hand needs to shut, and to open
+
+
+def pick_up(stage: Stage, index: int, frames: int = PICK_FRAMES) -> Skill:
+    """Take the thing `index` into the hand: turn to it, come nearer if the arm is too short, reach, grasp, fold the arm back.
+
+    No further attempt is begun after `frames`.
+    """
+    reason = _refusal(stage, index)
+    if reason:
+        return Result(False, reason)
+    used = 0
+    for attempt in range(ATTEMPTS):
+        if attempt or not _within_span(stage, stage.position(index)):
+            near = yield from _come_near(stage, stage.position(index), attempt)
+            used += near.frames
+            if not near.ok and attempt:
+                break
+        turned = yield from turn_to(stage, stage.position(index)[:2])
+        taken = yield from _take(stage, index)
+        used += turned.frames + taken.frames
+        if stage.held == index:
+            return Result(True, frames=used)
+        if used >= frames:
+            break
+    return Result(False, failures.UNREACHABLE, used)
+
+
+def _refusal(stage: Stage, index: int) -> str:
+    """Why a pick-up cannot begin; empty where it can."""
+    if stage.held >= 0:
+        return failures.ALREADY_HOLDING
+    if not bool(stage.world.target[0, index]):
+        return failures.NOT_A_TARGET
+    if bool(stage.world.safe[0, index]):
+        return failures.ALREADY_RESCUED
+    if float(np.linalg.norm(stage.position(index) - stage.robot.shoulder())) > LIMIT:
+        return failures.TOO_FAR
+    return ""
+
+
+def _within_span(stage: Stage, thing: NDArray[np.float64]) -> bool:
+    x, y, _ = stage.robot.base()
+    nearest, farthest = stage.robot.build.span(float(thing[2]))
+    return nearest <= float(np.hypot(thing[0] - x, thing[1] - y)) <= farthest
+
+
+def _come_near(stage: Stage, thing: NDArray[np.float64], attempt: int) -> Skill:
+    """Drive to where the arm is long enough; nearer at every further attempt."""
+    nearest, farthest = stage.robot.build.span(float(thing[2]))
+    stand = max(nearest, farthest * STAND_OFF - 0.1 * attempt)
+    path = way_to(stage, (float(thing[0]), float(thing[1])), stand)
+    if path is None or not len(path.points):
+        return Result(False, failures.NO_PATH)
+    return (yield from drive(stage, path.points, APPROACH_FRAMES))
+
+
+def aims(stage: Stage, index: int) -> list[NDArray[np.float64]]:
+    """Points [m] for the hand: above the thing, and before it as seen from the shoulder; a little off its box."""
+    middle = stage.position(index)
+    half = stage.world.extent[0, index].cpu().numpy().astype(np.float64) / 2
+    towards = stage.robot.shoulder() - middle
+    towards = towards / max(float(np.linalg.norm(towards)), 1e-6)
+    top = middle + np.array([0.0, 0.0, float(half.min() if half[2] > 0.2 else half[2]) + CLEAR])
+    before = middle + towards * (float(half[:2].min()) + CLEAR)
+    return [top, before]
+
+
+def _take(stage: Stage, index: int) -> Skill:
+    """Try the best postures from where the base stands; the arm is folded at the end, with or without the thing."""
+    used, height = 0, float(stage.position(index)[2])
+    over = None if height < OVER else height + HOVER
+    if over is not None:
+        used += (yield from unfold(stage, over, -_lacking(stage))).frames
+        used += (yield from _close_in(stage, stage.position(index), over)).frames
+    for aim in _reachable(stage, index)[:HANDS]:
+        used += (yield from _grasp(stage, index, aim)).frames
+        if stage.held == index:
+            break
+    back = yield from retract(stage, over, 0.0 if over is None else -_lacking(stage))
+    return Result(stage.held == index, "" if stage.held == index else failures.UNREACHABLE, used + back.frames)
+
+
+def _grasp(stage: Stage, index: int, aim: NDArray[np.float64]) -> Skill:
+    """Hover above `aim` [m], come down, to its middle if another target is nearer, and shut the hand on it."""
+    used = 0
+    for goal, close in ((aim + np.array([0.0, 0.0, HOVER]), NEARLY), (aim, THERE), (stage.position(index), THERE)):
+        posture = way(stage, goal)
+        moved = yield from go(stage, posture.arm, REACH_FRAMES, lambda: stage.gap(index) < GRASP and stage.would_take() == index, close)
+        used += moved.frames
+        if close == THERE and stage.would_take() == index:
+            used += (yield from _shut(stage, index, posture)).frames
+            break
+    return Result(stage.held == index, frames=used)
+
+
+def _lacking(stage: Stage) -> float:
+    """How far the base must draw back for the arm to fold or unfold before furniture [m]."""
+    room = stage.robot.build.elbow_room
+    return room - stage.room_ahead(LEG_ROOM, room)
+
+
+def _close_in(stage: Stage, thing: NDArray[np.float64], over: float) -> Skill:
+    """Drive straight on, with the hand held out at the height `over` [m], as far as the arm is too short."""
+    x, y, _ = stage.robot.base()
+    farthest = stage.robot.build.span(float(thing[2]))[1]
+    missing = float(np.hypot(thing[0] - x, thing[1] - y)) - STAND_OFF * farthest
+    if missing <= 0.0:
+        return Result(True)
+    return (yield from go(stage, ready(stage, over), REACH_FRAMES, close=NEARLY, forward=missing))
+
+
+def _reachable(stage: Stage, index: int) -> list[NDArray[np.float64]]:
+    """The aims that the hand gets near enough to, best first."""
+    errors = [(way(stage, aim).error, number, aim) for number, aim in enumerate(aims(stage, index))]
+    return [aim for error, number, aim in sorted(errors, key=lambda e: (round(e[0], 2), e[1])) if error < GRASP_REACH]
+
+
+def _shut(stage: Stage, index: int, posture: Posture) -> Skill:
+    """Shut the hand; the nearest target is taken, which is the thing `index` by now."""
+    used = 0
+    while used < SHUT_FRAMES and stage.held != index:
+        yield stage.act(arm=posture.arm, shut=True)
+        used += 1
+    return Result(stage.held == index, frames=used)
+
+
+def drop(stage: Stage, cart: int | None = None) -> Skill:
+    """Let go of what the hand holds: into the bag, or over the thing `cart`; CART_UNREACHABLE where that is out of reach."""
+    held = stage.held
+    if held < 0:
+        return Result(False, failures.NOT_HOLDING)
+    used, arm, over = 0, stage.robot.tucked, None
+    if cart is not None:
+        top = stage.position(cart) + np.array([0.0, 0.0, float(stage.world.extent[0, cart, 2]) / 2 + CLEAR])
+        best, over = way(stage, top), float(top[2]) + HOVER
+        if best.error > GRASP_REACH:
+            return Result(False, failures.CART_UNREACHABLE)
+        arm = best.arm
+        used += (yield from unfold(stage, over)).frames
+    used += (yield from go(stage, arm, REACH_FRAMES, close=NEARLY)).frames
+    for _ in range(SHUT_FRAMES):
+        yield stage.act(arm=arm, shut=False)
+        used += 1
+    used += (yield from retract(stage, over)).frames
+    safe = bool(stage.world.safe[0, held])
+    return Result(safe, "" if safe else failures.NOT_RESCUED, used)

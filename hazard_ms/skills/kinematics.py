@@ -1,0 +1,87 @@
+"""Inverse kinematics by damped least squares: where the arm's joints must be for the hand to be at a point.
+
+    dq = J^T (J J^T + damping^2 I)^-1 e,   e = (position error, WEIGHT x direction error)
+
+The hand's x axis, along which its fingers point, is asked to point a given way, weakly: the point matters more. Deterministic: no
+random restarts, a fixed list of postures to begin from.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.robots.robot import Robot
+
+DAMPING = 0.05  # [m]; smaller is faster and shakes near singular postures
+WEIGHT = 0.15  # metres of position error that weigh as much as a radian of direction error
+ITERATIONS = 60
+STRIDE = 0.3  # most that a joint changes in one iteration [rad]
+GOOD_ERROR, GOOD_TILT = 0.02, 0.2  # [m], [rad]; no other posture is tried once one is as good as this
+PATIENCE = 8  # iterations without gain after which the search ends
+GAIN = 0.95  # a cost that shrinks by less is no gain
+CLOSE = 0.005  # position error at which the search ends [m]
+
+
+@dataclass(frozen=True)
+class Posture:
+    """Arm joints that bring the hand near a point."""
+
+    arm: NDArray[np.float64]  # [J] [rad]
+    error: float  # distance left between hand and point [m]
+    tilt: float  # angle between where the fingers point and where they should [rad]
+
+
+def solve(robot: Robot, point: NDArray[np.float64], pointing: NDArray[np.float64]) -> Posture:
+    """The best posture found for the hand at `point` [m], fingers along the unit vector `pointing`, world frame; never fails."""
+    limits = robot.arm_limits
+    best: Posture | None = None
+    for start in robot.stretched:
+        found = _descend(robot, _facing(robot, start, point), point, pointing, limits)
+        if best is None or found.error + WEIGHT * found.tilt < best.error + WEIGHT * best.tilt:
+            best = found
+        if best.error < GOOD_ERROR and best.tilt < GOOD_TILT:
+            break
+    assert best is not None
+    return best
+
+
+def _facing(robot: Robot, start: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`start` with its first joint, the shoulder's pan, turned towards `point`."""
+    heading = robot.base()[2]
+    shoulder = robot.shoulder()
+    pan = np.arctan2(point[1] - shoulder[1], point[0] - shoulder[0]) - heading
+    turned = start.copy()
+    turned[0] = np.arctan2(np.sin(pan), np.cos(pan))
+    return turned
+
+
+def _descend(
+    robot: Robot,
+    start: NDArray[np.float64],
+    point: NDArray[np.float64],
+    pointing: NDArray[np.float64],
+    limits: NDArray[np.float64],
+) -> Posture:
+    arm = np.clip(start, limits[:, 0], limits[:, 1])
+    best, since = Posture(arm, np.inf, np.pi), 0
+    damping = DAMPING**2 * np.eye(6)
+    rows, aim = np.empty((6, len(arm))), np.empty(6)
+    for iteration in range(ITERATIONS):
+        hand, turn, jacobian = robot.kinematics(arm)
+        off, axis = point - hand, turn[:, 0]
+        error, tilt = float(np.sqrt(off @ off)), float(np.arccos(min(1.0, max(-1.0, float(axis @ pointing)))))
+        cost = best.error + WEIGHT * best.tilt
+        if error + WEIGHT * tilt < cost:
+            since = since if error + WEIGHT * tilt > GAIN * cost else iteration
+            best = Posture(arm, error, tilt)
+        if (error < CLOSE and tilt < CLOSE / WEIGHT) or iteration - since > PATIENCE:
+            break
+        rows[:3], rows[3:] = jacobian[:3], WEIGHT * jacobian[3:]
+        aim[:3], aim[3:] = off, WEIGHT * np.cross(axis, pointing)
+        step = rows.T @ np.linalg.solve(rows @ rows.T + damping, aim)
+        step *= min(1.0, STRIDE / max(float(np.abs(step).max()), 1e-9))
+        arm = np.clip(arm + step, limits[:, 0], limits[:, 1])
+    return best

@@ -1,0 +1,125 @@
+"""Driving and turning the base: move_by, turn_by, turn_to, drive. Each has a budget of frames and notices when it is stuck."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.skills.decision import Result
+from hazard_ms.skills.failures import BLOCKED, MAX_FRAMES
+from hazard_ms.skills.stage import Skill, Stage
+
+CLOSE = 0.02  # a distance driven to within this is driven [m]
+ALIGNED = np.deg2rad(2.0)  # an angle turned to within this is turned [rad]
+ALONG = np.deg2rad(25.0)  # the base drives while it faces its way to within this, else it turns on the spot [rad]
+PASSED = 0.10  # a point of a path is passed within this distance [m]
+WATCH = 12  # frames over which progress is judged
+STUCK = 0.25  # share of the commanded way below which it counts as stuck
+BACK_OFF = 0.15  # how far it backs off from what it ran into [m]
+SETTLE = 3  # frames in which the base comes to rest
+
+
+def wrap(angle: float) -> float:
+    """`angle` [rad] between -pi and pi."""
+    return float(np.arctan2(np.sin(angle), np.cos(angle)))
+
+
+def finite(number: float, name: str) -> float:
+    """`number`, or a ValueError where it is none."""
+    if not np.isfinite(number):
+        raise ValueError(f"{name} is {number!r}; a finite number is allowed")
+    return float(number)
+
+
+def turn_by(stage: Stage, angle: float, frames: int | None = None) -> Skill:
+    """Turn on the spot by `angle` [rad], anticlockwise. `frames`: budget; None: twice what it takes, and some."""
+    return (yield from _turn(stage, finite(angle, "angle"), frames))
+
+
+def turn_to(stage: Stage, point: tuple[float, float] | NDArray[np.float64], frames: int | None = None) -> Skill:
+    """Turn on the spot until facing `point` [m]."""
+    x, y, heading = stage.robot.base()
+    angle = wrap(np.arctan2(finite(point[1], "point's y") - y, finite(point[0], "point's x") - x) - heading)
+    return (yield from _turn(stage, angle, frames))
+
+
+def _turn(stage: Stage, left: float, frames: int | None) -> Skill:
+    limit = stage.robot.build.turn_step
+    budget = frames if frames is not None else int(2 * abs(left) / limit) + 10
+    before = stage.robot.base()[2]
+    for used in range(budget):
+        now = stage.robot.base()[2]
+        left -= wrap(now - before)  # the simulator's heading jumps by whole turns
+        before = now
+        if abs(left) < ALIGNED:
+            return Result(True, frames=used)
+        yield stage.act(turn=float(np.clip(left, -limit, limit)))
+    return Result(False, MAX_FRAMES, budget)
+
+
+def move_by(stage: Stage, distance: float, frames: int | None = None) -> Skill:
+    """Drive straight by `distance` [m], backwards if negative; BLOCKED where something stops it."""
+    x, y, heading = stage.robot.base()
+    limit = stage.robot.build.forward_step
+    budget = frames if frames is not None else int(2 * abs(finite(distance, "distance")) / limit) + 10
+    watch = Watch()
+    for used in range(budget):
+        now_x, now_y, now = stage.robot.base()
+        left = distance - ((now_x - x) * np.cos(heading) + (now_y - y) * np.sin(heading))
+        if abs(left) < CLOSE:
+            return Result(True, frames=used)
+        forward = float(np.clip(left, -limit, limit))
+        if watch.stuck(now_x, now_y, forward):
+            return Result(False, BLOCKED, used)
+        yield stage.act(forward, wrap(heading - now))
+    return Result(False, MAX_FRAMES, budget)
+
+
+class Watch:
+    """Notices that a base which should drive does not get on."""
+
+    def __init__(self) -> None:
+        self._track: list[tuple[float, float, float]] = []
+
+    def stuck(self, x: float, y: float, forward: float) -> bool:
+        """Whether the last frames brought much less than was commanded; call it once a frame, with what is commanded next."""
+        if forward == 0.0:
+            self._track.clear()  # turning on the spot is no lack of progress
+        self._track.append((x, y, abs(forward)))
+        if len(self._track) <= WATCH:
+            return False
+        old_x, old_y, _ = self._track.pop(0)
+        commanded = sum(step for _, _, step in self._track[:-1])
+        return bool(np.hypot(x - old_x, y - old_y) < STUCK * commanded)
+
+
+def drive(stage: Stage, points: NDArray[np.float64], frames: int) -> Skill:
+    """Drive through `points` [m], [P, 2], in turn. On running into something it backs off, remembers where, and is BLOCKED."""
+    watch, used = Watch(), 0
+    for number, point in enumerate(points):
+        last = number == len(points) - 1
+        while True:
+            x, y, heading = stage.robot.base()
+            far = float(np.hypot(point[0] - x, point[1] - y))
+            if far < (CLOSE if last else PASSED):
+                break
+            if used >= frames:
+                return Result(False, MAX_FRAMES, used)
+            off = wrap(np.arctan2(point[1] - y, point[0] - x) - heading)
+            if last and far < 2 * CLOSE and abs(off) > ALONG:
+                break  # just overshot: not worth turning round
+            forward = min(far, stage.robot.build.forward_step) if abs(off) < ALONG else 0.0
+            if watch.stuck(x, y, forward):
+                stage.bump()
+                back = yield from move_by(stage, -BACK_OFF, min(frames - used, 2 * WATCH))
+                return Result(False, BLOCKED, used + back.frames)
+            yield stage.act(forward, off)
+            used += 1
+    return Result(True, frames=used)
+
+
+def settle(stage: Stage, frames: int = SETTLE) -> Skill:
+    """Wait until the base rests."""
+    for _ in range(frames):
+        yield stage.act()
+    return Result(True, frames=frames)

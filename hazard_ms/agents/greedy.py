@@ -1,0 +1,166 @@
+"""The paper's greedy agent: always the known target of the lowest cost; looks around when it knows none.
+
+    cost = (distance + HANDLING) * (1 + failures)^2 / predicted value
+
+The predicted value is halved where the target is damaged or will be by the time of arrival, with its temperature continued along
+the straight line through its last two sightings. A target that failed repeatedly gets a growing cost and is given up at last, so
+no path is tried for ever. Searching: walk to the landmark with the most unexplored floor around it, then look around there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.agents.base import Agent, distance, known, open_targets
+from hazard_ms.sensing.semantic_map import SemanticMap, Sighting
+from hazard_ms.sensing.target_table import DAMAGED_SHARE
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
+from hazard_ms.spec import Task
+
+WALKING = 1.0 / 62.0  # [m/frame] (benchmark rules 1)
+HANDLING = 1.0  # what picking up costs, as a distance: about 60 frames [m]
+NEAR = 0.7  # from here it reaches for a target without walking: arrival is at 0.5 m, and a position has some error [m]
+PROGRESS = 0.2  # a walk that brought it this far was no failure, even if it did not arrive [m]
+LEGS = 8  # walks without arrival to one target that together count as a failure: 13 m, longer than any way in a room
+GIVE_UP = 4  # failures with one target
+AROUND = 2.0  # radius of floor that counts as around a landmark [m]
+LOW = 0.3  # floor below this height can be walked on [m]
+LOYALTY = 0.8  # factor on the cost of the target it is on its way to: it turns to another only if that is clearly better
+VISITS = 2  # of one landmark in search
+
+
+class Greedy(Agent):
+    """Rule of the paper with the target, and in wind the container, of the lowest cost."""
+
+    def reset(self, task: Task, seed: int) -> None:
+        """Forget the last episode. It draws no lots: `seed` changes nothing."""
+        self._failures: dict[str, int] = {}
+        self._visits: dict[int, int] = {}
+        self._looked_from: tuple[float, float] | None = None  # where it last looked around [m]
+        self._look_again = False
+        self._landmark: str | None = None  # to which a search is on its way
+        self._legs: dict[str, int] = {}
+        self._before: tuple[Action, tuple[float, float]] | None = None  # the last action, and where it began [m]
+
+    def act(self, decision: Decision) -> Action:
+        """Put away what it holds, else fetch the cheapest target, else search."""
+        self._judge(decision)
+        action = self._choose(decision)
+        self._before = (action, decision.agent_position)
+        if action.verb == EXPLORE:
+            self._looked_from, self._look_again = decision.agent_position, False
+        return action
+
+    def _judge(self, decision: Decision) -> None:
+        """Count the last action's failure, unless it was a walk that came further."""
+        if self._before is None or decision.last_result is None or decision.last_result.ok:
+            return
+        action, start = self._before
+        if action.target is None:
+            return
+        way = float(np.hypot(*(np.asarray(decision.agent_position) - start)))
+        if action.verb in (WALK_TO, WALK_ONE_STEP) and way > PROGRESS:
+            self._legs[action.target] = self._legs.get(action.target, 0) + 1
+            if self._legs[action.target] % LEGS:
+                return
+        self._failures[action.target] = self._failures.get(action.target, 0) + 1
+        self._landmark = None
+        self._look_again = self._failures[action.target] == 2  # perhaps it is no longer where it was seen
+
+    def _choose(self, decision: Decision) -> Action:
+        if decision.held is not None:
+            return self._put_away(decision)
+        if decision.targets and all(t.rescued for t in decision.targets):
+            self.note = "every target is rescued"
+            return Action(STOP)
+        if self._looked_from is None or self._look_again:
+            self.note = "look around"
+            return Action(EXPLORE)
+        costs = {
+            name: self._cost(decision, name, sighting)
+            for name, sighting in known(decision, open_targets(decision)).items()
+            if self._failures.get(name, 0) < GIVE_UP
+        }
+        if not costs:
+            return self._search(decision)
+        arrived = self._arrived(decision)
+        best = arrived if arrived in costs else min(costs, key=lambda name: costs[name])
+        self._landmark = None
+        self.note = f"cost {costs[best]:.2f}, the lowest of {len(costs)}"
+        near = distance(decision, decision.map.objects[decision.index(best)]) < NEAR and best not in self._failures
+        return Action(PICK_UP if best == arrived or near else WALK_TO, best)
+
+    def _arrived(self, decision: Decision) -> str | None:
+        """What it has just walked up to."""
+        last, result = decision.last_action, decision.last_result
+        return last.target if last is not None and last.verb == WALK_TO and result is not None and result.ok else None
+
+    def _put_away(self, decision: Decision) -> Action:
+        if not decision.containers:
+            self.note = "into the bag"
+            return Action(DROP)
+        carts = known(decision, decision.containers)
+        open_carts = [name for name in carts if self._failures.get(name, 0) < GIVE_UP]
+        if not open_carts:
+            return self._search(decision)
+        nearest = min(open_carts, key=lambda name: distance(decision, carts[name]) * (1 + self._failures.get(name, 0)))
+        self.note = "to the nearest cart"
+        return Action(DROP if self._arrived(decision) == nearest else WALK_TO, nearest)
+
+    def _cost(self, decision: Decision, name: str, sighting: Sighting) -> float:
+        way = distance(decision, sighting) + HANDLING
+        target = decision.target(name)
+        lost = target.damaged or (target.flammable and _predicted(sighting, decision.frame + way / WALKING) >= target.ignition_temperature)
+        value = target.value * (DAMAGED_SHARE if lost else 1.0)
+        loyalty = LOYALTY if decision.last_action == Action(WALK_TO, name) else 1.0
+        return loyalty * way * (1 + self._failures.get(name, 0)) ** 2 / value
+
+    def _search(self, decision: Decision) -> Action:
+        """Walk to the most promising landmark and look around there; stop when nothing is left to try."""
+        if self._landmark is not None:
+            if self._arrived(decision) == self._landmark:
+                self.note, self._landmark = "look around from here", None
+                return Action(EXPLORE)
+            self.note = f"on the way to {self._landmark}, to search there"
+            return Action(WALK_TO, self._landmark)
+        scores = self._landmarks(decision)
+        if not scores:
+            self.note = "nothing left to search"
+            return Action(STOP)
+        best = max(scores, key=lambda index: scores[index])
+        self._visits[best] = self._visits.get(best, 0) + 1
+        self._landmark = decision.names[best]
+        self.note = f"search around {self._landmark}"
+        return Action(WALK_TO, self._landmark)
+
+    def _landmarks(self, decision: Decision) -> dict[int, float]:
+        """Things worth walking to in search, by index: unexplored floor around them, over the way there and the visits paid."""
+        frontier = frontier_points(decision.map)
+        scores = {}
+        for index, sighting in decision.map.objects.items():
+            visits = self._visits.get(index, 0)
+            if visits >= VISITS or (visits and not len(frontier)) or decision.names[index] == decision.held:
+                continue
+            unexplored = int((np.hypot(*(frontier - sighting.position[:2]).T) < AROUND).sum())
+            scores[index] = (1 + unexplored) / (1.0 + distance(decision, sighting)) / (1 + visits) ** 2
+        return scores
+
+
+def _predicted(sighting: Sighting, frame: float) -> float:
+    """Hazard level at a thing at `frame`, along the line through its last two sightings at different frames [C] or [m]."""
+    late_frame, late = sighting.history[-1] if sighting.history else (sighting.frame, sighting.hazard)
+    earlier = [(f, level) for f, level in sighting.history if f < late_frame]
+    if not earlier:
+        return late
+    early_frame, early = earlier[-1]
+    return late + (late - early) / (late_frame - early_frame) * (frame - late_frame)
+
+
+def frontier_points(seen: SemanticMap) -> NDArray[np.float64]:
+    """Middles of explored, walkable cells next to unexplored ones [m], [P, 2]."""
+    closed = seen.explored
+    inner = np.ones_like(closed)
+    inner[1:-1, 1:-1] = closed[:-2, 1:-1] & closed[2:, 1:-1] & closed[1:-1, :-2] & closed[1:-1, 2:]
+    y, x = np.nonzero(closed & ~inner & (seen.height < LOW))
+    return seen.origin + seen.cell * (np.stack([x, y], axis=-1) + 0.5)

@@ -1,0 +1,35 @@
+"""The paper's random agent: each time one of its moves, drawn uniformly from those that what it has seen allows."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hazard_ms.agents.base import Agent, known, open_targets
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
+from hazard_ms.spec import Task
+
+
+class Random(Agent):
+    """One step to the nearest target or container, pick up the nearest target, drop, explore, walk to something in sight."""
+
+    def reset(self, task: Task, seed: int) -> None:
+        """Begin a row of lots that `seed` fixes."""
+        self._lots = np.random.default_rng([seed, 0x52414E44])  # "RAND": not the stream of another agent with the same seed
+
+    def act(self, decision: Decision) -> Action:
+        """One of the possible moves."""
+        moves = self._moves(decision)
+        return moves[int(self._lots.integers(len(moves)))]
+
+    def _moves(self, decision: Decision) -> list[Action]:
+        moves = [Action(DROP), Action(EXPLORE)]
+        targets = known(decision, open_targets(decision))
+        if targets:
+            nearest = next(iter(targets))
+            moves += [Action(WALK_ONE_STEP, nearest), Action(PICK_UP, nearest)]
+        if containers := known(decision, decision.containers):
+            moves.append(Action(WALK_ONE_STEP, next(iter(containers))))
+        in_sight = [i for i in decision.map.in_view if decision.names[i] != decision.held]
+        if in_sight:
+            moves.append(Action(WALK_TO, decision.names[in_sight[int(self._lots.integers(len(in_sight)))]]))
+        return moves

@@ -1,0 +1,117 @@
+"""The command `hazard-ms`. Each sub-command imports what it needs when it is called, so that `hazard-ms --help` is quick."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import tyro
+
+from hazard_ms.order import Order
+
+
+def doctor(json: bool = False, draw: bool = True) -> int:
+    """Find out why hazard_ms does not start or draw here; name one cause and one command. Ends with 1 if something is at fault.
+
+    Args:
+        json: Print everything as JSON.
+        draw: Draw a picture (seconds) instead of only starting the renderer.
+    """
+    from hazard_ms.doctor import collect, report
+
+    return report(collect(draw=draw), as_json=json)
+
+
+def version() -> int:
+    """Print the versions of hazard_ms and of what results depend on."""
+    import platform
+
+    from hazard_ms import __version__
+    from hazard_ms.doctor import installed
+
+    print(f"hazard_ms {__version__}")
+    print(f"python {platform.python_version()}")
+    for name, number in sorted(installed().items()):
+        print(f"{name} {number}")
+    return 0
+
+
+def bench(
+    env_id: Annotated[str, tyro.conf.arg(aliases=["-e"])] = "HazardFire-v1",
+    frames: int = 600,
+    seed: Annotated[int, tyro.conf.arg(aliases=["-s"])] = 0,
+    episode: bool = True,
+) -> int:
+    """Print where the time of a frame goes, phase by phase, and how long a greedy episode takes, with versions and machine.
+
+    Args:
+        env_id: Task.
+        frames: Frames to average over.
+        seed: Seed of the episode.
+        episode: Also play a whole greedy episode.
+    """
+    from hazard_ms.bench import report
+
+    print(report(env_id, frames, seed, episode))
+    return 0
+
+
+def scenes(split: str = "") -> int:
+    """List the scenes of a split, or of all splits.
+
+    Args:
+        split: Name of a split; empty for all.
+    """
+    from hazard_ms.scenes.splits import scene, scene_names, split_names
+
+    for name in (split,) if split else split_names():
+        for each in scene_names(name):
+            spec = scene(each)
+            targets = ", ".join(f"{sum(t.category == c for t in spec.targets)} {c}" for c in spec.target_categories)
+            print(f"{name:6s} {each:16s} {len(spec.bodies):3d} things, {len(spec.fires)} fires; targets: {targets}")
+    return 0
+
+
+def sheet(out: Annotated[Path, tyro.conf.arg(aliases=["-o"])] = Path("sheet.png")) -> int:
+    """Render all assets into one picture.
+
+    Args:
+        out: File to write.
+    """
+    from hazard_ms.contact_sheet import save_sheet as draw
+
+    draw(out)
+    print(f"contact sheet: {out.resolve()}")
+    return 0
+
+
+def play(order: tyro.conf.OmitArgPrefixes[Order]) -> int:
+    """Play one episode of one agent; with --video, write its film, its result as JSON and its page."""
+    from hazard_ms.play import main as play_order
+
+    return play_order(order)
+
+
+COMMANDS: dict[str, Callable[..., Any]] = {
+    "doctor": doctor,
+    "version": version,
+    "play": play,
+    "bench": bench,
+    "scenes": scenes,
+    "sheet": sheet,
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one sub-command and return its exit code."""
+    try:
+        return int(tyro.extras.subcommand_cli_from_dict(COMMANDS, prog="hazard-ms", description=__doc__, args=arguments) or 0)
+    except ValueError as error:  # input that is not allowed: say so, without a trace of where it was noticed
+        print(f"hazard-ms: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

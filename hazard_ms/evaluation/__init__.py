@@ -1,0 +1,1 @@
+"""Scores, results, videos and pages of episodes."""

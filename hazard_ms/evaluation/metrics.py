@@ -1,0 +1,129 @@
+"""The scores of the HAZARD challenge over episodes (benchmark rules 4), each with a bootstrap interval over episodes.
+
+    Value  = mean over episodes of  value rescued / value of all targets at the start;  a target rescued damaged counts half
+    Step   = sum over episodes of the frame of the last rescue / sum of targets rescued;  None when nothing is rescued
+    Damage = targets rescued damaged / targets rescued, over all episodes together;  None when nothing is rescued
+
+Value and Damage are shares, 0 to 1; the paper prints them times 100. Read Step only beside Value: rescuing 1 of 15 quickly looks
+good in Step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.sensing.target_table import DAMAGED_SHARE
+
+RESAMPLES = 10_000  # of the bootstrap: the ends of a 95 % interval are then known to about 1 % of its width
+LEVEL = 0.95  # of the interval
+
+
+@dataclass(frozen=True)
+class Fate:
+    """What became of one target."""
+
+    name: str
+    category: str
+    value: float  # 1 or 5
+    rescued: bool
+    damaged: bool  # when it was rescued, or at the end
+    frame: int | None = None  # of the rescue
+
+    def __post_init__(self) -> None:
+        if self.rescued != (self.frame is not None):
+            raise ValueError(f"{self.name}: rescued is {self.rescued}, but the frame of its rescue is {self.frame}")
+
+
+@dataclass(frozen=True)
+class Tally:
+    """What one episode adds to the scores."""
+
+    value_rescued: float  # damaged ones at half
+    value_total: float
+    rescued: int
+    rescued_damaged: int
+    last_rescue: int  # frame; 0 when nothing was rescued
+
+    @classmethod
+    def of(cls, fates: Sequence[Fate]) -> Tally:
+        """The tally of an episode whose targets met these fates."""
+        if not fates:
+            raise ValueError("an episode without targets has no score")
+        saved = [f for f in fates if f.rescued]
+        return cls(
+            value_rescued=sum(f.value * (DAMAGED_SHARE if f.damaged else 1.0) for f in saved),
+            value_total=sum(f.value for f in fates),
+            rescued=len(saved),
+            rescued_damaged=sum(f.damaged for f in saved),
+            last_rescue=max((f.frame for f in saved if f.frame is not None), default=0),
+        )
+
+    @property
+    def value(self) -> float:
+        """Share of the value that was rescued, 0 to 1."""
+        return self.value_rescued / self.value_total
+
+
+@dataclass(frozen=True)
+class Score:
+    """A score and its 95 % interval over episodes; None where it is undefined."""
+
+    mean: float | None
+    low: float | None
+    high: float | None
+
+
+def value(tallies: Sequence[Tally]) -> float | None:
+    """Value of a set of episodes, 0 to 1."""
+    return float(np.mean([t.value for t in tallies])) if tallies else None
+
+
+def step(tallies: Sequence[Tally]) -> float | None:
+    """Step of a set of episodes [frames]."""
+    rescued = sum(t.rescued for t in tallies)
+    return sum(t.last_rescue for t in tallies) / rescued if rescued else None
+
+
+def damage(tallies: Sequence[Tally]) -> float | None:
+    """Damage of a set of episodes, 0 to 1."""
+    rescued = sum(t.rescued for t in tallies)
+    return sum(t.rescued_damaged for t in tallies) / rescued if rescued else None
+
+
+SCORES: dict[str, Callable[[Sequence[Tally]], float | None]] = {"value": value, "step": step, "damage": damage}
+
+
+def scores(tallies: Sequence[Tally], seed: int = 0, resamples: int = RESAMPLES) -> dict[str, Score]:
+    """Value, Step and Damage of a set of episodes. `seed` of the bootstrap's draws."""
+    if not tallies:
+        raise ValueError("there are no episodes to score")
+    chosen = np.random.default_rng(seed).integers(len(tallies), size=(resamples, len(tallies)))
+    drawn = _resampled(tallies, chosen)
+    return {name: _interval(compute(tallies), drawn[name]) for name, compute in SCORES.items()}
+
+
+def _resampled(tallies: Sequence[Tally], chosen: NDArray[np.int64]) -> dict[str, NDArray[np.float64]]:
+    """Each score of each resample of episodes, `chosen` [R, N]: [R]; NaN where nothing was rescued."""
+
+    def column(name: str) -> NDArray[np.float64]:
+        return np.array([getattr(t, name) for t in tallies], dtype=np.float64)[chosen]
+
+    rescued = column("rescued").sum(1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return {
+            "value": column("value").mean(1),
+            "step": np.where(rescued > 0, column("last_rescue").sum(1) / rescued, np.nan),
+            "damage": np.where(rescued > 0, column("rescued_damaged").sum(1) / rescued, np.nan),
+        }
+
+
+def _interval(mean: float | None, drawn: NDArray[np.float64]) -> Score:
+    defined = drawn[np.isfinite(drawn)]
+    if mean is None or not len(defined):
+        return Score(mean, None, None)
+    low, high = np.quantile(defined, [(1.0 - LEVEL) / 2.0, (1.0 + LEVEL) / 2.0])
+    return Score(mean, float(low), float(high))

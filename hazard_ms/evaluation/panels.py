@@ -1,0 +1,198 @@
+"""The panels of the video beside its main view: the hazard over the camera's image, and the map of what has been seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.evaluation.drawing import (
+    ACCENT,
+    BAD,
+    BLUE,
+    EDGE,
+    GOLD,
+    GOOD,
+    PANEL,
+    SOFT,
+    TEXT,
+    Colour,
+    Pixels,
+    chip,
+    dot,
+    paint,
+    rounded,
+    text_width,
+    write,
+)
+from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.sensing.target_table import Target
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How levels of a hazard are shown: what is `low` and `high`, in which unit and colours."""
+
+    title: str
+    unit: str
+    low: float
+    high: float
+    colours: int  # an OpenCV colour map
+    tint: Colour  # on the map
+
+
+TEMPERATURE = Scale("temperature", "°C", 20.0, 600.0, cv2.COLORMAP_INFERNO, ACCENT)
+WATER = Scale("water level", "m", 0.0, 1.5, cv2.COLORMAP_OCEAN, BLUE)
+FLOOR = np.array((62, 69, 80), np.float32)  # colour of a height of 0
+WALL = np.array((208, 213, 221), np.float32)  # of 2 m and more
+SCALES = {"fire": TEMPERATURE, "flood": WATER}  # by the name of the hazard
+
+
+def cover(image: Pixels, width: int, height: int) -> Pixels:
+    """`image` scaled to fill `width` x `height`; what sticks out is cut off evenly."""
+    if image.shape[:2] == (height, width):
+        return image.copy()
+    factor = max(width / image.shape[1], height / image.shape[0])
+    size = max(width, round(image.shape[1] * factor)), max(height, round(image.shape[0] * factor))
+    way = cv2.INTER_AREA if factor < 0.6 else cv2.INTER_LINEAR
+    large = cv2.resize(image, size, interpolation=way)
+    x, y = (size[0] - width) // 2, (size[1] - height) // 2
+    return np.ascontiguousarray(large[y : y + height, x : x + width])
+
+
+def heat(share: NDArray[np.floating], colours: int) -> Pixels:
+    """Colours, RGB, of numbers from 0 to 1."""
+    index = (np.clip(np.nan_to_num(share), 0.0, 1.0) * 255).astype(np.uint8)
+    return cv2.cvtColor(cv2.applyColorMap(index, colours), cv2.COLOR_BGR2RGB)
+
+
+def hazard_panel(head: Pixels, level: NDArray[np.floating], scale: Scale) -> Pixels:
+    """The hazard image over the greyed, square image of the `head` camera, of the same size, with its colour scale."""
+    side = len(head)
+    grey = cv2.cvtColor(head, cv2.COLOR_RGB2GRAY)
+    smooth = cv2.resize(level.astype(np.float32), (side, side), interpolation=cv2.INTER_LINEAR)
+    warm = heat((smooth - scale.low) / (scale.high - scale.low), scale.colours)
+    image: Pixels = cv2.addWeighted(warm, 0.72, cv2.cvtColor(grey, cv2.COLOR_GRAY2RGB), 0.42, 0.0).astype(np.uint8, copy=False)
+    bar = np.broadcast_to(np.linspace(0.0, 1.0, side - 40)[None], (8, side - 40))
+    image[-46:] = (image[-46:] * 0.45).astype(np.uint8)
+    image[-18:-10, 20:-20] = heat(bar, scale.colours)
+    write(image, f"{scale.low:g} {scale.unit}", (20, side - 38), 13)
+    write(image, f"{scale.high:g} {scale.unit}", (side - 20, side - 38), 13, align="right")
+    hottest = float(np.nanmax(level))
+    shown = f"{hottest:.0f}" if scale.high > 10 else f"{hottest:.2f}"
+    write(image, f"highest {shown} {scale.unit}", (side // 2, side - 38), 13, TEXT, "middle")
+    return image
+
+
+@dataclass
+class MapPanel:
+    """Draws the semantic map; the window grows with what was explored and never jumps back."""
+
+    width: int
+    height: int
+    scale: Scale
+    window: list[float] = field(default_factory=list)  # west, south, east, north [m]
+    _reach: list[NDArray[np.float64]] = field(default_factory=list)  # south-west and north-east of all that was explored [m]
+
+    def draw(
+        self,
+        seen: SemanticMap,
+        targets: Sequence[Target],
+        names: Sequence[str],
+        agent: tuple[float, float, float],
+        path: Sequence[tuple[float, float]],
+        goal: str | None,
+    ) -> Pixels:
+        """`agent`: x, y [m] and heading [rad]; `path`: where it has been [m]; `goal`: the thing that it acts on."""
+        self._grow(seen, agent)
+        image = self._ground(seen)
+        if len(path) > 1:
+            line = np.array([self.pixel(p) for p in path], np.int32)
+            cv2.polylines(image, [line], False, BLUE, 2, cv2.LINE_AA)
+        for target in sorted(targets, key=lambda t: t.name == goal):  # the goal last, so that nothing hides its name
+            self._target(image, seen, target, target.name == goal)
+        if goal in names and names.index(goal) in seen.objects and goal not in {t.name for t in targets}:
+            position = seen.objects[names.index(goal)].position
+            cv2.circle(image, self.pixel(position), 9, SOFT, 2, cv2.LINE_AA)
+        self._agent(image, agent)
+        self._legend(image)
+        return image
+
+    def pixel(self, position: NDArray[np.floating] | tuple[float, ...]) -> tuple[int, int]:
+        """Where a place [m] is in the panel."""
+        west, _, _, north = self.window
+        zoom = self.zoom
+        return round((float(position[0]) - west) * zoom), round((north - float(position[1])) * zoom)
+
+    @property
+    def zoom(self) -> float:
+        """Pixels per metre."""
+        return self.width / (self.window[2] - self.window[0])
+
+    def _grow(self, seen: SemanticMap, agent: tuple[float, float, float]) -> None:
+        y, x = np.nonzero(seen.explored)
+        corners = np.array([[agent[0], agent[1]]] * 2, float)
+        if len(y):
+            low, high = np.array([x.min(), y.min()]), np.array([x.max() + 1, y.max() + 1])
+            corners = np.stack([seen.origin + seen.cell * low, seen.origin + seen.cell * high])
+        low, high = corners[0] - 0.3, corners[1] + 0.3  # a margin [m]
+        if self._reach:
+            low, high = np.minimum(low, self._reach[0]), np.maximum(high, self._reach[1])
+        self._reach = [low, high]
+        zoom = min(self.width / (high[0] - low[0]), self.height / (high[1] - low[1]), 120.0)
+        middle, half = (low + high) / 2, np.array([self.width, self.height]) / zoom / 2
+        self.window = [*(middle - half).tolist(), *(middle + half).tolist()]
+
+    def _ground(self, seen: SemanticMap) -> Pixels:
+        """Floor, furniture and walls as greys, warmed by the hazard; unexplored cells in the colour of the panel."""
+        west, south, east, north = self.window
+        x0, y0 = np.maximum(np.floor((np.array([west, south]) - seen.origin) / seen.cell).astype(int), 0)
+        x1, y1 = np.maximum(np.ceil((np.array([east, north]) - seen.origin) / seen.cell).astype(int), 1)
+        part = np.s_[y0:y1, x0:x1]
+        tall = np.clip(seen.height[part] / 2.0, 0.0, 1.0)[..., None]
+        cells = FLOOR * (1 - tall) + WALL * tall
+        share = np.nan_to_num((seen.hazard[part] - self.scale.low) / (self.scale.high - self.scale.low))
+        cells += np.clip(share, 0.0, 0.9)[..., None] * (np.asarray(self.scale.tint, np.float32) - cells)
+        cells[~seen.explored[part]] = PANEL
+        corner = seen.origin + seen.cell * np.array([x0, y0])
+        edge, zoom = self.zoom * seen.cell, self.zoom
+        across, down = (corner[0] - west) * zoom, (north - corner[1]) * zoom
+        matrix = np.array([[edge, 0.0, across + edge / 2], [0.0, -edge, down - edge / 2]])
+        size = (self.width, self.height)
+        drawn = cv2.warpAffine(cells.astype(np.uint8), matrix, size, flags=cv2.INTER_NEAREST, borderValue=PANEL)
+        return drawn.astype(np.uint8, copy=False)
+
+    def _target(self, image: Pixels, seen: SemanticMap, target: Target, wanted: bool) -> None:
+        sighting = seen.objects.get(target.index)
+        if sighting is None or target.rescued or target.held:
+            return
+        x, y = self.pixel(sighting.position)
+        colour = BAD if target.damaged else GOLD if target.value > 1 else GOOD
+        dot(image, (x, y), 6.5, PANEL)
+        dot(image, (x, y), 5.0, colour)
+        if wanted:
+            cv2.circle(image, (x, y), 10, TEXT, 2, cv2.LINE_AA)
+            left = x + 14 if x + 20 + text_width(target.name, 13) < self.width else x - 22 - text_width(target.name, 13)
+            chip(image, target.name, (left, y - 11), 13, TEXT, PANEL)
+
+    def _agent(self, image: Pixels, agent: tuple[float, float, float]) -> None:
+        x, y = self.pixel(agent[:2])
+        turn = np.array([0.0, 2.5, np.pi, -2.5]) - agent[2]
+        reach = np.array([13.0, 11.0, 3.0, 11.0])
+        points = np.stack([x + reach * np.cos(turn), y + reach * np.sin(turn)], -1)
+        cv2.fillPoly(image, [(points * 16).astype(np.int32)], BLUE, cv2.LINE_AA, shift=4)
+        cv2.polylines(image, [(points * 16).astype(np.int32)], True, TEXT, 1, cv2.LINE_AA, shift=4)
+
+    def _legend(self, image: Pixels) -> None:
+        entries: tuple[tuple[str, Colour], ...] = (("value 5", GOLD), ("value 1", GOOD), ("damaged", BAD))
+        width = sum(text_width(text, 12) + 30 for text, _ in entries) + 4
+        x, y = self.width - width - 8, self.height - 30
+        paint(image, rounded(width, 22, 8) * 0.8, (x, y), PANEL)
+        for text, colour in entries:
+            dot(image, (x + 14, y + 11), 4.5, colour)
+            write(image, text, (x + 24, y + 3), 12, TEXT)
+            x += text_width(text, 12) + 30
+        cv2.rectangle(image, (0, 0), (self.width - 1, self.height - 1), EDGE, 1)

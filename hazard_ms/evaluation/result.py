@@ -1,0 +1,99 @@
+"""The result of one episode as JSON: what happened, with which versions, on what kind of machine, and how to run it again."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib.metadata
+import json
+import os
+import platform
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hazard_ms import __version__
+from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
+
+FORMAT = 1  # goes up when a field changes its meaning
+PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "numpy")  # whose versions can change an episode
+
+
+@dataclass(frozen=True)
+class DecisionRecord:
+    """One decision: what was chosen when, why, and how it went."""
+
+    frame: int  # at which it was taken
+    verb: str
+    target: str | None
+    ok: bool
+    reason: str  # of a failure
+    frames: int  # that the action took
+    note: str = ""  # the agent's own words
+    held: str | None = None  # at the decision
+    value: float = 0.0  # rescued by then, as a share of all
+
+
+@dataclass(frozen=True)
+class EpisodeResult:
+    """All about one episode that is worth keeping."""
+
+    env_id: str
+    agent: str
+    seed: int
+    scene: str
+    settings: dict[str, Any]  # keywords of gym.make
+    frames: int
+    max_frames: int
+    ended: str  # why: all rescued | stopped | time | simulation error
+    targets: tuple[Fate, ...]
+    decisions: tuple[DecisionRecord, ...]
+    command: str  # that runs it again
+    wall_seconds: float = 0.0
+    versions: dict[str, str] = field(default_factory=lambda: versions())
+    machine: dict[str, Any] = field(default_factory=lambda: machine())
+    format: int = FORMAT
+
+    @property
+    def tally(self) -> Tally:
+        """What the episode adds to the scores."""
+        return Tally.of(self.targets)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, with the scores of this one episode."""
+        tallies = [self.tally]
+        score = {"value": value(tallies), "step": step(tallies), "damage": damage(tallies)}
+        return {"score": score, **dataclasses.asdict(self)}
+
+    def write(self, path: Path) -> None:
+        """Write it as JSON, with the scores of this episode."""
+        path.write_text(json.dumps(self.to_dict(), indent=1, allow_nan=False) + "\n")
+
+    @classmethod
+    def read(cls, path: Path) -> EpisodeResult:
+        """The result that `write` wrote. ValueError if another version's format stands there."""
+        row = json.loads(path.read_text())
+        if row.get("format") != FORMAT:
+            raise ValueError(f"{path.name} has format {row.get('format')}; this version reads {FORMAT}")
+        row.pop("score")
+        row["targets"] = tuple(Fate(**t) for t in row["targets"])
+        row["decisions"] = tuple(DecisionRecord(**d) for d in row["decisions"])
+        return cls(**row)
+
+
+def versions() -> dict[str, str]:
+    """Versions of this package and of those that can change an episode; "absent" where one is not installed."""
+    found = {"hazard-ms": __version__, "python": platform.python_version()}
+    for name in PACKAGES:
+        try:
+            found[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            found[name] = "absent"
+    return found
+
+
+def machine() -> dict[str, Any]:
+    """What kind of machine this is; not whose."""
+    import torch
+
+    gpu = torch.cuda.get_device_name(0) if torch.cuda.is_available() else None
+    return {"system": f"{platform.system()} {platform.machine()}", "cores": os.cpu_count(), "gpu": gpu}

@@ -32,7 +32,7 @@ class Order:
     """Whether the hazards act on the robot."""
     video: Path | None = None
     """Write the film there, and beside it the result (.json) and a page (.html)."""
-    every: int = 8
+    every: int = 6
     """Frames of the episode from one picture of the film to the next; the film runs that much faster."""
 
     def check(self) -> None:

@@ -86,12 +86,12 @@ def test_it_played_what_was_ordered(result: EpisodeResult) -> None:
     assert "rescued 0 of" in summary(result) and f"{result.frames} frames (stopped)" in summary(result)
 
 
-def test_the_video_opens_and_shows_every_eighth_frame_and_the_end(result: EpisodeResult, folder: Path) -> None:
+def test_the_video_opens_and_shows_every_sixth_frame_and_the_end(result: EpisodeResult, folder: Path) -> None:
     reader = imageio_ffmpeg.read_frames(str(folder / "out.mp4"))
     meta = next(reader)
     pictures = list(reader)
     assert meta["size"] == (1280, 720) and meta["fps"] == pytest.approx(24.0) and meta["codec"] == "h264"
-    assert len(pictures) == result.frames // 8 + 1 + HOLD
+    assert len(pictures) == result.frames // 6 + 1 + HOLD
     assert all(len(picture) == 1280 * 720 * 3 for picture in pictures)
     assert pictures[0] != pictures[len(pictures) - HOLD]  # it moves
 

@@ -13,7 +13,7 @@ from hazard_ms.skills.decision import Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 
 NEWS_SHOTS = 45  # pictures for which news stay: 1.5 s at 30 a second
-LOOK_EVERY = 2  # pictures of the film for one of the head camera: it is small, and rendering is what takes the time
+LOOK_EVERY = 4  # pictures of the film for one of the head camera: it is small, and rendering is what takes the time
 LAST_SHOTS = 45  # pictures for which the end stays
 PATH_STEP = 0.05  # shortest piece of the drawn path [m]
 

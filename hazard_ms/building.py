@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ FLAT = 0.03  # a robot's base glides over what lies lower on the floor: rugs [m]
 SLAB = 1.0  # thickness of what encloses a room [m]: a robot that leans on a thing cannot squeeze it through
 BAG, BAG_SCALE = "basket_2", 0.8  # the model that shows the bag, and its size
 TALL, NEARBY = 1.3, 1.8  # furniture this high, this close to a corner, hides the room from a camera there [m] [ours]
+EYES_OUTDOORS = 5.0  # height of the third person's eyes in the open [m] [ours]
 GLIDE_BITS = (30, 31)  # of collision group 2: ManiSkill's bits for what Fetch's wheels and base do not collide with
 
 
@@ -63,7 +65,7 @@ def build_scenes(scene: Any, specs: tuple[SceneSpec, ...]) -> list[list[Actor]]:
 
 
 def build_shell(scene: Any, spec: SceneSpec, env: int) -> None:
-    """Floor, walls, ceiling, doors and windows of a room: what is seen, and six thick slabs through which nothing can be pushed."""
+    """Floor, walls, doors and windows, or ground: what is seen, and the thick slabs through which nothing can be pushed."""
     for i, box in enumerate(shell(spec.room) if scene.can_render() else ()):
         builder = scene.create_actor_builder()
         builder.set_scene_idxs([env])
@@ -72,16 +74,31 @@ def build_shell(scene: Any, spec: SceneSpec, env: int) -> None:
         builder.build_static(name=f"{env}/shell_{i}_{box.name}")
     builder = scene.create_actor_builder()
     builder.set_scene_idxs([env])
-    inner = np.array([*spec.room.size, spec.room.height])
-    for axis in range(3):
-        half = inner / 2 + SLAB
-        half[axis] = SLAB / 2
-        for place in (-SLAB / 2, inner[axis] + SLAB / 2):
-            centre = inner / 2
-            centre[axis] = place
-            builder.add_box_collision(sapien.Pose(centre), half_size=half, material=_friction())
+    for slab in (*_enclosure(spec), *_partitions(spec)):
+        builder.add_box_collision(sapien.Pose(slab[0]), half_size=slab[1], material=_friction())
     builder.initial_pose = sapien.Pose()
     builder.build_static(name=f"{env}/enclosure")
+
+
+def _enclosure(spec: SceneSpec) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Middles and half sizes of six thick slabs around everything, in the open at the ends of what can be reached [m]."""
+    low = np.array([-spec.room.beyond, -spec.room.beyond, 0.0])
+    high = np.array([*spec.room.size, spec.room.height]) - low
+    for axis in range(3):
+        half = (high - low) / 2 + SLAB
+        half[axis] = SLAB / 2
+        for place in (low[axis] - SLAB / 2, high[axis] + SLAB / 2):
+            centre = (low + high) / 2
+            centre[axis] = place
+            yield centre, half
+
+
+def _partitions(spec: SceneSpec) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Middles and half sizes of the walls inside a room [m]."""
+    names = tuple(f"wall_{p.name}_" for p in spec.room.partitions)
+    for box in shell(spec.room) if names else ():
+        if box.name.startswith(names):
+            yield np.array(box.centre), np.array(box.size) / 2
 
 
 def build_thing(scene: Any, thing: Body | Fixture, env: int) -> Actor:
@@ -89,7 +106,7 @@ def build_thing(scene: Any, thing: Body | Fixture, env: int) -> Actor:
     builder = scene.create_actor_builder()
     builder.set_scene_idxs([env])
     kind = asset(thing.asset)
-    add_collision(builder, kind, thing.scale)
+    add_collision(builder, kind, thing.scale, thing.friction if isinstance(thing, Body) else None)
     if kind.visual:
         builder.add_visual_from_file(str(asset_path(kind.visual)), scale=list(thing.scale))
     builder.initial_pose = sapien.Pose(list(thing.position), list(thing.rotation))
@@ -119,14 +136,15 @@ def build_bags(scene: Any, count: int) -> list[Actor]:
     return bags
 
 
-def add_collision(builder: Any, kind: Asset, scale: tuple[float, float, float]) -> None:
-    """The asset's convex hulls or hand-made boxes."""
+def add_collision(builder: Any, kind: Asset, scale: tuple[float, float, float], friction: float | None = None) -> None:
+    """The asset's convex hulls or hand-made boxes; `friction` [-]: None for the usual one."""
+    rough = _friction(friction)
     for cx, cy, cz, hx, hy, hz in kind.boxes:
         centre = [c * s for c, s in zip((cx, cy, cz), scale, strict=True)]
         half = [h * s for h, s in zip((hx, hy, hz), scale, strict=True)]
-        builder.add_box_collision(sapien.Pose(centre), half_size=half, material=_friction())
+        builder.add_box_collision(sapien.Pose(centre), half_size=half, material=rough)
     if kind.hulls:
-        builder.add_multiple_convex_collisions_from_file(str(asset_path(kind.hulls)), scale=list(scale), material=_friction())
+        builder.add_multiple_convex_collisions_from_file(str(asset_path(kind.hulls)), scale=list(scale), material=rough)
 
 
 def connect(scene: Any, specs: tuple[SceneSpec, ...], rows: list[list[Actor]], device: torch.device) -> CpuHandles | GpuHandles:
@@ -157,8 +175,9 @@ def _merge_bodies(scene: Any, specs: tuple[SceneSpec, ...], rows: list[list[Acto
         scene.add_to_state_dict_registry(Actor.merge([row[b] for row in rows], name=f"body_{b}"))
 
 
-def _friction() -> sapien.physx.PhysxMaterial:
-    return sapien.physx.PhysxMaterial(FRICTION, FRICTION, 0.0)
+def _friction(friction: float | None = None) -> sapien.physx.PhysxMaterial:
+    number = FRICTION if friction is None else friction
+    return sapien.physx.PhysxMaterial(number, number, 0.0)
 
 
 def pose_of(position: tuple[float, float, float], heading: float) -> Pose:
@@ -167,17 +186,21 @@ def pose_of(position: tuple[float, float, float], heading: float) -> Pose:
 
 
 def build_lights(scene: Any, specs: tuple[SceneSpec, ...]) -> None:
-    """Daylight from above with one shadow, and a lamp under the ceiling."""
-    scene.set_ambient_light([0.45, 0.44, 0.42])
-    scene.add_directional_light([0.4, 0.6, -1.0], [0.9, 0.87, 0.8], shadow=True, shadow_scale=8, shadow_map_size=1024)
+    """Daylight from above with one shadow, and a lamp under each ceiling; in the open, the sky."""
+    outdoors = specs[0].room.open_air
+    scene.set_ambient_light([0.38, 0.42, 0.48] if outdoors else [0.45, 0.44, 0.42])
+    wide = max(specs[0].room.size) if outdoors else 8.0
+    pixels = 2048 if outdoors else 1024
+    scene.add_directional_light([0.4, 0.6, -1.0], [0.9, 0.87, 0.8], shadow=True, shadow_scale=wide, shadow_map_size=pixels)
     for e, spec in enumerate(specs):
         (x, y), z = spec.room.size, spec.room.height
-        scene.add_point_light([x / 2, y / 2, z - 0.4], [2.0, 1.9, 1.7], scene_idxs=[e])
+        if not spec.room.open_air:
+            scene.add_point_light([x / 2, y / 2, z - 0.4], [2.0, 1.9, 1.7], scene_idxs=[e])
 
 
 def corner_view(spec: SceneSpec) -> sapien.Pose:
-    """Camera pose under the ceiling in a corner, looking at the middle of the room: far from the agent's start, behind nothing tall."""
-    (x, y), z = spec.room.size, spec.room.height
+    """Camera pose in an upper corner, looking at the middle: far from the agent's start, behind nothing tall."""
+    (x, y), z = spec.room.size, EYES_OUTDOORS if spec.room.open_air else spec.room.height
     start = np.array(spec.agent_start.position)
     corners = np.array([[a, b] for a in (0.15, x - 0.15) for b in (0.15, y - 0.15)])
     tall = np.array([f.position[:2] for f in spec.fixtures if f.position[2] + extent_of(f)[2] > TALL]).reshape(-1, 2)

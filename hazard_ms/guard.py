@@ -26,12 +26,13 @@ class Limits:
 
     def __init__(self, world: World) -> None:
         height = world.room.new_tensor([[s.room.height] for s in world.specs])
-        half = torch.cat([world.room, height], dim=1) / 2
+        middle = torch.cat([world.room, height], dim=1) / 2
+        half = middle + world.room.new_tensor([[s.room.beyond, s.room.beyond, 0.0] for s in world.specs])
 
         def same(value: float, count: int) -> Tensor:
             return torch.full((world.num_envs, count), value, device=world.device)
 
-        self.centre = torch.cat([half, same(0.0, 10)], dim=1)[:, None]
+        self.centre = torch.cat([middle, same(0.0, 10)], dim=1)[:, None]
         widths = [half + MARGIN, same(2.0, 4), same(MAX_SPEED, 3), same(MAX_SPIN, 3)]
         self.half = torch.cat(widths, dim=1)[:, None]
 

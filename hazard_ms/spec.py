@@ -28,6 +28,8 @@ class Body:
     rotation: Quat = UPRIGHT
     scale: Vec3 = (1.0, 1.0, 1.0)  # of the asset's own size
     mass: float | None = None  # [kg]; None: the asset's
+    wind_resistance: float | None = None  # [-]; None: the category's
+    friction: float | None = None  # [-] Coulomb; None: the usual one
 
 
 @dataclass(frozen=True)
@@ -44,10 +46,10 @@ class Fixture:
 
 @dataclass(frozen=True)
 class Opening:
-    """A door or window cut out of a wall of the room; `wall` is one of south, east, north, west."""
+    """A door (closed), a window (with panes) or a doorway (open) cut out of a wall."""
 
-    kind: str  # door | window
-    wall: str
+    kind: str  # door | window | doorway
+    wall: str  # south, east, north, west, or the name of a partition
     centre: float  # along the wall, from its west or south end [m]
     width: float  # [m]
     height: float  # [m]
@@ -55,14 +57,37 @@ class Opening:
 
 
 @dataclass(frozen=True)
+class Partition:
+    """A wall from one outer wall to the opposite one: it parts the room in two, and openings name it as their wall."""
+
+    name: str  # "partition_1"
+    axis: str  # along which it runs: x (from west to east) | y (from south to north)
+    at: float  # the middle of its thickness on the other axis [m]
+    thickness: float = 0.12  # [m]
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A rectangle of the ground that looks different: a road, a lawn. Level, without collision; later ones lie on earlier ones."""
+
+    material: str
+    min: Vec2  # [m]
+    max: Vec2  # [m]
+
+
+@dataclass(frozen=True)
 class Room:
-    """A rectangular room with its south-west floor corner at the origin."""
+    """A rectangular room, or a piece of open ground, with its south-west floor corner at the origin."""
 
     size: Vec2  # inner extent along x and y [m]
     height: float = 2.6  # [m]
     floor: str = "wood"  # names of materials, see hazard_ms.scenes.shell
     wall: str = "plaster"
     openings: tuple[Opening, ...] = ()
+    partitions: tuple[Partition, ...] = ()
+    patches: tuple[Patch, ...] = ()
+    open_air: bool = False  # no walls and no ceiling: the ground goes on
+    beyond: float = 0.0  # how far things can be carried over every side of `size`, in the open [m]
 
 
 @dataclass(frozen=True)
@@ -85,6 +110,8 @@ class SceneSpec:
     fires: tuple[Vec2, ...]  # where the floor burns at frame 0 [m]
     agent_start: AgentStart
     split: str = "train"
+    flood_side: str = "east"  # from which wall water comes: south | east | north | west
+    wind: Vec2 = (0.0, 0.0)  # velocity of the air [m/s]
 
     @property
     def things(self) -> tuple[Body | Fixture, ...]:
@@ -94,6 +121,11 @@ class SceneSpec:
     @property
     def targets(self) -> tuple[Body, ...]:
         return tuple(b for b in self.bodies if b.category in self.target_categories)
+
+    @property
+    def containers(self) -> tuple[Fixture, ...]:
+        """Fixtures in which things are safe: shopping carts."""
+        return tuple(f for f in self.fixtures if f.category == "cart")
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from collections import Counter
 from typing import Any, NoReturn
 
 from hazard_ms.catalogue import CATEGORIES
-from hazard_ms.scenes.shell import shell
+from hazard_ms.scenes.shell import WALLS, shell
 from hazard_ms.spec import Body, Fixture, SceneSpec
 
 FORMAT = 1  # goes up when older files can no longer be read
@@ -25,6 +25,7 @@ LARGEST_FILE = 4_000_000  # [characters]; a scene of 100 things has 30,000
 LONGEST_TEXT = 200  # of a name [characters]
 MOST_THINGS = 2000  # of any list
 FARTHEST = 1000.0  # any number's absolute value, in its unit
+STRONGEST_WIND = 70.0  # [m/s] a tropical cyclone of category 5
 LONGEST_NUMBER = 30  # of a whole number [characters]
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.:\-]*(/[A-Za-z0-9][A-Za-z0-9_.:\-]*)*")  # no part begins with a dot: no path upwards
 
@@ -66,20 +67,24 @@ def check(spec: SceneSpec) -> None:
     for b in spec.bodies:
         if b.mass is not None and b.mass <= 0.0:
             raise ValueError(f"{spec.name}: mass {b.mass} of {b.name}; None or a positive number is allowed")
+        for what, number in (("wind resistance", b.wind_resistance), ("friction", b.friction)):
+            if number is not None and number < 0.0:
+                raise ValueError(f"{spec.name}: {what} {number} of {b.name}; None or a number from 0 is allowed")
     for c in spec.target_categories:
         _category(c, f"{spec.name}: target category")
+    if spec.flood_side not in WALLS:
+        raise ValueError(f"{spec.name}: flood side {spec.flood_side!r}; allowed: {', '.join(WALLS)}")
+    if math.hypot(*spec.wind) > STRONGEST_WIND:
+        raise ValueError(f"{spec.name}: wind {spec.wind} m/s; at most {STRONGEST_WIND} m/s is allowed")
     _check_room(spec)
 
 
 def _check_room(spec: SceneSpec) -> None:
     room = spec.room
-    if not (1.0 <= min(room.size) and max(room.size) <= 100.0 and 1.5 <= room.height <= 20.0):
-        raise ValueError(f"{spec.name}: room of {room.size} m, {room.height} m high; 1 to 100 m and 1.5 to 20 m are allowed")
-    for o in room.openings:
-        if o.kind not in ("door", "window") or min(o.width, o.height) <= 0.0 or o.sill < 0.0:
-            raise ValueError(f"{spec.name}: {o} is neither a door nor a window of positive size")
-        if o.wall not in ("south", "east", "north", "west"):
-            raise ValueError(f"{spec.name}: {o} is in none of the walls south, east, north, west")
+    if not (1.0 <= min(room.size) and max(room.size) <= 100.0 and 1.5 <= room.height <= 20.0 and 0.0 <= room.beyond <= 100.0):
+        raise ValueError(
+            f"{spec.name}: room of {room.size} m, {room.height} m high, {room.beyond} m around; 1 to 100, 1.5 to 20, 0 to 100 m are allowed"
+        )
     shell(room)  # refuses openings that do not fit and materials that are none
     for what, (x, y) in (("agent start", spec.agent_start.position), *(("fire", f) for f in spec.fires)):
         if not (0.0 <= x <= room.size[0] and 0.0 <= y <= room.size[1]):
@@ -110,6 +115,8 @@ def _read(kind: Any, value: Any, where: str) -> Any:
         return _read_list(typing.get_args(kind), value, where)
     if kind is float:
         return _number(value, where)
+    if kind is bool and isinstance(value, bool):
+        return value
     if kind is str and isinstance(value, str):
         if len(value) > LONGEST_TEXT or not NAME.fullmatch(value):
             raise ValueError(f"{where}: {value!r:.100} is no name of letters, digits and _ . : - /, {LONGEST_TEXT} at most")

@@ -1,7 +1,7 @@
-"""The shell of a room as boxes: floor, walls with doors and windows cut out, ceiling, skirting. Data only: no SAPIEN.
+"""The shell of a room as boxes: floor, walls with openings cut out, ceiling, skirting. In the open: ground. Data only: no SAPIEN.
 
 The inner faces of the walls are at x = 0, x = size[0], y = 0, y = size[1]. Doors are closed and windows have panes: nothing gets
-out.
+out. Doorways, in partitions, are open.
 """
 
 from __future__ import annotations
@@ -9,12 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from hazard_ms.spec import Opening, Room, Vec3
+from hazard_ms.spec import Opening, Partition, Room, Vec3
 
 WALL = 0.12  # thickness [m]
 FRAME = 0.05  # width of door and window frames [m]
 SKIRTING = (0.08, 0.012)  # height, thickness [m]
 WALLS = ("south", "east", "north", "west")
+KINDS = ("door", "window", "doorway")  # of openings
+HORIZON = 60.0  # how far the ground is drawn around an open place [m]
+PATCH = 0.002  # thickness of a patch of ground [m]
 
 MATERIALS: dict[str, Vec3] = {  # linear base colours; a material is also the name of a texture where the assets have one
     "wood": (0.30, 0.16, 0.08),
@@ -52,23 +55,65 @@ class ShellBox:
 
 
 def shell(room: Room) -> tuple[ShellBox, ...]:
-    """All boxes of `room`. Raises ValueError for materials that are none, and for openings that do not fit."""
-    for material in (room.floor, room.wall):
+    """All boxes of `room`. Raises ValueError for materials that are none, and for openings and partitions that do not fit."""
+    for material in (room.floor, room.wall, *(p.material for p in room.patches)):
         if material not in MATERIALS:
             raise ValueError(f"no material is called {material!r}; there are {', '.join(MATERIALS)}")
-    return (*_slabs(room), *(box for wall in WALLS for box in _wall(room, wall)))
+    _check(room)
+    if room.open_air:
+        return tuple(_ground(room))
+    walls = (*WALLS, *(p.name for p in room.partitions))
+    return (*_slabs(room), *(box for wall in walls for box in _wall(room, wall)))
+
+
+def _check(room: Room) -> None:
+    for p in room.partitions:
+        across = room.size[1] if p.axis == "x" else room.size[0]
+        if p.axis not in ("x", "y") or p.name in WALLS or not 0.02 <= p.thickness <= p.at <= across - p.thickness:
+            raise ValueError(f"{p} does not part a room of {room.size} m; an axis x or y, a name of its own and a place inside are allowed")
+    for o in room.openings:
+        if o.kind not in KINDS or min(o.width, o.height) <= 0.0 or o.sill < 0.0:
+            raise ValueError(f"{o} is none of {', '.join(KINDS)} of positive size")
+        wall_length(room, o.wall)
+        if (o.kind == "doorway") != (o.wall not in WALLS):
+            raise ValueError(f"{o}: doorways belong into partitions, doors and windows into the walls {', '.join(WALLS)}")
+    if room.open_air and (room.openings or room.partitions):
+        raise ValueError("an open place has openings or partitions; none are allowed")
+    if room.patches and not room.open_air:
+        raise ValueError("a room has patches of ground; they are allowed in the open only")
+
+
+def partition(room: Room, name: str) -> Partition | None:
+    """The partition called `name`; None for one of the four walls."""
+    if name in WALLS:
+        return None
+    for p in room.partitions:
+        if p.name == name:
+            return p
+    raise ValueError(f"no wall is called {name!r}; there are {', '.join((*WALLS, *(p.name for p in room.partitions)))}")
 
 
 def wall_length(room: Room, wall: str) -> float:
-    """Inner length of `wall` [m]."""
-    if wall not in WALLS:
-        raise ValueError(f"no wall is called {wall!r}; there are {', '.join(WALLS)}")
-    return room.size[0] if wall in ("south", "north") else room.size[1]
+    """Inner length of a wall or partition [m]."""
+    return room.size[0] if runs_along_x(room, wall) else room.size[1]
+
+
+def runs_along_x(room: Room, wall: str) -> bool:
+    """Whether a wall or partition runs from west to east."""
+    inner = partition(room, wall)
+    return wall in ("south", "north") if inner is None else inner.axis == "x"
 
 
 def on_wall(room: Room, wall: str, along: float, z: float, depth: float) -> Vec3:
-    """The point `along` metres from the wall's west or south end, at height z, `depth` metres behind its inner face [m]."""
+    """The point `along` metres from the wall's west or south end, at height z, `depth` metres behind its inner face [m].
+
+    Of a partition: behind its south or west face.
+    """
     x, y = room.size
+    inner = partition(room, wall)
+    if inner is not None:
+        across = inner.at - inner.thickness / 2 + depth
+        return (along, across, z) if inner.axis == "x" else (across, along, z)
     points = {
         "south": (along, -depth, z),
         "north": (along, y + depth, z),
@@ -76,6 +121,18 @@ def on_wall(room: Room, wall: str, along: float, z: float, depth: float) -> Vec3
         "east": (x + depth, along, z),
     }
     return points[wall]
+
+
+def _ground(room: Room) -> Iterator[ShellBox]:
+    x, y = room.size
+    around = room.beyond + HORIZON
+    yield ShellBox("ground", "floor", (x / 2, y / 2, -WALL / 2), (x + 2 * around, y + 2 * around, WALL), room.floor)
+    for i, p in enumerate(room.patches):
+        middle, top = ((p.min[0] + p.max[0]) / 2, (p.min[1] + p.max[1]) / 2), (i + 1) * PATCH
+        size = (p.max[0] - p.min[0], p.max[1] - p.min[1], top)
+        if min(size) <= 0.0:
+            raise ValueError(f"{p} has no area; max must be beyond min")
+        yield ShellBox(f"patch_{i}", "floor", (*middle, top / 2), size, p.material, collides=False)
 
 
 def _slabs(room: Room) -> Iterator[ShellBox]:
@@ -99,9 +156,12 @@ def _wall(room: Room, wall: str) -> Iterator[ShellBox]:
         for piece in pieces:
             yield from _panel(room, wall, f"wall_{wall}_{number}", *piece)
             number += 1
-        yield from _closed(room, o, f"{o.kind}_{wall}_{number}")
+        if o.kind == "doorway":
+            yield from _lining(room, o, f"{o.kind}_{wall}_{number}")
+        else:
+            yield from _closed(room, o, f"{o.kind}_{wall}_{number}")
         yield from _skirting(room, wall, reached, left)
-        if o.kind != "door":
+        if o.kind == "window":
             yield from _skirting(room, wall, left, right)
         reached = right
     yield from _panel(room, wall, f"wall_{wall}_{number}", reached, length + ends, 0.0, room.height)
@@ -110,7 +170,8 @@ def _wall(room: Room, wall: str) -> Iterator[ShellBox]:
 
 def _panel(room: Room, wall: str, name: str, start: float, end: float, low: float, high: float) -> Iterator[ShellBox]:
     if end - start > 1e-6 and high - low > 1e-6:
-        yield _box(room, wall, name, "wall", ((start + end) / 2, (low + high) / 2), (end - start, high - low), (0.0, WALL), room.wall)
+        deep = (0.0, thickness_of(room, wall))
+        yield _box(room, wall, name, "wall", ((start + end) / 2, (low + high) / 2), (end - start, high - low), deep, room.wall)
 
 
 def _skirting(room: Room, wall: str, start: float, end: float) -> Iterator[ShellBox]:
@@ -118,8 +179,25 @@ def _skirting(room: Room, wall: str, start: float, end: float) -> Iterator[Shell
     height, thick = SKIRTING
     if end - start > 1e-6:
         middle = ((start + end) / 2, height / 2)
-        name = f"skirting_{wall}_{start:.2f}"
-        yield _box(room, wall, name, "skirting", middle, (end - start, height), (-thick, 0.0), "trim", collides=False)
+        far = thickness_of(room, wall)
+        for side, deep in enumerate([(-thick, 0.0)] if wall in WALLS else [(-thick, 0.0), (far, far + thick)]):
+            name = f"skirting_{wall}_{start:.2f}" + "_far" * side
+            yield _box(room, wall, name, "skirting", middle, (end - start, height), deep, "trim", collides=False)
+
+
+def thickness_of(room: Room, wall: str) -> float:
+    """Thickness of a wall or partition [m]."""
+    inner = partition(room, wall)
+    return WALL if inner is None else inner.thickness
+
+
+def _lining(room: Room, o: Opening, name: str) -> Iterator[ShellBox]:
+    """The frame of an open doorway."""
+    deep = (-0.015, thickness_of(room, o.wall) + 0.015)
+    for side in (-1, 1):
+        at = (o.centre + side * (o.width / 2 - 0.01), o.height / 2)
+        yield _box(room, o.wall, f"{name}_side{side}", "door", at, (0.02, o.height), deep, "trim", collides=False)
+    yield _box(room, o.wall, f"{name}_top", "door", (o.centre, o.height - 0.01), (o.width, 0.02), deep, "trim", collides=False)
 
 
 def _closed(room: Room, o: Opening, name: str) -> Iterator[ShellBox]:
@@ -156,5 +234,5 @@ def _box(
     """A box of the wall: `middle` and `face` along the wall and up, `depth` from and to, behind the inner face [m]."""
     centre = on_wall(room, wall, middle[0], middle[1], sum(depth) / 2)
     thick = depth[1] - depth[0]
-    size = (face[0], thick, face[1]) if wall in ("south", "north") else (thick, face[0], face[1])
+    size = (face[0], thick, face[1]) if runs_along_x(room, wall) else (thick, face[0], face[1])
     return ShellBox(name, kind, centre, size, material, collides)

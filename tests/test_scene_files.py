@@ -69,7 +69,7 @@ def test_what_may_be_left_out_gets_its_default() -> None:
         ("room.size", [0.0, 5.0], "room of"),
         ("room.floor", "lava", "no material is called 'lava'"),
         ("room.openings.0.wall", "upper", "no wall is called"),
-        ("room.openings.0.kind", "hole", "neither a door nor a window"),
+        ("room.openings.0.kind", "hole", "none of door, window, doorway"),
         ("format", 2, "format: 2 is not the format 1"),
     ],
 )

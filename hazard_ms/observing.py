@@ -10,7 +10,7 @@ from torch import Tensor
 
 from hazard_ms.building import extent_of_bag, pose_of
 from hazard_ms.checks import one_of
-from hazard_ms.effects import FireEffects
+from hazard_ms.effects import Looks
 from hazard_ms.sensing.camera import AGENT, NOTHING, STRUCTURE, relabel
 from hazard_ms.sensing.hazard_image import SIDE, enlarge, hazard_image, sample_points
 from hazard_ms.sensing.target_table import TargetTable
@@ -54,7 +54,8 @@ class Observer:
         self.env = env
         self.table = TargetTable(env.world, SLOTS)
         self.renders = env.scene.can_render()
-        self.effects = FireEffects.build(env.scene.sub_scenes, env.specs, env.world, env.effects_mode) if self.renders else None
+        hazards = env.task.hazards
+        self.effects = Looks(hazards, env.scene.sub_scenes, env.specs, env.world, env.effects_mode) if self.renders else None
         self.labels = self._labels()
 
     def _labels(self) -> Tensor:
@@ -88,7 +89,7 @@ class Observer:
             depth = extent_of_bag()[2]
             bag._objs[0].set_pose(pose_of((mouth[0], mouth[1], mouth[2] - depth), heading).sp)
         if self.effects is not None:
-            self.effects.update(self.env.world, self.env.episode.states["fire"], self.env.world.frame)
+            self.effects.update(self.env.world, self.env.episode.states, self.env.world.frame)
 
     def extra(self) -> dict[str, Tensor]:
         """Observations beside the robot's joints: agent, hand, time and targets; in state modes also where the targets are."""

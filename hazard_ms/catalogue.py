@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 HIGH_VALUE, LOW_VALUE = 5, 1  # HAZARD challenge.py:88
+DAMAGED_SHARE = 0.5  # of its value that a target keeps when it is rescued damaged (benchmark rules 4)
 IMMOVABLE = 11  # HAZARD envs/wind/object.py:41: a wind resistance above 10 feels no wind
 
 SOURCES = {

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import torch
 from torch import Tensor
 
+from hazard_ms.catalogue import DAMAGED_SHARE
 from hazard_ms.hand import distance_to_boxes
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ def evaluate(env: HazardEnv) -> dict[str, Tensor]:
     """What `info` holds after every frame; all [E]."""
     world = env.world
     left = (world.target & ~world.safe).any(dim=1)
-    worth = torch.where(env.episode.rescue.damaged, 0.5, 1.0) * world.value  # a damaged target counts half (benchmark.md 4)
+    worth = torch.where(env.episode.rescue.damaged, DAMAGED_SHARE, 1.0) * world.value
     total = (world.value * world.target).sum(1).clamp(min=1.0)
     info = {
         "success": ~left & world.target.any(dim=1),
@@ -41,7 +42,7 @@ def evaluate(env: HazardEnv) -> dict[str, Tensor]:
 def rescued_now(env: HazardEnv) -> Tensor:
     """How many targets became safe in this frame, each counting 1, or half if damaged, [E]."""
     new = env.episode.rescue.safe & (env.episode.rescue.frame == env.world.frame[:, None])
-    return (new * torch.where(env.episode.rescue.damaged, 0.5, 1.0)).sum(1)
+    return (new * torch.where(env.episode.rescue.damaged, DAMAGED_SHARE, 1.0)).sum(1)
 
 
 def sparse(env: HazardEnv) -> Tensor:

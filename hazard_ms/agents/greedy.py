@@ -2,8 +2,8 @@
 
     cost = (distance + HANDLING) * (1 + failures)^2 / predicted value
 
-The predicted value is halved where the target is damaged or will be by the time of arrival, with its temperature continued along
-the straight line through its last two sightings. A target that failed repeatedly gets a growing cost and is given up at last, so
+The predicted value is halved where the target is damaged or will be by the time of arrival, with its temperature, or the water over
+it, continued along the straight line through its last two sightings. A target that failed repeatedly gets a growing cost and is given up at last, so
 no path is tried for ever. Searching: walk to the landmark with the most unexplored floor around it, then look around there.
 """
 
@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.base import Agent, distance, known, open_targets
+from hazard_ms.catalogue import DAMAGED_SHARE
 from hazard_ms.sensing.semantic_map import SemanticMap, Sighting
-from hazard_ms.sensing.target_table import DAMAGED_SHARE
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.spec import Task
 
@@ -35,6 +35,7 @@ class Greedy(Agent):
 
     def reset(self, task: Task, seed: int) -> None:
         """Forget the last episode. It draws no lots: `seed` changes nothing."""
+        self._level_of = task.hazards[0].name if task.hazards else ""  # of which hazard sightings tell the level
         self._failures: dict[str, int] = {}
         self._visits: dict[int, int] = {}
         self._looked_from: tuple[float, float] | None = None  # where it last looked around [m]
@@ -111,7 +112,10 @@ class Greedy(Agent):
     def _cost(self, decision: Decision, name: str, sighting: Sighting) -> float:
         way = distance(decision, sighting) + HANDLING
         target = decision.target(name)
-        lost = target.damaged or (target.flammable and _predicted(sighting, decision.frame + way / WALKING) >= target.ignition_temperature)
+        level = _predicted(sighting, decision.frame + way / WALKING)
+        burns = self._level_of == "fire" and target.flammable and level >= target.ignition_temperature
+        drowns = self._level_of == "flood" and not target.waterproof and level >= float(sighting.position[2])
+        lost = target.damaged or burns or drowns
         value = target.value * (DAMAGED_SHARE if lost else 1.0)
         loyalty = LOYALTY if decision.last_action == Action(WALK_TO, name) else 1.0
         return loyalty * way * (1 + self._failures.get(name, 0)) ** 2 / value

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.sensing.target_table import DAMAGED_SHARE
+from hazard_ms.catalogue import DAMAGED_SHARE
 
 RESAMPLES = 10_000  # of the bootstrap: the ends of a 95 % interval are then known to about 1 % of its width
 LEVEL = 0.95  # of the interval

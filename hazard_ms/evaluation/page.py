@@ -8,8 +8,8 @@ from pathlib import Path
 
 import jinja2
 
+from hazard_ms.catalogue import DAMAGED_SHARE
 from hazard_ms.evaluation.result import EpisodeResult
-from hazard_ms.sensing.target_table import DAMAGED_SHARE
 
 LARGEST_EMBEDDED = 30 * 1024 * 1024  # a larger video is linked, not embedded [bytes]
 COLOURS = {  # of the verbs in the timeline

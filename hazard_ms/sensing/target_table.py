@@ -11,7 +11,6 @@ from hazard_ms.catalogue import CATEGORIES
 from hazard_ms.world import World
 
 PROPERTIES = ("flammable", "waterproof", "ignition_temperature")  # attributes of the catalogue; the last in degrees Celsius
-DAMAGED_SHARE = 0.5  # of its value that a target keeps when it is rescued damaged (benchmark rules 4)
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hazard_ms.agents.base import Agent
+from hazard_ms.hazards.presets import fire
 from hazard_ms.sensing.semantic_map import SemanticMap, Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision, Result
 from hazard_ms.spec import Task
 
-TASK = Task("Test-v1", lambda split: (), lambda name: None, (), 1500)  # type: ignore[arg-type,return-value]
+TASK = Task("Test-v1", lambda split: (), lambda name: None, (fire("paper"),), 1500)  # type: ignore[arg-type,return-value]
 STRIDE = 1.6  # a walk gives up after 100 frames of 1/62 m
 
 

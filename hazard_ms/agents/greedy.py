@@ -3,8 +3,9 @@
     cost = (distance + HANDLING) * (1 + failures)^2 / predicted value
 
 The predicted value is halved where the target is damaged or will be by the time of arrival, with its temperature, or the water over
-it, continued along the straight line through its last two sightings. A target that failed repeatedly gets a growing cost and is given up at last, so
-no path is tried for ever. Searching: walk to the landmark with the most unexplored floor around it, then look around there.
+it, continued along the straight line through its last two sightings. A target that failed repeatedly gets a growing cost and is given
+up at last, so no path is tried for ever. Searching: walk to the landmark with the most unexplored floor around it, then look around
+there.
 """
 
 from __future__ import annotations

@@ -21,6 +21,7 @@ from hazard_ms.hazards.base import nobody
 from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
 from hazard_ms.rendering import backend
 from hazard_ms.robots import ROBOTS
+from hazard_ms.scenes.files import playing
 from hazard_ms.spec import SceneSpec
 from hazard_ms.tasks import TASKS
 from hazard_ms.world import World
@@ -46,6 +47,7 @@ class HazardEnv(BaseEnv):
         *,
         task: str = "HazardFire-v1",
         split: str = "train",
+        scenes: Any = None,
         physics: str = "paper",
         affects_agent: bool = False,
         robot_uids: str = "fetch",
@@ -68,6 +70,7 @@ class HazardEnv(BaseEnv):
         Args:
             task: Name of the task; gym.make fills it in.
             split: Which scenes the seeds choose from.
+            scenes: JSON file of a scene, folder of them, or list of both: the seeds choose from these instead.
             physics: Preset of the hazards.
             affects_agent: Whether the hazards act on the robot.
             robot_uids: The rescuer.
@@ -84,7 +87,7 @@ class HazardEnv(BaseEnv):
             ValueError: For any name or number that is not allowed.
         """
         self.physics = checks.one_of(physics, PRESETS, "physics")
-        self.task = TASKS[checks.one_of(task, TASKS, "task")](self.physics)
+        self.task = playing(TASKS[checks.one_of(task, TASKS, "task")](self.physics), scenes)
         self.split = checks.one_of(split, self.task.splits, "split")
         self.scene_names = self.task.scenes(self.split)
         self.affects_agent = checks.flag(affects_agent, "affects_agent")
@@ -100,10 +103,7 @@ class HazardEnv(BaseEnv):
         if reconfiguration_freq is None:  # only an environment that is rebuilt for every episode is bit-exact (measured)
             reconfiguration_freq = 1 if self.deterministic and num_envs == 1 else 0
         chosen = backend() if render_backend == "auto" else render_backend
-        if chosen in ("none", None) and observing.needs_pictures(obs_mode):
-            raise ValueError(
-                f"obs_mode {obs_mode!r} needs a renderer, and there is none; allowed without: {', '.join(observing.PLAIN_MODES[:3])}"
-            )
+        observing.check_renderer(obs_mode, chosen)
         pack = {"shader_pack": shader_config(self.effects_mode)} if chosen not in ("none", None) else {}
         self.world: World
         self.episode: Episode
@@ -172,7 +172,7 @@ class HazardEnv(BaseEnv):
         self.actors = building.build_scenes(self.scene, self.specs)
         self.bags = building.build_bags(self.scene, self.num_envs)
         self.world = building.make_world(self.specs, self.device)
-        self.episode = Episode(self.world, self.task.hazards)
+        self.episode = Episode(self.world, self.task.hazards, self.task.safe_place)
 
     def _load_lighting(self, options: dict[str, Any]) -> None:
         building.build_lights(self.scene, self.specs)

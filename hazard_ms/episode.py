@@ -14,6 +14,7 @@ from torch import Tensor
 from hazard_ms import hand
 from hazard_ms.guard import FlightRecorder, Limits
 from hazard_ms.hazards.base import Hazard, Push, State, nobody
+from hazard_ms.hazards.containers import container_index, in_containers
 from hazard_ms.hazards.damage import Damage, Rescue
 from hazard_ms.world import World
 
@@ -23,8 +24,10 @@ BAG_REACH = 0.45  # gripper to the mouth of the bag, at most, for a drop to be a
 class Episode:
     """All records of running episodes; each is declared once, and cleared, saved and restored by its declaration."""
 
-    def __init__(self, world: World, hazards: tuple[Hazard, ...]) -> None:
+    def __init__(self, world: World, hazards: tuple[Hazard, ...], safe_place: str = "bag") -> None:
+        """`safe_place`: bag (of the agent) or cart (containers of the scene)."""
         self.world, self.hazards = world, hazards
+        self.carts = container_index(world) if safe_place == "cart" else None
         sizes = {"E": world.num_envs, "B": world.num_bodies}
         self.states: dict[str, Any] = {h.name: h.state_type.allocate(sizes | h.sizes(world), world.device) for h in hazards}
         self.damage = Damage.allocate(sizes, world.device)
@@ -45,7 +48,7 @@ class Episode:
         """Put everything in the environments `rows` back to where the scenes have it. `begin_hazards` comes after the robot's reset."""
         world = self.world
         world.chance.restart(rows, seeds)
-        world.safe[rows] = world.held[rows] = False
+        world.safe[rows] = world.away[rows] = world.held[rows] = False
         self.sim_error[rows] = False
         for part in self.parts.values():
             part.clear(rows)
@@ -94,9 +97,15 @@ class Episode:
 
     def use_hand(self, gripper: tuple[Tensor, Tensor], closed: Tensor, bag: Tensor) -> None:
         """Take, carry, let go, rescue. `gripper`: position [m], [E, 3], and rotation, [E, 4]; `closed` [E]; `bag`: its mouth, [E, 3]."""
-        dropped = hand.update(self.hand, self.world, *gripper, closed)
-        over_bag = (gripper[0] - bag).norm(dim=-1) <= BAG_REACH
-        self.rescue.mark(self.world, torch.where(over_bag, dropped, -1), self.damage)
+        world = self.world
+        dropped = hand.update(self.hand, world, *gripper, closed)
+        if self.carts is None:
+            over_bag = (gripper[0] - bag).norm(dim=-1) <= BAG_REACH
+            now = torch.arange(world.num_bodies, device=world.device) == torch.where(over_bag, dropped, -1)[:, None]
+            world.away |= now & world.exists
+        else:
+            now = in_containers(world, self.carts, self.rescue.safe) & world.target
+        self.rescue.mark(world, now, self.damage)
         self.freeze(gripper)
 
     def thaw(self, rows: Tensor) -> None:
@@ -108,8 +117,8 @@ class Episode:
         world.freeze(self._frozen, world.base_of(world.position, world.rotation, world.extent), world.rotation)
 
     def freeze(self, gripper: tuple[Tensor, Tensor]) -> None:
-        """Keep held and rescued bodies where they belong."""
-        now = self.world.held | self.world.safe
+        """Keep what is in the hand or in the bag where it belongs."""
+        now = self.world.held | self.world.away
         if nobody(now | self._frozen):
             return
         self._frozen = now

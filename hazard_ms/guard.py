@@ -40,7 +40,7 @@ class Limits:
         """Environments whose simulation cannot be trusted any more, [E]. `qpos`: the robot's joints, [E, J]."""
         state = torch.cat([world.position, world.rotation, world.velocity, world.angular_velocity], dim=-1)
         good = ((state - self.centre).abs() <= self.half).all(-1)  # NaN fails every comparison
-        unwatched = ~(world.exists & world.movable) | world.safe | world.held
+        unwatched = ~(world.exists & world.movable) | world.away | world.held
         return ~((good | unwatched).all(-1) & (qpos.abs() < torch.inf).all(-1))
 
 

@@ -15,7 +15,7 @@ from hazard_ms.hazards.base import State, nobody, quantity
 from hazard_ms.world import World, rotate
 
 GRASP_REACH = 0.15  # gripper to the surface of the object's box, at most [m] [ours]; Fetch's fingers are 0.06 m long
-PARKING = -10.0  # height at which rescued things wait, out of sight and out of reach [m]
+PARKING = -10.0  # height at which things in the bag wait, out of sight and out of reach [m]
 
 
 @dataclass
@@ -85,12 +85,12 @@ def _remember(hand: Hand, world: World, gripper: Tensor, rotation: Tensor, taken
 
 
 def places(hand: Hand, world: World, gripper: Tensor, rotation: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Which bodies must be frozen ([E, B]) and where their bases ([E, B, 3]) and rotations ([E, B, 4]) are: held or rescued ones."""
+    """Which bodies must be frozen ([E, B]) and where their bases ([E, B, 3]) and rotations ([E, B, 4]) are: in hand or bag."""
     base = world.base_of(world.position, world.rotation, world.extent)
     held = world.held[..., None]
     base = torch.where(held, (gripper + rotate(rotation, hand.offset))[:, None], base)
     turn = torch.where(held, multiply(rotation, hand.turn)[:, None], world.rotation)
     parked = base.clone()
     parked[..., 2] = PARKING
-    base = torch.where(world.safe[..., None], parked, base)
-    return world.held | world.safe, base, turn
+    base = torch.where(world.away[..., None], parked, base)
+    return world.held | world.away, base, turn

@@ -55,6 +55,7 @@ class World:
     target            [E, B]     bool; to be rescued
     value             [E, B]     what a rescue is worth, 1 or 5
     safe              [E, B]     bool; rescued: hazards no longer touch it (written by the rescue record)
+    away              [E, B]     bool; in the agent's bag, so no longer in the scene (written by the episode)
     held              [E, B]     bool; in the agent's hand (written by the agent's hand)
     room              [E, 2]     inner size of the room along x and y [m]
     agent_position    [E, 3]     middle of the agent's base on the floor [m]
@@ -76,6 +77,7 @@ class World:
     target: Tensor
     value: Tensor
     safe: Tensor
+    away: Tensor
     held: Tensor
     room: Tensor
     agent_position: Tensor
@@ -113,6 +115,7 @@ class World:
             target=zeros(dtype=torch.bool),
             value=zeros(),
             safe=zeros(dtype=torch.bool),
+            away=zeros(dtype=torch.bool),
             held=zeros(dtype=torch.bool),
             room=torch.tensor([s.room.size for s in specs], device=device),
             agent_position=torch.tensor([[*s.agent_start.position, 0.0] for s in specs], device=device),

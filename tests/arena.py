@@ -13,7 +13,7 @@ from mani_skill.utils.registration import REGISTERED_ENVS, register_env
 from mani_skill.utils.structs.types import SimConfig
 
 from hazard_ms.hand import Hand, places, update
-from hazard_ms.robots import HazardFetch
+from hazard_ms.robots import ROBOTS, Robot
 from hazard_ms.sensing.semantic_map import SemanticMap, Sighting
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.stage import LowLevel, Skill, Stage
@@ -35,7 +35,7 @@ class Box:
 
 
 class ArenaEnv(BaseEnv):
-    SUPPORTED_ROBOTS = (HazardFetch.uid,)
+    SUPPORTED_ROBOTS = tuple(kind.uid for kind in ROBOTS.values())
     boxes: tuple[Box, ...] = ()
     rate = (120, 30)
 
@@ -84,6 +84,7 @@ class Arena:
     boxes: tuple[Box, ...]
     rate: tuple[int, int] = (120, 30)
     control_mode: str = "pd_joint_pos"
+    robot: str = "fetch"
     looks: int = 0
     env: gym.Env = field(init=False)
 
@@ -93,7 +94,7 @@ class Arena:
         REGISTERED_ENVS[ENV_ID].cls = kind
         self.env = gym.make(
             ENV_ID,
-            robot_uids=HazardFetch.uid,
+            robot_uids=ROBOTS[self.robot].uid,
             control_mode=self.control_mode,
             obs_mode="none",
             reward_mode="none",
@@ -104,7 +105,7 @@ class Arena:
         self.restart()
 
     @property
-    def agent(self) -> HazardFetch:
+    def agent(self) -> Robot:
         return self.base.agent
 
     def restart(self, x: float = 0.0, y: float = 0.0, heading: float = 0.0, known: bool = True) -> None:
@@ -150,7 +151,7 @@ class Arena:
         gripper, rotation = self.agent.gripper_pose()
         dropped = int(update(self.hand, self.world, gripper, rotation, self.agent.grip_closed())[0])
         if dropped >= 0 and float((gripper - self.agent.bag_position()).norm()) < BAG_REACH:
-            self.world.safe[0, dropped] = True
+            self.world.safe[0, dropped] = self.world.away[0, dropped] = True
         self._carry()
 
     def _carry(self) -> None:

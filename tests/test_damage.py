@@ -36,7 +36,7 @@ def test_rescue_keeps_frame_and_damage_of_the_moment() -> None:
     world, damage, rescue = records(copies=3)
     world.chance.frame[:] = torch.tensor([7, 8, 9])
     damage.add(torch.tensor([[True, False, False]] * 3), world)
-    rescue.mark(world, torch.tensor([0, 1, -1]), damage)
+    rescue.mark(world, torch.tensor([[True, False, False], [False, True, False], [False, False, False]]), damage)
     assert rescue.safe.tolist() == [[True, False, False], [False, True, False], [False, False, False]]
     assert rescue.frame.tolist() == [[7, -1, -1], [-1, 8, -1], [-1, -1, -1]]
     assert rescue.damaged.tolist() == [[True, False, False], [False, False, False], [False, False, False]]
@@ -46,10 +46,10 @@ def test_rescue_keeps_frame_and_damage_of_the_moment() -> None:
 def test_a_second_rescue_changes_nothing() -> None:
     world, damage, rescue = records()
     world.chance.frame[:] = 5
-    rescue.mark(world, torch.tensor([1]), damage)
+    rescue.mark(world, torch.tensor([[False, True, False]]), damage)
     world.chance.frame[:] = 6
     damage.add(torch.tensor([[False, True, False]]), world)
-    rescue.mark(world, torch.tensor([1]), damage)
+    rescue.mark(world, torch.tensor([[False, True, False]]), damage)
     assert rescue.frame[0, 1].item() == 5 and not rescue.damaged[0, 1].item() and not damage.damaged[0, 1].item()
 
 
@@ -58,7 +58,7 @@ def test_fire_damages_what_burns_or_burnt_and_not_what_was_saved_before() -> Non
     preset = fire("shipped")
     state = begin(preset, world)
     damage, rescue = Damage.allocate({"E": 1, "B": 3}, "cpu"), Rescue.allocate({"E": 1, "B": 3}, "cpu")
-    rescue.mark(world, torch.tensor([1]), damage)
+    rescue.mark(world, torch.tensor([[False, True, False]]), damage)
     for _ in range(150):
         run(preset, state, world, 1)
         damage.add(preset.damaged(state, world), world)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +53,7 @@ def test_begin_clears_its_rows_and_no_other() -> None:
         episode.advance(FRAME)
     world.position += 1.0
     world.velocity += 2.0
-    world.held[:, 1] = world.safe[:, 2] = True
+    world.held[:, 1] = world.safe[:, 2] = world.away[:, 2] = True
     episode.sim_error[:] = True
     for part in episode.parts.values():
         for value in vars(part).values():
@@ -61,7 +62,7 @@ def test_begin_clears_its_rows_and_no_other() -> None:
     episode.begin_hazards(torch.tensor([1]))
     assert world.chance.seed.tolist() == [7, 99, 9] and world.frame.tolist() == [4, 0, 4]
     assert episode.sim_error.tolist() == [True, False, True]
-    assert world.held.any(1).tolist() == world.safe.any(1).tolist() == [True, False, True]
+    assert world.held.any(1).tolist() == world.safe.any(1).tolist() == world.away.any(1).tolist() == [True, False, True]
     assert torch.equal(world.position[1], start[1]) and torch.equal(world.position[::2], start[::2] + 1.0)
     assert (world.velocity[1] == 0.0).all() and (world.velocity[::2] == 2.0).all()
     fresh = begun(books(copies=3), Fire(), Lift(hits=0))
@@ -143,7 +144,7 @@ def test_a_new_episode_frees_what_was_held_or_safe() -> None:
     """The simulator learns that nothing is frozen, then where everything is; the rescued book is back in its place."""
     world, simulator = books(), Simulator()
     episode = begun(world, handles=simulator)
-    world.safe[0, 1] = True
+    world.safe[0, 1] = world.away[0, 1] = True
     episode.freeze(HERE)
     assert simulator.of("freeze")[-1][1][0, 1].tolist() == pytest.approx([12.0, 10.0, -10.0])
     world.position[0, 1, 2] = -9.99
@@ -152,6 +153,27 @@ def test_a_new_episode_frees_what_was_held_or_safe() -> None:
     assert [name for name, _ in simulator.told] == ["freeze", "place"]
     assert not simulator.of("freeze")[0][0].any()
     assert simulator.of("place")[0][0, 1].tolist() == pytest.approx([12.0, 10.0, 0.0], abs=1e-6)
+
+
+def test_what_lies_in_a_cart_is_rescued_and_stays_in_the_scene() -> None:
+    """The books are 2 m apart; a cart stands around the middle one. A held one over the basket is not rescued yet."""
+    world, simulator = books(), Simulator()
+    spec = world.specs[0]
+    world.specs = (replace(spec, fixtures=(replace(spec.fixtures[0], category="cart"),)),)
+    world.position[0, 3], world.extent[0, 3] = torch.tensor([12.0, 10.0, 0.0]), torch.tensor([0.6, 0.9, 1.0])
+    world.handles = simulator
+    episode = Episode(world, (), "cart")
+    episode.begin(torch.arange(1), torch.arange(1))
+    world.position[0, 3], world.extent[0, 3] = torch.tensor([12.0, 10.0, 0.0]), torch.tensor([0.6, 0.9, 1.0])
+    world.held[0, 1] = True
+    episode.hand.held[:] = 1
+    episode.hand.closed[:] = True
+    gripper = (world.position[:, 1].clone(), HERE[1])
+    episode.use_hand(gripper, torch.tensor([True]), HERE[0])
+    assert not episode.rescue.safe.any()
+    episode.use_hand(gripper, torch.tensor([False]), HERE[0])
+    assert episode.rescue.safe[0].tolist() == world.safe[0].tolist() == [False, True, False, False]
+    assert not world.away.any() and not simulator.of("freeze")[-1][0].any()
 
 
 def nan(world: World) -> None:
@@ -186,7 +208,7 @@ def test_a_broken_robot_is_a_breach_but_what_waits_below_is_none(tmp_path: Path,
     monkeypatch.setenv("HAZARD_MS_DUMPS", str(tmp_path))
     world = books(copies=2)
     episode = begun(world, Lift())
-    world.safe[0, 0], world.held[0, 1] = True, True
+    world.away[0, 0], world.held[0, 1] = True, True
     world.position[0, :2, 2] = -10.0
     qpos = QPOS.clone()
     qpos[1, 4] = torch.nan

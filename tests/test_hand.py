@@ -146,9 +146,9 @@ def test_what_is_held_follows_the_gripper(
     assert bases[0, LYING].tolist() == pytest.approx((5.0, 0.3, 0.05), abs=1e-6)
 
 
-def test_what_is_safe_waits_ten_metres_below_where_it_was() -> None:
+def test_what_is_in_the_bag_waits_ten_metres_below_where_it_was() -> None:
     world = shop()
-    world.safe[0, CUP] = True
+    world.away[0, CUP] = True
     frozen, bases, turns = places(empty_hand(world), world, at(0.0, 0.0, 1.0), torch.tensor([LEFT]))
     assert frozen[0].nonzero().flatten().tolist() == [CUP]
     assert bases[0, CUP].tolist() == [1.0, 0.0, -10.0] and turns[0, CUP].tolist() == list(UPRIGHT)

@@ -181,7 +181,7 @@ class FireEffects:
             return
         base = world.base_of(world.position, world.rotation, world.extent).cpu().numpy()
         rotation, centre = world.rotation.cpu().numpy(), world.position.cpu().numpy()
-        on_things = (body_flames(fire) * (world.exists & ~world.safe) / SCALE_LAST).cpu().numpy()
+        on_things = (body_flames(fire) * (world.exists & ~world.away) / SCALE_LAST).cpu().numpy()
         place, scale = (t.cpu().numpy() for t in floor_flames(fire, frame))
         on_floor = scale / SCALE_LAST
         times = frame.cpu().numpy() / FRAMES_PER_SECOND

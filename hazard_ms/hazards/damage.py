@@ -35,12 +35,11 @@ class Rescue(State):
     frame: Tensor = quantity("E B", "frame", "when it was rescued; -1: not yet", dtype="int", fill=-1)
     damaged: Tensor = quantity("E B", "", "was damaged when it was rescued", dtype="bool")
 
-    def mark(self, world: World, body: Tensor, damage: Damage) -> None:
-        """Rescue `body`, an index along B for each environment, -1 for none: [E]."""
-        if nobody(body >= 0):
+    def mark(self, world: World, now: Tensor, damage: Damage) -> None:
+        """Rescue the things of the mask `now`, [E, B], that are not rescued yet."""
+        new = now & world.exists & ~self.safe
+        if nobody(new):
             return
-        index = torch.arange(world.num_bodies, device=world.device)
-        new = (index == body[:, None]) & world.exists & ~self.safe
         self.safe |= new
         self.damaged |= new & damage.damaged
         self.frame.copy_(torch.where(new, world.frame[:, None], self.frame))

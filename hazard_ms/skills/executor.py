@@ -132,7 +132,7 @@ class SkillEnv:
         """Look through the head camera and enter what is seen into the map."""
         rgb, view = self.base.observer.look()
         world, base = self.base.world, self.base
-        gone = torch.nonzero(world.held[0] | world.safe[0]).flatten().tolist()
+        gone = torch.nonzero(world.held[0] | world.away[0]).flatten().tolist()
         where = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))
         for index in gone:
             self._seen.forget(index)

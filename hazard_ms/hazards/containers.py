@@ -1,0 +1,71 @@
+"""What lies in a container: in the basket of a shopping cart, or on what lies there already.
+
+The basket is an oriented box, given in shares of the cart's own box. Piles: what lies in the axis-aligned box of a settled thing has
+settled, too, one layer per call (HAZARD wind/manager.py:113-127, physics.md 1.3). A thing is where the middle of its base is, and in a
+basket where its centre is, too: a suitcase may stand in it on its head. Hazards and the record of rescues ask the same question here.
+"""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+
+from hazard_ms.hazards.base import nobody
+from hazard_ms.hazards.floor import half_spans
+from hazard_ms.world import World, rotate
+
+CATEGORY = "cart"
+# The basket in shares of the cart's extent from its centre: 0.47 to 0.88 m of a height of 1.03 m, the handle is at +y [ours].
+BASKET_LOW, BASKET_HIGH = (-0.45, -0.43, -0.07), (0.45, 0.38, 0.36)
+TOUCH = 0.02  # what rests on a thing, or has sunk a little into the basket's floor, counts as inside [m] [ours]
+
+
+def container_index(world: World) -> Tensor:
+    """Indices along B of the containers of every scene, padded with -1: [E, C], C at least 1. Scenes are fixed: ask once."""
+    rows = [[len(s.bodies) + k for k, f in enumerate(s.fixtures) if f.category == CATEGORY] for s in world.specs]
+    width = max(1, *(len(row) for row in rows))
+    return torch.tensor([row + [-1] * (width - len(row)) for row in rows], device=world.device)
+
+
+def in_containers(world: World, containers: Tensor, settled: Tensor) -> Tensor:
+    """Bodies that lie in `containers`, [E, C] of `container_index`, or on what has `settled`, [E, B], bool: [E, B], bool.
+
+    What is in a hand or has been put away lies nowhere; what had settled is only listed if it still lies there.
+    """
+    moving = max(len(s.bodies) for s in world.specs)  # bodies come before fixtures
+    centre = world.position[:, :moving]
+    base = world.base_of(centre, world.rotation[:, :moving], world.extent[:, :moving])
+    inside = _in_baskets(world, containers, base) | _in_baskets(world, containers, centre)
+    able = world.exists & world.movable & ~world.held & ~world.away
+    below = (settled & able)[:, :moving]
+    if not nobody(below):
+        inside = inside | _on_piles(world, base, below)
+    found = torch.zeros_like(settled)
+    found[:, :moving] = inside
+    return found & able
+
+
+def _in_baskets(world: World, containers: Tensor, points: Tensor) -> Tensor:
+    """Which `points` [m], [E, M, 3], are in one of the baskets: [E, M], bool."""
+    e = torch.arange(len(points), device=points.device)[:, None]
+    cart = containers.clamp(min=0)
+    extent, turn = world.extent[e, cart], world.rotation[e, cart]  # [E, C, 3], [E, C, 4]
+    back = turn * turn.new_tensor([1.0, -1.0, -1.0, -1.0])
+    offset = points[:, None] - world.position[e, cart][:, :, None]  # [E, C, M, 3]
+    local = rotate(back[:, :, None].expand(*offset.shape[:3], 4), offset)
+    low = extent * extent.new_tensor(BASKET_LOW) - TOUCH
+    high = extent * extent.new_tensor(BASKET_HIGH) + TOUCH
+    within = ((local > low[:, :, None]) & (local < high[:, :, None])).all(-1)
+    return (within & (containers >= 0)[..., None]).any(1)
+
+
+def _on_piles(world: World, base: Tensor, below: Tensor) -> Tensor:
+    """Which bodies have their `base` [m], [E, M, 3], in the axis-aligned box of another one of `below`, [E, M]: [E, M], bool."""
+    moving = below.shape[1]
+    half = half_spans(world.rotation[:, :moving], world.extent[:, :moving]) + TOUCH
+    half = torch.where(below[..., None], half, -1.0)  # nothing is in a box of negative size
+    found = ~torch.eye(moving, dtype=torch.bool, device=below.device).expand(len(below), -1, -1)
+    for axis in range(3):
+        offset = (base[:, :, None, axis] - world.position[:, None, :moving, axis]).abs_()
+        found = found & (offset < half[:, None, :, axis])
+    return found.any(2)

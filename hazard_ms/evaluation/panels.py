@@ -46,9 +46,10 @@ class Scale:
 
 TEMPERATURE = Scale("temperature", "°C", 20.0, 600.0, cv2.COLORMAP_INFERNO, ACCENT)
 WATER = Scale("water level", "m", 0.0, 1.5, cv2.COLORMAP_OCEAN, BLUE)
+WIND = Scale("wind", "m/s", 0.0, 6.0, cv2.COLORMAP_BONE, SOFT)
 FLOOR = np.array((62, 69, 80), np.float32)  # colour of a height of 0
 WALL = np.array((208, 213, 221), np.float32)  # of 2 m and more
-SCALES = {"fire": TEMPERATURE, "flood": WATER}  # by the name of the hazard
+SCALES = {"fire": TEMPERATURE, "flood": WATER, "wind": WIND}  # by the name of the hazard
 
 
 def cover(image: Pixels, width: int, height: int) -> Pixels:

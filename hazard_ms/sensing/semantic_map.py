@@ -18,14 +18,20 @@ from hazard_ms.sensing.camera import AGENT, NOTHING
 from hazard_ms.sensing.view import View
 
 CELL = 0.1  # edge of a cell [m] (benchmark rules 2)
-CELLS = 256  # along each side: 25.6 m, room enough around any start in a room of 12 m
+CELLS = 256  # along each side, at least: 25.6 m, room enough around any start in a room of 12 m
 CEILING = 2.5  # points from here upwards are dropped [m] (original utils/model.py:282)
 GRID = 128  # columns of the image that mark cells: with 120 degrees one per 0.1 m at 4 m; rows see the floor at a flat angle, so
 # of them all are used in the lower half, where the floor is, and GRID / 2 in the upper
+EYESHOT = 4.0  # how far around a scene's area things are worth remembering [m] [ours]
 ENOUGH = 3  # pixels from which a thing counts as seen: a key at 2 m has about that many in an image of 256 x 256
 OWN_RADIUS = 0.45  # of the robot with its arm tucked; its own points are dropped here when no labels tell them [m]
 SLACK = 0.1  # a median that moves by less may be due to the angle of view [m]
 REMEMBERED = 256  # hazard levels kept per object, the newest
+
+
+def cells_for(size: tuple[float, float], cell: float = CELL) -> int:
+    """Cells along each side of a map that holds an area of `size` [m], wherever in it the agent starts."""
+    return max(CELLS, 2 * round((max(size) + EYESHOT) / cell))
 
 
 @dataclass(frozen=True)

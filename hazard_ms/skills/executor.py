@@ -10,7 +10,7 @@ import numpy as np
 import torch
 
 from hazard_ms.env import HazardEnv
-from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.sensing.semantic_map import SemanticMap, cells_for
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision, Images, Result
 from hazard_ms.skills.failures import EPISODE_OVER
@@ -59,7 +59,7 @@ class SkillEnv:
         _, info = self.env.reset(seed=seed, options=options)
         world = self.base.world
         start = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))
-        self._seen = SemanticMap(start, world.movable[0].cpu().numpy())
+        self._seen = SemanticMap(start, world.movable[0].cpu().numpy(), cells=cells_for(self.base.specs[0].room.size))
         self.stage = Stage(self.base, self._seen, self.look)
         self._images: Images | None = None
         self._last: tuple[Action | None, Result | None] = (None, None)

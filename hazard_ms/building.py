@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from typing import Any
 
@@ -13,18 +14,22 @@ from mani_skill.utils.structs import Actor
 from mani_skill.utils.structs.pose import Pose
 
 from hazard_ms.assets import Asset, asset, asset_path
+from hazard_ms.plain import colour
+from hazard_ms.scenes.boxes import Box, box_of
 from hazard_ms.scenes.shell import shell
 from hazard_ms.simulator import CpuHandles, GpuHandles
-from hazard_ms.spec import Body, Fixture, SceneSpec
+from hazard_ms.spec import Body, Fixture, Room, SceneSpec
 from hazard_ms.surfaces import surface_material, textured_box
 from hazard_ms.world import World
 
 FRICTION = 0.5  # [-] Coulomb, static and dynamic: wood on wood 0.25-0.5, most household pairs 0.3-0.6 (Engineering ToolBox) [ours]
+PARTING = 0.5  # at most, of things that start inside each other [m/s]: they part instead of exploding [ours]
 FLAT = 0.03  # a robot's base glides over what lies lower on the floor: rugs [m] [ours]
 SLAB = 1.0  # thickness of what encloses a room [m]: a robot that leans on a thing cannot squeeze it through
 BAG, BAG_SCALE = "basket_2", 0.8  # the model that shows the bag, and its size
-TALL, NEARBY = 1.3, 1.8  # furniture this high, this close to a corner, hides the room from a camera there [m] [ours]
-EYES_OUTDOORS = 5.0  # height of the third person's eyes in the open [m] [ours]
+TALL, BESIDE = 1.3, 0.4  # what is this high hides what lies behind it, and so much to its sides, from a camera [m] [ours]
+HIDING = 12.0  # for this much more distance the third person puts up with one thing in the view [m] [ours]
+EYES_OUTDOORS = 6.0  # height of the third person's eyes in the open [m] [ours]
 GLIDE_BITS = (30, 31)  # of collision group 2: ManiSkill's bits for what Fetch's wheels and base do not collide with
 
 
@@ -109,6 +114,8 @@ def build_thing(scene: Any, thing: Body | Fixture, env: int) -> Actor:
     add_collision(builder, kind, thing.scale, thing.friction if isinstance(thing, Body) else None)
     if kind.visual:
         builder.add_visual_from_file(str(asset_path(kind.visual)), scale=list(thing.scale))
+    elif scene.can_render():
+        _add_plain_visual(builder, kind, thing)
     builder.initial_pose = sapien.Pose(list(thing.position), list(thing.rotation))
     name = f"{env}/{thing.name}"
     if isinstance(thing, Fixture):
@@ -120,6 +127,14 @@ def build_thing(scene: Any, thing: Body | Fixture, env: int) -> Actor:
     actor = builder.build(name=name)
     _set_inertia(actor, mass_of(thing), extent_of(thing))
     return actor
+
+
+def _add_plain_visual(builder: Any, kind: Asset, thing: Body | Fixture) -> None:
+    """What a shape without a file looks like: its boxes in the colour of the thing's category."""
+    material = sapien.render.RenderMaterial(base_color=[*colour(thing.category), 1.0], roughness=0.7, specular=0.3)
+    for box in kind.boxes:
+        centre, half = np.array(box[:3]) * thing.scale, np.array(box[3:]) * thing.scale
+        builder.add_box_visual(sapien.Pose(centre), half_size=half, material=material)
 
 
 def build_bags(scene: Any, count: int) -> list[Actor]:
@@ -161,6 +176,7 @@ def _set_inertia(actor: Actor, mass: float, extent: tuple[float, float, float]) 
     for body in actor._bodies:
         body.set_mass(mass)
         body.set_cmass_local_pose(sapien.Pose([0.0, 0.0, z / 2]))
+        body.set_max_depenetration_velocity(PARTING)
         body.set_inertia([mass / 12 * (y * y + z * z), mass / 12 * (x * x + z * z), mass / 12 * (x * x + y * y)])
 
 
@@ -189,22 +205,37 @@ def build_lights(scene: Any, specs: tuple[SceneSpec, ...]) -> None:
     """Daylight from above with one shadow, and a lamp under each ceiling; in the open, the sky."""
     outdoors = specs[0].room.open_air
     scene.set_ambient_light([0.38, 0.42, 0.48] if outdoors else [0.45, 0.44, 0.42])
-    wide = max(specs[0].room.size) if outdoors else 8.0
+    wide = max(np.hypot(*s.room.size) for s in specs)  # a place outside of the shadows' reach would shine through the ceiling
     pixels = 2048 if outdoors else 1024
     scene.add_directional_light([0.4, 0.6, -1.0], [0.9, 0.87, 0.8], shadow=True, shadow_scale=wide, shadow_map_size=pixels)
     for e, spec in enumerate(specs):
-        (x, y), z = spec.room.size, spec.room.height
-        if not spec.room.open_air:
-            scene.add_point_light([x / 2, y / 2, z - 0.4], [2.0, 1.9, 1.7], scene_idxs=[e])
+        for x, y in _middles(spec.room) if not spec.room.open_air else ():
+            scene.add_point_light([x, y, spec.room.height - 0.4], [2.0, 1.9, 1.7], scene_idxs=[e])
+
+
+def _middles(room: Room) -> list[tuple[float, float]]:
+    """The middles of the parts of a room [m]."""
+    (x, y), walls = room.size, room.partitions
+    across = [sorted([0.0, length, *(p.at for p in walls if p.axis == axis)]) for axis, length in (("y", x), ("x", y))]
+    xs, ys = ([(low + high) / 2 for low, high in itertools.pairwise(ends)] for ends in across)
+    return [(a, b) for a in xs for b in ys]
 
 
 def corner_view(spec: SceneSpec) -> sapien.Pose:
-    """Camera pose in an upper corner, looking at the middle: far from the agent's start, behind nothing tall."""
+    """Camera pose in an upper corner, or over a side in the open: far from the agent's start, looking at the middle past what is tall."""
     (x, y), z = spec.room.size, EYES_OUTDOORS if spec.room.open_air else spec.room.height
     start = np.array(spec.agent_start.position)
-    corners = np.array([[a, b] for a in (0.15, x - 0.15) for b in (0.15, y - 0.15)])
-    tall = np.array([f.position[:2] for f in spec.fixtures if f.position[2] + extent_of(f)[2] > TALL]).reshape(-1, 2)
-    hidden = (np.linalg.norm(corners[:, None] - tall[None], axis=-1) < NEARBY).sum(axis=1)
-    corner = corners[np.argmax(np.linalg.norm(corners - start, axis=1) - NEARBY * 2 * hidden)]
+    sides = [(0.15, size / 2, size - 0.15) if spec.room.open_air else (0.15, size - 0.15) for size in (x, y)]
+    eyes = [np.array([a, b, z - 0.15]) for a in sides[0] for b in sides[1] if (a, b) != (x / 2, y / 2)]
     target = np.array([x / 2, y / 2, 0.1]) * 0.8 + np.array([*start, 0.1]) * 0.2
-    return look_at([*corner, z - 0.15], target).sp
+    tall = [box for f in spec.fixtures if (box := box_of(f, asset(f.asset).extent)).high > TALL]
+    eye = max(eyes, key=lambda e: np.linalg.norm(e[:2] - start) - HIDING * _hidden(e, target, tall))
+    return look_at(eye, target).sp
+
+
+def _hidden(eye: np.ndarray, target: np.ndarray, boxes: list[Box]) -> float:
+    """How much of the way from `eye` to `target` lies in or close behind `boxes`, in boxes; what is near to the eye hides most."""
+    share = np.linspace(0.0, 0.8, 30)[:, None]
+    points = eye + share * (target - eye)
+    inside = [(b.distance(points[:, 0], points[:, 1]) < BESIDE) & (points[:, 2] < b.high + BESIDE) for b in boxes]
+    return float(sum((i * (1.0 - share[:, 0])).max(initial=0.0) for i in inside))

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from hazard_ms import catalogue_original as original
+
 HIGH_VALUE, LOW_VALUE = 5, 1  # HAZARD challenge.py:88
 DAMAGED_SHARE = 0.5  # of its value that a target keeps when it is rescued damaged (benchmark rules 4)
 IMMOVABLE = 11  # HAZARD envs/wind/object.py:41: a wind resistance above 10 feels no wind
@@ -149,6 +151,19 @@ _FIXTURES: tuple[_Row, ...] = (
     ("car", "", 0, 0, 1, 2000, 120, 1.05, _F, "OOOLMDO"),
     ("hydrant", "", 0, 0, 1, 3000, 2000, 0.74, _F, "OOOLMDO"),
     ("house", "", 0, 0, 1, 3000, 300, 1.05, _F, "OOOLMDO"),
+    ("trash_bin", "", 0, 0, 1, 1000, 60, 0.82, _F, "OOOLMDO"),
+    ("mailbox", "", 0, 0, 1, 3000, 250, 0.82, _F, "OOOLMDO"),
+    ("traffic_cone", "", 0, 1, 1, 300, 100, 0.74, _F, "OOOLMDO"),
+    ("bollard", "", 0, 0, 1, 3000, 600, 0.82, _F, "OOOLMDO"),
+    ("traffic_sign", "", 0, 0, 1, 3000, 150, 1.17, _F, "OOOLMDO"),
+    ("bus_stop", "", 0, 0, 1, 3000, 40, 1.05, _F, "OOOLMDO"),
+    ("kiosk", "", 0, 1, 1, 300, 60, 1.05, _F, "OOOLMDO"),
+    ("picnic_table", "", 0, 1, 1, 300, 30, 1.05, _F, "OOOLMDO"),
+    ("planter", "", 0, 0, 1, 3000, 900, 1.05, _F, "OOOLMDO"),
+    ("sandbox", "", 0, 0, 1, 3000, 1200, 1.05, _F, "OOOLMDO"),
+    ("slide", "", 0, 0, 1, 3000, 25, 1.05, _F, "OOOLMDO"),
+    ("swing", "", 0, 1, 1, 300, 10, 1.05, _F, "OOOLMDO"),
+    ("shed", "", 0, 1, 1, 300, 35, 1.05, _F, "OOOLMDO"),
 )
 
 
@@ -180,7 +195,14 @@ def check(rows: Iterable[Category]) -> dict[str, Category]:
     return table
 
 
-CATEGORIES: dict[str, Category] = check((*_read(_OBJECTS, "object"), *_read(_FIXTURES, "fixture")))
+CATEGORIES: dict[str, Category] = check(
+    (
+        *_read(_OBJECTS, "object"),
+        *_read(_FIXTURES, "fixture"),
+        *_read(original.OBJECTS, "object"),
+        *_read(original.FIXTURES, "fixture"),
+    )
+)
 
 FIRE_POOL = tuple(row[0] for row in _OBJECTS[:22])  # targets of fire and flood, [P] table of the appendix
 TEST_EXTRAS = ("suitcase", "candle")  # stand in published test scenes only

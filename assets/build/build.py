@@ -1,10 +1,11 @@
 """Makes the assets: `python assets/build/build.py PACKAGE.deb [ID ...]`; with ids, makes these again and keeps the other rows.
 
-Needs trimesh, scipy, Pillow, coacd, manifold3d, and gltfpack (npm) on the path or in the variable GLTFPACK.
+Needs trimesh, scipy, Pillow, coacd, manifold3d, OpenEXR, and gltfpack (npm) on the path or in the variable GLTFPACK.
 """
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import json
 import os
@@ -15,10 +16,17 @@ from typing import Any
 import numpy as np
 import trimesh
 
+import carts
 import collide
 import convert
+import greenery
+import ground_patterns
+import houses
+import indoor_things
 import large_things
+import outdoor_things
 import patterns
+import skies
 import small_things
 import surfaces
 from attribution import attribution
@@ -26,12 +34,14 @@ from source import Model, find_models, open_package
 
 HERE = Path(__file__).resolve().parent
 ASSETS = HERE.parent
+FOLDERS = ("models", "hulls", "textures", "skies")
 PACKAGE = "Debian package sweethome3d-furniture 1.8-1"
 US = "the authors of hazard_ms"
 FACES = {"object": 3000, "fixture": 5000}  # at most
 PIXELS = {"object": 256, "fixture": 512}  # of a texture, longest edge, at most
 SNAP = 0.04  # a support's height may differ so much from the level found on the model [m]
-MAKERS = {**small_things.MAKERS, **large_things.MAKERS}
+OURS = (small_things, large_things, indoor_things, carts, houses, outdoor_things, greenery)
+MAKERS = {name: make for module in OURS for name, make in module.MAKERS.items()}
 TEXTURES = {  # names of materials in hazard_ms/scenes/shell.py
     "wood": patterns.planks,
     "tile": patterns.tiles,
@@ -42,6 +52,7 @@ TEXTURES = {  # names of materials in hazard_ms/scenes/shell.py
     "paint_green": lambda: patterns.plaster((178, 189, 172), (190, 200, 183), 53),
     "paint_blue": lambda: patterns.plaster((170, 184, 194), (182, 195, 205), 54),
     "ceiling": lambda: patterns.plaster((232, 232, 230), (242, 242, 240), 55),
+    **ground_patterns.TEXTURES,
 }
 
 
@@ -110,8 +121,16 @@ def texture(name: str) -> dict[str, Any]:
     """Write one material's picture; returns its row."""
     file = f"textures/{name}.jpg"
     TEXTURES[name]().save(ASSETS / file, "JPEG", quality=82)
-    credit = {"licence": "own work", "author": US, "source": "assets/build/patterns.py", "changes": ""}
+    credit = {"licence": "own work", "author": US, "source": "assets/build", "changes": ""}
     return {"id": name, "kind": "texture", "category": "", "visual": file, **credit, "sha256": {file: checksum(ASSETS / file)}}
+
+
+def sky(name: str) -> dict[str, Any]:
+    """Write one sky; returns its row."""
+    file = f"skies/{name}.exr"
+    skies.write(name, ASSETS / file)
+    credit = {"licence": "own work", "author": US, "source": "assets/build/skies.py", "changes": ""}
+    return {"id": name, "kind": "sky", "category": "", "visual": file, **credit, "sha256": {file: checksum(ASSETS / file)}}
 
 
 def checksum(path: Path) -> str:
@@ -122,7 +141,7 @@ def checksum(path: Path) -> str:
 def write_index(rows: list[dict[str, Any]]) -> None:
     """Write index.json and ATTRIBUTION.md, and delete files that no row names."""
     named = {file for row in rows for file in row["sha256"]}
-    for folder in ("models", "hulls", "textures"):
+    for folder in FOLDERS:
         for path in (ASSETS / folder).iterdir():
             if f"{folder}/{path.name}" not in named:
                 path.unlink()
@@ -133,22 +152,37 @@ def write_index(rows: list[dict[str, Any]]) -> None:
     (ASSETS / "ATTRIBUTION.md").write_text(attribution(rows), encoding="utf-8")
 
 
+def read_picks() -> list[dict[str, Any]]:
+    """What picks.json and every picks_*.json beside it ask for."""
+    files = [HERE / "picks.json", *sorted(HERE.glob("picks_*.json"))]
+    return [pick for file in files for pick in json.loads(file.read_text(encoding="utf-8"))]
+
+
 def main(package: str, *only: str) -> int:
-    """Build all, or `only` these; returns the number of rows that failed."""
+    """Build all, or `only` these; returns the number of rows that failed. A second run waits until the first has written the index."""
+    held = os.open(ASSETS, os.O_RDONLY)
+    try:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        return _build(package, only)
+    finally:
+        os.close(held)
+
+
+def _build(package: str, only: tuple[str, ...]) -> int:
     models = find_models(open_package(Path(package)))
     gltfpack = os.environ.get("GLTFPACK", "gltfpack").split()
-    for folder in ("models", "hulls", "textures"):
+    for folder in FOLDERS:
         (ASSETS / folder).mkdir(exist_ok=True)
     old = json.loads((ASSETS / "index.json").read_text(encoding="utf-8")) if only else []
     kept = {row["id"]: row for row in old if row["id"] not in only}
     rows, failed = [], 0
-    for pick in json.loads((HERE / "picks.json").read_text(encoding="utf-8")):
+    for pick in read_picks():
         try:
             rows.append(kept.get(pick["id"]) or make(pick, models, gltfpack))
         except (KeyError, ValueError, AttributeError, IndexError, TypeError) as error:
             failed += 1
             print(f"{pick['id']}: {type(error).__name__}: {error}", file=sys.stderr)
-    write_index(rows + [texture(name) for name in TEXTURES])
+    write_index([*rows, *(texture(name) for name in TEXTURES), *(sky(name) for name in skies.SKIES)])
     return failed
 
 

@@ -212,7 +212,31 @@ def _ring(e: np.ndarray, wall: float, handle: float) -> list[list[float]]:
     return [_span([-side, -side, 0], [side, side, 2 * wall]), *walls]
 
 
+def _cart(e: np.ndarray, floor: float, rim: float, deep: float) -> list[list[float]]:
+    """A shopping cart, handle at +y: the basket from the floor's height `floor` to `rim`, `deep` along y inside, and the frame below."""
+    x, front, wall = e[0] / 2, -e[1] / 2, 0.03
+    inner, start = x - 0.035, front + 0.06  # the basket tapers: its walls are as thick as that needs
+    end = start + deep
+    return [
+        _span([-inner, start, floor - 0.08], [inner, end, floor]),
+        _span([-x, front, floor - 0.08], [-inner, end, rim]),
+        _span([inner, front, floor - 0.08], [x, end, rim]),
+        _span([-inner, front, floor - 0.08], [inner, start, rim]),
+        _span([-x, end, floor - 0.08], [x, end + wall, rim]),
+        _span([-x, front + 0.02, 0], [x, end, 0.16]),
+        *(_span([s * x - 0.02 * (s + 1), end, 0.1], [s * x - 0.02 * (s - 1), end + 0.07, rim]) for s in (-1, 1)),
+        _span([-x, e[1] / 2 - 0.05, e[2] - 0.045], [x, e[1] / 2, e[2]]),
+    ]
+
+
+def _spans(e: np.ndarray, of: list[list[float]]) -> list[list[float]]:
+    """Boxes given by their lowest and highest corners [m], six numbers each."""
+    return [_span(box[:3], box[3:]) for box in of]
+
+
 BOXES = {
+    "cart": _cart,
+    "spans": _spans,
     "ring": _ring,
     "block": _block,
     "table": _table,

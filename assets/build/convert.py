@@ -106,7 +106,7 @@ def paint(material: Any, paints: dict[str, dict[str, Any]], model: Model) -> PBR
 
 def covered(image: Image.Image, patches: list[list[Any]]) -> Image.Image:
     """The image with rectangles painted over: left, top, right, bottom as fractions, and a colour."""
-    image = image.convert("RGB")
+    image = image.convert("RGBA")
     w, h = image.size
     for left, top, right, bottom, color in patches:
         image.paste(color, (round(left * w), round(top * h), round(right * w), round(bottom * h)))

@@ -1,0 +1,85 @@
+"""What every provider can do: list, describe, build. Data are only read, where their own download put them, and never fetched."""
+
+from __future__ import annotations
+
+import abc
+import gzip
+import json
+import os
+from pathlib import Path
+from typing import Any, ClassVar
+
+from hazard_ms.assets import confined
+from hazard_ms.intake.model import Model
+
+LARGEST_JSON = 256_000_000  # unpacked [bytes]; Objaverse describes 5,000 objects in one file of 60 MB [ours]
+DOWNLOAD = "python -m mani_skill.utils.download_asset"
+
+
+def maniskill_folder() -> Path:
+    """Where ManiSkill keeps downloaded data: $MS_ASSET_DIR/data, else ~/.maniskill/data."""
+    return Path(os.environ.get("MS_ASSET_DIR", os.path.join(os.path.expanduser("~"), ".maniskill"))) / "data"
+
+
+class Provider(abc.ABC):
+    """A collection of models, or of whole scenes, on this machine."""
+
+    name: ClassVar[str]
+    download: ClassVar[str]  # the command that fetches the data
+    licence: ClassVar[str]  # of all of it; empty where each model has its own
+    author: ClassVar[str]
+    place: ClassVar[str]  # of the data, below ManiSkill's folder
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self.folder = folder or maniskill_folder() / self.place
+
+    @abc.abstractmethod
+    def ids(self, category: str | None = None) -> tuple[str, ...]:
+        """Names of what is there, all or those of a category of the catalogue. Raises ValueError where nothing is."""
+
+    @abc.abstractmethod
+    def model(self, name: str) -> Model:
+        """What is known about `name`: files, frame, category, licence. A whole scene has no files: it can only be built."""
+
+    @abc.abstractmethod
+    def build(self, where: Any, name: str) -> Any:
+        """ManiSkill's builder of the actor or articulation `name` in the scene `where`; of a scene: built into the environment `where`."""
+
+    def missing(self, what: str = "") -> ValueError:
+        """The error that says what is not there and how to get it."""
+        return ValueError(f"{self.name}: no {what or 'data'} in {self.folder}; get them with: {self.download}")
+
+    def known(self, name: str) -> str:
+        """`name`, if it is one of the ids."""
+        there = self.ids()
+        if name not in there:
+            few = ", ".join(there[:20]) + (f" and {len(there) - 20} more" if len(there) > 20 else "")
+            raise ValueError(f"{self.name} has no {name!r:.100} here; there are {few}. More: {self.download}")
+        return name
+
+    def read(self, file: str) -> Any:
+        """A JSON file of the collection, packed or not."""
+        path = confined(self.folder, file)
+        if not path.is_file():
+            raise self.missing(file)
+        return read_json(path)
+
+    def check_maniskill(self) -> None:
+        """Raise ValueError when ManiSkill, which has its folder from when it was imported, looks elsewhere."""
+        import mani_skill
+
+        looks = mani_skill.ASSET_DIR / self.place
+        if looks.resolve() != self.folder.resolve():
+            raise ValueError(f"{self.name}: ManiSkill reads {looks}, not {self.folder}; set MS_ASSET_DIR before Python starts")
+
+
+def read_json(path: Path) -> Any:
+    """What a JSON file, .gz or not, holds. Raises ValueError for what is too large or no JSON."""
+    try:
+        with gzip.open(path) if path.suffix == ".gz" else path.open("rb") as file:
+            data = file.read(LARGEST_JSON + 1)
+        if len(data) > LARGEST_JSON:
+            raise ValueError(f"more than {LARGEST_JSON} bytes")
+        return json.loads(data)
+    except (OSError, EOFError, RecursionError, ValueError) as error:
+        raise ValueError(f"{path} cannot be read: {error}") from None

@@ -127,3 +127,10 @@ class Episode:
     def forbidden(self, points: Tensor) -> Tensor:
         """Where the robot must not go, [E, P] of `points` [m], [E, P, 3]: one of the hazards would destroy it."""
         return torch.stack([h.forbids(self.states[h.name], self.world, points) for h in self.hazards]).any(0)
+
+    def slowed(self, velocity: Tensor) -> Tensor:
+        """What the hazards leave of an agent's own `velocity` [m/s], [E, 2], one after the other."""
+        for hazard in self.hazards:
+            left = hazard.slow(self.states[hazard.name], self.world)
+            velocity = left[:, :1] * velocity + left[:, 1:]
+        return velocity

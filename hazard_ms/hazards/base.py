@@ -106,6 +106,13 @@ class Hazard(abc.ABC):
         """Where an agent that the hazard affects must not go: [E, P] of `points` [m], [E, P, 3]. By default nowhere."""
         return torch.zeros(points.shape[:2], dtype=torch.bool, device=points.device)
 
+    def slow(self, state: Any, world: World) -> Tensor:
+        """What is left of the motion of an agent that the hazard affects, [E, 3].
+
+        The share of its own velocity, and the velocity x, y [m/s] that comes on top. By default all of it, and nothing.
+        """
+        return torch.eye(3, device=world.device)[:1].expand(world.num_envs, 3)
+
     def agent_info(self, state: Any, world: World) -> dict[str, Tensor]:
         """What the hazard does to the agent, for `info`: name -> [E]."""
         return {}

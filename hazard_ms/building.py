@@ -209,12 +209,12 @@ def build_lights(scene: Any, specs: tuple[SceneSpec, ...]) -> None:
     pixels = 2048 if outdoors else 1024
     scene.add_directional_light([0.4, 0.6, -1.0], [0.9, 0.87, 0.8], shadow=True, shadow_scale=wide, shadow_map_size=pixels)
     for e, spec in enumerate(specs):
-        for x, y in _middles(spec.room) if not spec.room.open_air else ():
+        for x, y in lamp_places(spec.room) if not spec.room.open_air else ():
             scene.add_point_light([x, y, spec.room.height - 0.4], [2.0, 1.9, 1.7], scene_idxs=[e])
 
 
-def _middles(room: Room) -> list[tuple[float, float]]:
-    """The middles of the parts of a room [m]."""
+def lamp_places(room: Room) -> list[tuple[float, float]]:
+    """Where lamps hang under the ceiling: in the middles of the parts of a room [m]."""
     (x, y), walls = room.size, room.partitions
     across = [sorted([0.0, length, *(p.at for p in walls if p.axis == axis)]) for axis, length in (("y", x), ("x", y))]
     xs, ys = ([(low + high) / 2 for low, high in itertools.pairwise(ends)] for ends in across)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Annotated, Any
 
 import tyro
 
+from hazard_ms.asset_commands import AssetCommand
 from hazard_ms.order import Order
+from hazard_ms.scene_commands import SceneCommand
 
 
 def doctor(json: bool = False, draw: bool = True) -> int:
@@ -58,33 +59,14 @@ def bench(
     return 0
 
 
-def scenes(split: str = "") -> int:
-    """List the scenes of a split, or of all splits.
-
-    Args:
-        split: Name of a split; empty for all.
-    """
-    from hazard_ms.scenes.splits import scene, scene_names, split_names
-
-    for name in (split,) if split else split_names():
-        for each in scene_names(name):
-            spec = scene(each)
-            targets = ", ".join(f"{sum(t.category == c for t in spec.targets)} {c}" for c in spec.target_categories)
-            print(f"{name:6s} {each:16s} {len(spec.bodies):3d} things, {len(spec.fires)} fires; targets: {targets}")
-    return 0
+def scenes(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[SceneCommand]]) -> int:
+    """Scenes: list, make, show, check, import."""
+    return int(done)
 
 
-def sheet(out: Annotated[Path, tyro.conf.arg(aliases=["-o"])] = Path("sheet.png")) -> int:
-    """Render all assets into one picture.
-
-    Args:
-        out: File to write.
-    """
-    from hazard_ms.contact_sheet import save_sheet as draw
-
-    draw(out)
-    print(f"contact sheet: {out.resolve()}")
-    return 0
+def assets(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[AssetCommand]]) -> int:
+    """Models: add your own, list, remove, draw them all."""
+    return int(done)
 
 
 def play(order: tyro.conf.OmitArgPrefixes[Order]) -> int:
@@ -100,7 +82,7 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "play": play,
     "bench": bench,
     "scenes": scenes,
-    "sheet": sheet,
+    "assets": assets,
 }
 
 

@@ -40,6 +40,12 @@ def needs_pictures(mode: str | None) -> bool:
     return mode is not None and mode not in PLAIN_MODES[:3]
 
 
+def check_renderer(mode: str | None, chosen: str | None) -> None:
+    """Raise ValueError where observations of `mode` are drawn and the renderer `chosen` is none."""
+    if chosen in ("none", None) and needs_pictures(mode):
+        raise ValueError(f"obs_mode {mode!r} needs a renderer, and there is none; allowed without: {', '.join(PLAIN_MODES[:3])}")
+
+
 def finite(obs: Any) -> Any:
     """`obs` with 0 for what is not finite: a broken simulation must not reach a learner."""
     if isinstance(obs, dict):

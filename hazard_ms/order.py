@@ -28,6 +28,8 @@ class Order:
     """Split from which the seed chooses the scene."""
     physics: str = "paper"
     """Preset of the hazards."""
+    robot: Annotated[str, tyro.conf.arg(aliases=["-r"])] = "fetch"
+    """The rescuer: fetch or g1."""
     affects_agent: bool = False
     """Whether the hazards act on the robot."""
     video: Path | None = None
@@ -47,13 +49,14 @@ class Order:
     @property
     def settings(self) -> dict[str, Any]:
         """Keywords of gym.make that change the episode."""
-        return {"split": self.split, "physics": self.physics, "affects_agent": self.affects_agent}
+        return {"split": self.split, "physics": self.physics, "robot_uids": self.robot, "affects_agent": self.affects_agent}
 
     @property
     def command(self) -> str:
         """That plays it again."""
         words = ["hazard-ms", "play", "-e", self.env_id, "--agent", self.agent, "-s", str(self.seed)]
         words += ["--split", self.split, "--physics", self.physics]
+        words += ["--robot", self.robot] if self.robot != "fetch" else []
         words += ["--affects-agent"] if self.affects_agent else []
         words += [] if self.scene is None else ["--scene", self.scene]
         return shlex.join(words)

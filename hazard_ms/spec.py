@@ -144,4 +144,4 @@ class Task:
     @property
     def all_scenes(self) -> tuple[str, ...]:
         """Names of the scenes of all splits."""
-        return tuple(name for split in self.splits for name in self.scenes(split))
+        return tuple(dict.fromkeys(name for split in self.splits for name in self.scenes(split)))

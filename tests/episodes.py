@@ -53,10 +53,11 @@ def main() -> None:
     parser.add_argument("--env-id", default="HazardFire-v1")
     parser.add_argument("--steps", type=int, default=300)
     parser.add_argument("--physics", default="paper")
+    parser.add_argument("--robot", default="fetch")
     parser.add_argument("seeds", type=int, nargs="+")
     args = parser.parse_args()
     torch.set_num_threads(1)
-    env = gym.make(args.env_id, obs_mode="state", render_backend="none", physics=args.physics)
+    env = gym.make(args.env_id, obs_mode="state", render_backend="none", physics=args.physics, robot_uids=args.robot)
     print(json.dumps({str(s): episode(env, s, args.steps) for s in args.seeds}))
 
 

@@ -20,7 +20,7 @@ from hazard_ms.catalogue import CATEGORIES, FIRE_POOL
 
 FREE = {"CC0-1.0", "CC-BY-3.0", "CC-BY-3.0-US", "CC-BY-4.0", "own work"}
 CREDITED = {"CC-BY-3.0", "CC-BY-3.0-US", "CC-BY-4.0"}
-MADE = ("models", "hulls", "textures")
+MADE = ("models", "hulls", "textures", "skies")
 MOST_FACES = {"object": 6000, "fixture": 8200, "structure": 8200}
 WHOLE_SET = 25e6  # bytes in all, at most
 HULL_SLACK = 0.005  # a collision shape may stand out of the model so far [m]

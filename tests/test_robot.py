@@ -1,20 +1,26 @@
-"""The robot: its speed limits, its collisions, its camera, its kinematics, against the benchmark's rules and the simulator."""
+"""The robots: their speed limits, collisions, cameras, kinematics, against the benchmark's rules and the simulator."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
+import sapien
 import torch
 from mani_skill.agents.robots.fetch import Fetch
+from mani_skill.agents.robots.unitree_g1.g1_upper_body import UnitreeG1UpperBodyWithHeadCamera
 
 from hazard_ms.robots import ROBOTS, robot_uid
 from tests.arena import Arena, Box
 
 WALK = 1.0 / 62.0  # m per frame (benchmark rules 1)
 TURN = np.deg2rad(6.0)  # rad per frame (benchmark rules 1)
-BASE = 0.26  # half the width of Fetch's base hull at its narrowest [m] (URDF: 0.264)
+BASE = {"fetch": 0.26, "g1": 0.19}  # half the width of what meets furniture, at its narrowest [m] (Fetch's URDF: 0.264; G1's feet: 0.15)
+WIDEST = 0.32  # and at its widest, with the play of a contact [m]
+NATIVE = {"fetch": Fetch, "g1": UnitreeG1UpperBodyWithHeadCamera}
 
 BOXES = (
     Box("wall", (1.5, 0.0, 0.5), (0.2, 6.0, 1.0)),
@@ -25,9 +31,13 @@ BOXES = (
 )
 
 
-@pytest.fixture(scope="module", params=[(120, 30), (100, 100)], ids=["30Hz", "100Hz"])
+RATES = {"30Hz": (120, 30), "100Hz": (100, 100)}
+
+
+@pytest.fixture(scope="module", params=[(robot, rate) for robot in ROBOTS for rate in RATES], ids="-".join)
 def arena(request: pytest.FixtureRequest) -> Iterator[Arena]:
-    made = Arena(BOXES, request.param)
+    robot, rate = request.param
+    made = Arena(BOXES, RATES[rate], robot=robot)
     yield made
     made.close()
 
@@ -65,7 +75,7 @@ def test_turning_speed_is_the_limit_per_frame_on_the_spot(arena: Arena) -> None:
 def test_fixed_things_stop_it(arena: Arena, heading: float, axis: int, stop: float) -> None:
     arena.restart(heading=heading)
     track = drive(arena, 150, forward=WALK)
-    assert stop - 0.32 < track[-1, axis] < stop - BASE
+    assert stop - WIDEST < track[-1, axis] < stop - BASE[arena.robot]
     assert np.linalg.norm(np.diff(track[:, :2], axis=0), axis=1).max() < 1.05 * WALK
     spin = drive(arena, 60, forward=WALK, turn=TURN)
     assert np.linalg.norm(np.diff(spin[:, :2], axis=0), axis=1).max() < 2.0 * WALK
@@ -76,27 +86,63 @@ def test_it_pushes_light_things_without_flinging_them_through_walls(arena: Arena
     drive(arena, 150, forward=WALK)
     bag = arena.world.position[0, arena.index("bag")]
     assert -1.95 < float(bag[1]) < -1.1
-    assert arena.agent.base()[1] > -2.0 + BASE
+    assert arena.agent.base()[1] > -2.0 + BASE[arena.robot]
 
 
 def test_it_does_not_climb_what_lies_on_the_floor(arena: Arena) -> None:
     arena.restart(heading=np.pi)
+    before = lowest(arena)
+    assert 0.005 < before < 0.03  # above a pen, which is 8 mm thick, or pushing it
     drive(arena, 80, forward=WALK)
-    assert float(arena.agent.base_link.pose.p[0, 2]) == pytest.approx(0.01, abs=1e-3)
+    assert lowest(arena) == pytest.approx(before, abs=1e-3)
     assert abs(arena.agent.base()[0] + 80 * WALK) < 0.1
+
+
+def hulls(arena: Arena) -> Iterator[tuple[str, np.ndarray]]:
+    """Name of every link that collides, and points of its hull [m], [P, 3]."""
+    for link in arena.agent.robot.links:
+        for shape in link._objs[0].collision_shapes:
+            pose = (link._objs[0].entity_pose * shape.local_pose).to_transformation_matrix()
+            points = np.asarray(shape.vertices) * shape.scale if hasattr(shape, "vertices") else outline(shape)
+            yield link.name, points @ pose[:3, :3].T + pose[:3, 3]
+
+
+def outline(shape: Any) -> np.ndarray:
+    """The rims of a cylinder, whose axis is x, or the corners of a box [m], [P, 3]."""
+    if hasattr(shape, "half_size"):
+        return np.array(list(itertools.product(*([-h, h] for h in shape.half_size))))
+    around = np.linspace(0.0, 2.0 * np.pi, 32)
+    rim = np.stack([np.ones_like(around), np.cos(around), np.sin(around)], axis=1) * (shape.half_length, shape.radius, shape.radius)
+    return np.vstack([rim, rim * (-1.0, 1.0, 1.0)])
+
+
+def lowest(arena: Arena) -> float:
+    """Height of the robot's lowest point, wheels left out: they touch nothing [m]."""
+    return min(float(points[:, 2].min()) for name, points in hulls(arena) if "wheel" not in name)
 
 
 def test_tucked_it_fits_into_its_radius_below_its_camera(arena: Arena) -> None:
     arena.restart()
     highest = 0.0
-    for link in arena.agent.robot.links:
-        for shape in link._objs[0].collision_shapes:
-            pose = (link._objs[0].entity_pose * shape.local_pose).to_transformation_matrix()
-            points = (np.asarray(shape.vertices) * shape.scale) @ pose[:3, :3].T + pose[:3, 3]
-            assert np.hypot(points[:, 0], points[:, 1]).max() < arena.agent.build.radius, link.name
-            if "head" not in link.name and "torso" not in link.name:
-                highest = max(highest, float(points[:, 2].max()))
-    assert highest < float(arena.agent.head_camera_link.pose.p[0, 2]) - 0.1
+    for name, points in hulls(arena):
+        assert np.hypot(points[:, 0], points[:, 1]).max() < arena.agent.build.radius, name
+        if "head" not in name and "torso" not in name:
+            highest = max(highest, float(points[:, 2].max()))
+    assert highest < eyes(arena)[0][2] - 0.1
+
+
+def eyes(arena: Arena) -> tuple[np.ndarray, np.ndarray]:
+    """Where the head camera is [m] and the way it looks, [3] each."""
+    (camera,) = arena.agent._sensor_configs
+    pose = arena.agent.robot.links_map[camera.entity_uid].pose.sp * camera.pose.sp
+    return pose.p, pose.to_transformation_matrix()[:3, 0]
+
+
+def test_it_looks_ahead_and_down_from_its_head(arena: Arena) -> None:
+    arena.restart(heading=0.0)
+    place, way = eyes(arena)
+    assert 1.0 < place[2] < 1.3 and np.hypot(place[0], place[1]) < arena.agent.build.radius
+    assert way[0] > 0.8 and abs(way[1]) < 1e-3 and -np.sin(np.deg2rad(31.0)) < way[2] < -np.sin(np.deg2rad(15.0))
 
 
 def test_arm_does_not_sag(arena: Arena) -> None:
@@ -110,23 +156,29 @@ def test_arm_does_not_sag(arena: Arena) -> None:
 def test_kinematics_agree_with_the_simulator_and_with_finite_differences(arena: Arena) -> None:
     arena.restart(-1.0, 0.3, 0.7)
     agent = arena.agent
-    for posture in (agent.tucked, *agent.stretched):
-        joints = agent.robot.get_qpos().clone()
-        joints[0, agent._arm] = torch.as_tensor(posture, dtype=joints.dtype)
-        agent.robot.set_qpos(joints)
-        hand, turn, jacobian = agent.kinematics(posture)
+    for posture in (agent.tucked, agent.folded, *agent.stretched):
+        for _ in range(60):
+            arena.step(agent.action(0.0, 0.0, posture, True))
+        arm = agent.arm()
+        assert np.abs(arm - posture).max() < 0.05
+        hand, turn, jacobian = agent.kinematics(arm)
         np.testing.assert_allclose(hand, agent.hand(), atol=1e-4)
-        np.testing.assert_allclose(turn, agent.tcp.pose.to_transformation_matrix()[0, :3, :3].numpy(), atol=1e-4)
-        for j in range(len(posture)):
-            step = np.zeros(len(posture))
+        np.testing.assert_allclose(turn, rotation_matrix(agent.gripper_pose()[1]), atol=1e-4)
+        for j in range(len(arm)):
+            step = np.zeros(len(arm))
             step[j] = 1e-3
-            difference = (agent.kinematics(posture + step)[0] - agent.kinematics(posture - step)[0]) / 2e-3
+            difference = (agent.kinematics(arm + step)[0] - agent.kinematics(arm - step)[0]) / 2e-3
             np.testing.assert_allclose(jacobian[:3, j], difference, atol=2e-3)
 
 
+def rotation_matrix(quaternion: torch.Tensor) -> np.ndarray:
+    """Of the first of `quaternion`, w x y z."""
+    return sapien.Pose(q=quaternion[0].numpy()).to_transformation_matrix()[:3, :3]
+
+
 def test_every_control_mode_of_the_native_robot_is_there(arena: Arena) -> None:
-    native = set(Fetch._controller_configs.fget(arena.agent))
-    assert native == set(arena.agent.supported_control_modes) and len(native) == 12
+    native = set(NATIVE[arena.robot]._controller_configs.fget(arena.agent))
+    assert native == set(arena.agent.supported_control_modes) and len(native) == {"fetch": 12, "g1": 2}[arena.robot]
     assert np.isfinite(arena.agent.single_action_space.low).all()
 
 
@@ -163,6 +215,6 @@ def test_actions_of_skills_need_their_control_mode(arena: Arena) -> None:
 
 
 def test_robots_are_found_by_their_name() -> None:
-    assert robot_uid("fetch") == ROBOTS["fetch"].uid
-    with pytest.raises(ValueError, match="'spot'.*fetch"):
+    assert {robot_uid(name) for name in ("fetch", "g1")} == {kind.uid for kind in ROBOTS.values()}
+    with pytest.raises(ValueError, match="'spot'.*fetch, g1"):
         robot_uid("spot")

@@ -4,27 +4,35 @@ from __future__ import annotations
 
 import collections
 import dataclasses
-import hashlib
 import math
-import subprocess
-import sys
 import time
 
 import numpy as np
 import pytest
 
 from hazard_ms.assets import asset
-from hazard_ms.catalogue import CATEGORIES, FIRE_POOL
+from hazard_ms.catalogue import CATEGORIES, FIRE_POOL, NEW_OBJECTS
 from hazard_ms.scenes.draw import Draw
 from hazard_ms.scenes.floor import CELL, free_floor, path, steps_from
+from hazard_ms.scenes.indoor import generate
 from hazard_ms.scenes.rooms import KITCHEN_A
 from hazard_ms.scenes.schema import check, to_json
 from hazard_ms.scenes.shell import shell
-from hazard_ms.scenes.splits import all_scene_names, generate, scene, scene_names
+from hazard_ms.scenes.splits import all_scene_names, families, scene, scene_names, split_names
 from hazard_ms.spec import Body, Fixture, Opening, Room, SceneSpec
 from hazard_ms.tasks import TASKS
 
 NAMES = all_scene_names()
+SPLITS = {
+    "train": ("kitchen_a", "living_room_a", "craft_room_a"),
+    "test": ("kitchen_b",),
+    "large": ("flat_a",),
+    "new_objects": ("kitchen_b_new",),
+}
+SAMPLE = tuple(name for name in NAMES if name[-2:] in ("00", "17"))
+EACH = pytest.mark.parametrize("name", [n if n in SAMPLE else pytest.param(n, marks=pytest.mark.long) for n in NAMES])
+WIDE = tuple(name for name in NAMES if int(name[-2:]) % 5 == 0)  # where many scenes are looked at together
+BODIES = 60
 
 
 def corners(thing: Body | Fixture) -> np.ndarray:
@@ -69,7 +77,7 @@ def standing_on(spec: SceneSpec, body: Body) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("name", NAMES)
+@EACH
 def test_nothing_touches(name: str) -> None:
     spec = scene(name)
     things = [*spec.fixtures, *spec.bodies]
@@ -87,35 +95,42 @@ def test_nothing_touches(name: str) -> None:
         w, d = spec.room.size
         low, high = p.min(0), p.max(0)
         assert (low >= [0.0, 0.0, -1e-9]).all() and (high <= [w, d, spec.room.height]).all(), a.name
+        for wall in spec.room.partitions:
+            assert wall.axis == "y"
+            assert high[0] <= wall.at - wall.thickness / 2 or low[0] >= wall.at + wall.thickness / 2, f"{a.name} stands in a wall"
 
 
-@pytest.mark.parametrize("name", NAMES)
+@EACH
 def test_what_a_scene_holds(name: str) -> None:
     spec = scene(name)
     check(spec)
     solid = [f for f in spec.fixtures if asset(f.asset).extent[2] > 0.03]
-    assert len(solid) >= 8 and 20 <= len(spec.bodies) <= 40
-    assert len({b.category for b in spec.bodies}) >= 10
-    assert {b.category for b in spec.bodies} <= set(FIRE_POOL)
+    assert len(solid) >= 12 and len(spec.bodies) == BODIES
+    assert len({b.category for b in spec.bodies}) >= 15
     assert len(spec.target_categories) == 4 and 5 <= len(spec.targets) <= 20
     assert {b.category for b in spec.targets} == set(spec.target_categories)
+    pool = NEW_OBJECTS if spec.split == "new_objects" else FIRE_POOL
+    assert set(spec.target_categories) <= set(pool)
+    if spec.split != "new_objects":
+        assert not {b.category for b in spec.bodies} & set(NEW_OBJECTS), "new objects are new"
     kinds = [CATEGORIES[c] for c in spec.target_categories]
     assert {k.value for k in kinds} == {1, 5} and {k.flammable for k in kinds} == {True, False}
+    assert spec.flood_side in ("south", "east", "north", "west") and spec.wind == (0.0, 0.0)
     floor = sum(b.position[2] < 0.1 for b in spec.bodies)
-    assert 3 <= floor <= len(spec.bodies) - 3, "some things stand on the floor, some on furniture"
+    assert 6 <= floor <= len(spec.bodies) - 6, "some things stand on the floor, some on furniture"
     assert all(t.rotation[1] == t.rotation[2] == 0.0 for t in (*spec.bodies, *spec.fixtures)), "all stand upright"
     names = collections.Counter(t.name for t in (*spec.bodies, *spec.fixtures))
     assert max(names.values()) == 1
 
 
-@pytest.mark.parametrize("name", NAMES)
+@EACH
 def test_every_body_rests_on_something(name: str) -> None:
     spec = scene(name)
     for body in spec.bodies:
         assert standing_on(spec, body), f"{body.name} hangs at {body.position}"
 
 
-@pytest.mark.parametrize("name", NAMES)
+@EACH
 def test_every_target_can_be_reached(name: str) -> None:
     """From the start, by a disc of 0.3 m over free floor, to within 0.75 m of the target, which is at a height of 0 to 1.1 m."""
     spec = scene(name)
@@ -136,13 +151,17 @@ def test_every_target_can_be_reached(name: str) -> None:
         assert 0.0 <= body.position[2] <= 1.1 and body.position[2] + asset(body.asset).extent[2] / 2 <= 1.11, body.name
 
 
-@pytest.mark.parametrize("name", NAMES)
+@EACH
 def test_free_floor_is_free(name: str) -> None:
     """Against distances to boxes, sampled densely along their outlines."""
     spec = scene(name)
     free = free_floor(spec, 0.3)
     x, y = (np.argwhere(free).T + 0.5) * CELL
     assert x.min() >= 0.3 - 1e-9 and y.max() <= spec.room.size[1] - 0.3 + 1e-9
+    for wall, way in ((p, o) for p in spec.room.partitions for o in spec.room.openings if o.wall == p.name):
+        from_wall = np.maximum(np.abs(x - wall.at) - wall.thickness / 2, 0)
+        from_opening = np.maximum(way.width / 2 - np.abs(y - way.centre), 0)  # sideways, to the nearest piece of the wall
+        assert np.hypot(from_wall, from_opening).min() >= 0.3 - 1e-6 and (from_wall == 0).any(), "only the doorway leads through"
     for thing in (*spec.fixtures, *spec.bodies):
         if isinstance(thing, Fixture) and (asset(thing.asset).extent[2] < 0.03 or thing.position[2] > 1.3):
             continue  # rugs are driven over; cupboards and pictures hang above the robot
@@ -168,7 +187,7 @@ def detour(spec: SceneSpec, fire: tuple[float, float]) -> float:
     return min(direct[flame] + onward[e] - direct[e] for e in ends) * CELL
 
 
-@pytest.mark.parametrize("name", NAMES)
+@EACH
 def test_agent_and_fires_have_their_distance(name: str) -> None:
     spec = scene(name)
     roomy, start = free_floor(spec, 0.5), spec.agent_start.position
@@ -185,20 +204,50 @@ def test_agent_and_fires_have_their_distance(name: str) -> None:
 
 
 def test_scenes_differ() -> None:
-    specs = [scene(n) for n in NAMES]
-    assert len({to_json(dataclasses.replace(s, name="x", split="x")) for s in specs}) == len(specs) == 25
-    assert len({s.target_categories for s in specs}) >= 15
+    specs = [scene(n) for n in WIDE]
+    assert len({to_json(dataclasses.replace(s, name="x", split="x")) for s in specs}) == len(specs) == 30
+    assert len({s.target_categories for s in specs}) >= 27
     assert len({len(s.fires) for s in specs}) == 3
-    assert {s.room.openings[-1].wall for s in specs} == {"south", "north"}, "rooms are mirrored"
-    assert len({b.category for s in specs for b in s.targets}) >= 12
-    assert len({len(s.bodies) for s in specs}) == 1, "scenes of one room share a batch"
+    assert {s.room.openings[2].wall for s in specs if s.name.startswith("kitchen_a")} == {"south", "north"}, "rooms are mirrored"
+    assert {b.category for s in specs if s.split != "new_objects" for b in s.targets} >= set(FIRE_POOL[:8])
+    assert len({len(s.bodies) for s in specs}) == 1, "all scenes share batches"
+    for places in SPLITS.values():
+        for place in places:
+            mine = [s for s in specs if s.name.split("/")[0] == place]
+            assert len({(s.room.floor, s.room.wall) for s in mine}) >= 3 and len({s.room.size for s in mine}) >= 3, place
+
+
+def test_water_comes_sooner_from_walls_with_openings() -> None:
+    """A wall with an opening is 4 times as likely as one without: within 4 sigma of a sum of 30 different coins."""
+    specs = [scene(n) for n in WIDE]
+    leaky = [{o.wall for o in s.room.openings} & {"north", "south", "east", "west"} for s in specs]
+    chance = np.array([4 * len(walls) / (4 * len(walls) + 4 - len(walls)) for walls in leaky])
+    found = sum(s.flood_side in walls for s, walls in zip(specs, leaky, strict=True))
+    assert abs(found - chance.sum()) <= 4 * math.sqrt((chance * (1 - chance)).sum())
+    assert {s.flood_side for s in specs} == {"north", "south", "east", "west"}
+
+
+def test_large_scenes_are_two_rooms_with_twice_the_floor() -> None:
+    area = {n: math.prod(scene(n).room.size) for n in WIDE}
+    largest = max(a for n, a in area.items() if not n.startswith("flat_a"))
+    for name in (n for n in WIDE if n.startswith("flat_a")):
+        spec = scene(name)
+        assert area[name] >= 2 * largest
+        (wall,), (way,) = spec.room.partitions, [o for o in spec.room.openings if o.kind == "doorway"]
+        assert way.wall == wall.name and way.width >= 1.0 and way.height >= 2.0
+        for box in (corners(f) for f in spec.fixtures):  # keeps clear of the way on both sides
+            off = max(box[:, 0].min() - wall.at, wall.at - box[:, 0].max())
+            assert off >= 0.9 or box[:, 1].min() >= way.centre + 0.6 or box[:, 1].max() <= way.centre - 0.6 or box[:, 2].max() < 0.03
+        sides = {thing.position[0] < wall.at for thing in spec.bodies}
+        assert sides == {True, False}
+        assert all(math.dist(fire, (wall.at, way.centre)) >= 0.8 for fire in spec.fires), "no fire shuts the only way"
 
 
 def test_doors_and_windows_stay_free() -> None:
-    for name in NAMES:
+    for name in WIDE:
         spec = scene(name)
         for o in spec.room.openings:
-            for f in spec.fixtures:
+            for f in spec.fixtures if o.kind != "doorway" else ():
                 p = corners(f)
                 across, along = (1, 0) if o.wall in ("south", "north") else (0, 1)
                 depth = p[:, across].min() if o.wall in ("south", "west") else spec.room.size[across] - p[:, across].max()
@@ -207,21 +256,15 @@ def test_doors_and_windows_stay_free() -> None:
                 assert not near or beside or p[:, 2].max() <= max(o.sill, 0.03), f"{name}: {f.name} before a {o.kind}"
 
 
-def test_the_same_name_gives_the_same_bytes_in_another_process() -> None:
-    code = "import hashlib; from hazard_ms.scenes.schema import to_json; from hazard_ms.scenes.splits import *\n"
-    code += "print(hashlib.sha256(''.join(to_json(scene(n)) for n in reversed(scene_names('test'))).encode()).hexdigest())"
-    there = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    scene.cache_clear()
-    here = hashlib.sha256("".join(to_json(scene(n)) for n in reversed(scene_names("test"))).encode()).hexdigest()
-    assert there == here + "\n"
-
-
 def test_splits() -> None:
-    assert scene_names("train") == tuple(f"kitchen_a/{n:02d}" for n in range(20))
-    assert scene_names("test") == tuple(f"kitchen_a/{n:02d}" for n in range(20, 25))
-    assert scene("kitchen_a/21").split == "test" and scene("kitchen_a/01").split == "train"
+    assert families()[0] == "indoor" and split_names() == tuple(SPLITS)
+    for split, places in SPLITS.items():
+        assert scene_names(split) == tuple(f"{place}/{n:02d}" for place in places for n in range(25))
+        assert all(scene(n).split == split and scene(n).name == n for n in scene_names(split)[:3])
     with pytest.raises(ValueError, match="no split is called 'validation'; there are train, test"):
         scene_names("validation")
+    with pytest.raises(ValueError, match="no family of scenes is called 'space'; there are indoor"):
+        scene_names("train", "space")
     for bad in ("kitchen_a/25", "kitchen_a/7", "attic/00", "", "kitchen_a/../../etc"):
         with pytest.raises(ValueError, match="kitchen_a/00 to kitchen_a/24"):
             scene(bad)
@@ -231,15 +274,16 @@ def test_building_a_scene_is_quick() -> None:
     scene.cache_clear()
     scene(NAMES[0])
     spent = []
-    for name in NAMES[1:8]:
+    for name in SAMPLE[1:]:
         before = time.process_time()
         scene(name)
         spent.append(time.process_time() - before)
-    assert np.median(spent) < 0.3, spent
+    assert np.median(spent) < 0.3 and max(spent) < 1.2, spent
 
 
 def test_a_room_too_small_is_refused_not_searched_for_ever() -> None:
-    closet = dataclasses.replace(KITCHEN_A, name="closet", width=(2.0, 2.1), depth=(2.0, 2.1))
+    small = dataclasses.replace(KITCHEN_A.parts[0], width=(2.0, 2.1))
+    closet = dataclasses.replace(KITCHEN_A, name="closet", parts=(small,), depth=(2.0, 2.1))
     with pytest.raises(ValueError, match="closet.*could not be laid out in 60 attempts"):
         generate(closet, "closet/00", "train")
 
@@ -297,7 +341,7 @@ def test_the_shell_keeps_to_its_openings() -> None:
 
 def test_the_task_plays_in_these_scenes() -> None:
     task = TASKS["HazardFire-v1"]("shipped")
-    assert task.splits == ("train", "test") and task.all_scenes == NAMES and task.max_frames == 1500
+    assert task.splits == tuple(SPLITS) and task.all_scenes == NAMES and task.max_frames == 1500
     assert task.build("kitchen_a/02") == scene("kitchen_a/02")
     assert [h.name for h in task.hazards] == ["fire"] and task.safe_place == "bag"
     with pytest.raises(ValueError, match="no preset of physics is called 'lunar'"):

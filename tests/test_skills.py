@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import torch
 
+from hazard_ms.robots import ROBOTS
 from hazard_ms.skills import failures
 from hazard_ms.skills.actions import explore, skill, stop
 from hazard_ms.skills.arm import reach_for
@@ -36,12 +37,13 @@ BOXES = (
     Box("book", (0.0, -2.0, 0.02), (0.2, 0.3, 0.04), 0.5, target=False),
     Box("far", (-3.5, 3.0, 0.1), (0.1, 0.1, 0.2), 0.2),
 )
+HALF = {"fetch": 0.26, "g1": 0.19}  # of the width of what meets furniture, at its narrowest (Fetch's URDF: 0.264; G1's feet: 0.15) [m]
 REACHABLE = ("mug", "deep", "bowl", "pen", "pack", "top")
 
 
-@pytest.fixture(scope="module")
-def arena() -> Iterator[Arena]:
-    made = Arena(BOXES)
+@pytest.fixture(scope="module", params=ROBOTS)
+def arena(request: pytest.FixtureRequest) -> Iterator[Arena]:
+    made = Arena(BOXES, robot=request.param)
     yield made
     made.close()
 
@@ -92,7 +94,7 @@ def test_move_by_moves_by_that_distance(fresh: Arena, distance: float) -> None:
 def test_move_by_tells_that_it_is_blocked(fresh: Arena) -> None:
     result = fresh.run(move_by(fresh.stage, 2.0))
     assert result.reason == failures.BLOCKED and result.frames < 100
-    assert fresh.agent.base()[0] < 1.1 - 0.26
+    assert fresh.agent.base()[0] < 1.1 - HALF[fresh.robot]
 
 
 def test_a_budget_is_never_exceeded(fresh: Arena) -> None:
@@ -105,7 +107,7 @@ def test_drive_backs_off_and_remembers_what_it_ran_into(fresh: Arena) -> None:
     fresh.map._firm[:] = 0.0  # the table is not on the map
     result = fresh.run(drive(fresh.stage, np.array([[2.5, 0.0]]), 200))
     assert result.reason == failures.BLOCKED and result.frames < 130
-    assert fresh.agent.base()[0] < 0.75
+    assert fresh.agent.base()[0] < 1.1 - HALF[fresh.robot] - 0.1  # it backs off by 0.15 m
     bump = fresh.stage.bumps[-1]
     assert 0.9 < bump[0] < 1.4 and abs(bump[1]) < 0.2
     assert fresh.stage.obstacles().max() == 1.0

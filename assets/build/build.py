@@ -16,11 +16,13 @@ from typing import Any
 import numpy as np
 import trimesh
 
+import carried_things
 import carts
 import collide
 import convert
 import greenery
 import ground_patterns
+import household_things
 import houses
 import indoor_things
 import large_things
@@ -40,7 +42,7 @@ US = "the authors of hazard_ms"
 FACES = {"object": 3000, "fixture": 5000}  # at most
 PIXELS = {"object": 256, "fixture": 512}  # of a texture, longest edge, at most
 SNAP = 0.04  # a support's height may differ so much from the level found on the model [m]
-OURS = (small_things, large_things, indoor_things, carts, houses, outdoor_things, greenery)
+OURS = (small_things, large_things, carried_things, household_things, indoor_things, carts, houses, outdoor_things, greenery)
 MAKERS = {name: make for module in OURS for name, make in module.MAKERS.items()}
 TEXTURES = {  # names of materials in hazard_ms/scenes/shell.py
     "wood": patterns.planks,

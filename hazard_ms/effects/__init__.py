@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any, Protocol
 
 import sapien
 from torch import Tensor
 
+from hazard_ms.effects import shader_pack
+from hazard_ms.effects.entities import draws
 from hazard_ms.effects.fire_effects import FireEffects
+from hazard_ms.effects.flood_effects import FloodEffects
 from hazard_ms.effects.shader_pack import shader_config
+from hazard_ms.effects.surroundings import Surroundings
+from hazard_ms.effects.wind_effects import WindEffects
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.spec import SceneSpec
 from hazard_ms.world import World
+
+
+MAKERS: dict[str, Any] = {"fire": FireEffects, "wind": WindEffects, "flood": FloodEffects}  # by hazard; what is drawn later hides less
 
 
 class Effects(Protocol):
@@ -21,7 +30,9 @@ class Effects(Protocol):
         """Show `world` and the hazard's `state` at `frame` [E]: same input, same pixels. It changes nothing but the picture."""
 
 
-MAKERS: dict[str, Any] = {"fire": FireEffects}  # by the name of the hazard
+def fills(hazard: Hazard) -> bool:
+    """Whether a hazard shows in the space between things: as water, haze or a layer of smoke."""
+    return hazard.name in ("flood", "wind") or "smoke_density" in {f.name for f in dataclasses.fields(hazard.state_type)}
 
 
 class Looks:
@@ -31,12 +42,20 @@ class Looks:
         self, hazards: tuple[Hazard, ...], scenes: list[sapien.Scene], specs: tuple[SceneSpec, ...], world: World, mode: str
     ) -> None:
         """Effects of `mode` (full, fast, off) for `scenes` in which the things of `specs` stand."""
-        self._parts: dict[str, Effects] = {h.name: MAKERS[h.name].build(scenes, specs, world, mode) for h in hazards if h.name in MAKERS}
+        shader_config(mode)
+        present = {h.name for h in hazards}
+        filled = shader_pack.available(mode) and all(draws(s) for s in scenes) and any(fills(h) for h in hazards)
+        self._around = [Surroundings(*row) for row in zip(scenes, specs, strict=True)] if filled else []
+        self._parts: dict[str, Effects] = {
+            name: maker.build(scenes, specs, world, mode, self._around) for name, maker in MAKERS.items() if name in present
+        }
 
     def update(self, world: World, states: dict[str, Any], frame: Tensor) -> None:
         """Show the hazards' `states` at `frame` [E]; to be called before a picture is taken."""
         for name, part in self._parts.items():
             part.update(world, states[name], frame)
+        for around in self._around:
+            around.show()
 
 
 __all__ = ["Effects", "FireEffects", "Looks", "shader_config"]

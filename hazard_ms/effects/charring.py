@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import sapien
-from sapien.render import RenderBodyComponent, RenderMaterial, RenderShapeTriangleMesh
 
 from hazard_ms.hazards.fire import BURNING, BURNT, FireState
 
@@ -21,10 +19,3 @@ def char_codes(fire: FireState, times: np.ndarray) -> np.ndarray:
     pulse = 0.72 + 0.2 * np.sin(5.0 * times[:, None] + 2.4 * np.arange(status.shape[1]))
     code = 1.0 + np.floor(255.0 * charred) + np.where(status == BURNING, pulse, 0.0)
     return np.where(charred > 1.0 / 255.0, code, 0.0)
-
-
-def materials(entity: sapien.Entity) -> list[RenderMaterial]:
-    """Materials of all that is drawn of `entity`."""
-    body = entity.find_component_by_type(RenderBodyComponent)
-    shapes = body.render_shapes if body else []
-    return [m for s in shapes for m in ([p.material for p in s.parts] if isinstance(s, RenderShapeTriangleMesh) else [s.material])]

@@ -7,25 +7,25 @@ the world, the fire and the frame alone: the same state gives the same pixels, w
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
 import sapien
-from sapien.render import RenderBodyComponent, RenderMaterial, RenderPointLightComponent, RenderShapeTriangleMesh
+from sapien.render import RenderMaterial, RenderPointLightComponent, RenderShapeTriangleMesh
 from torch import Tensor
 
 from hazard_ms.effects import meshes, shader_pack
-from hazard_ms.effects.charring import char_codes, materials
+from hazard_ms.effects.charring import char_codes
+from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, draws, entities_of, make_effect, materials, seed
 from hazard_ms.effects.glsl import SMOKE_PERIOD
+from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.textures import noise_texture
 from hazard_ms.hazards.fire import FireState, body_flames, floor_flames
 from hazard_ms.hazards.spread import SCALE_LAST, roster_length
 from hazard_ms.spec import SceneSpec
 from hazard_ms.world import World
 
-FRAMES_PER_SECOND = 30.0  # of the animation, as videos play
 LONGEST = 1500  # frames of a fire, for which patches are made (benchmark.md 1)
 PATCH = 0.34  # edge of a burning patch of floor, more than its cell so that neighbours merge [m] [ours]
 MOST_PATCHES = 160  # flames on the floor that are shown at once; the oldest ones
@@ -38,66 +38,24 @@ LIGHT_HEIGHT = 1.1  # above the middle of all that burns [m] [ours]
 BRIGHTEST = 4.0  # of the light, however much burns [ours]
 
 
-@dataclass
-class _Effect:
-    """One effect entity with its own material."""
-
-    entity: sapien.Entity
-    material: RenderMaterial
-    seed: float
-    shown: bool = False
-
-    def show(self, pose: sapien.Pose, strength: float, time: float) -> None:
-        self.entity.set_pose(pose)
-        self.material.transmission = strength
-        self.material.transmission_roughness = time + 10.0 * self.seed
-        self.shown = True
-
-    def hide(self) -> None:
-        if self.shown:
-            self.entity.set_pose(_HIDDEN)
-            self.shown = False
-
-
-_HIDDEN = sapien.Pose([0.0, 0.0, meshes.NOWHERE])
-
-
 class _SceneFire:
     """The effects of one scene."""
 
     def __init__(self, scene: sapien.Scene, spec: SceneSpec, names: tuple[str, ...], patches: int, rich: bool) -> None:
         self.scene, self.noise = scene, noise_texture()
-        entities = _entities(scene, names)
+        entities = entities_of(scene, names)
         self.charred = [materials(e) for e in entities]
         self.codes = [0.0] * len(names)
         self.things = [self._effect(partial(meshes.thing_flames, e), k) for k, e in enumerate(entities)]
-        patch = [self._effect(partial(meshes.floor_flames, PATCH, _seed(k)), k) for k in range(patches)]
+        patch = [self._effect(partial(meshes.floor_flames, PATCH, seed(k)), k) for k in range(patches)]
         ceiling = spec.room.height - UNDER_CEILING
-        smoke = [self._effect(partial(meshes.smoke_column, ceiling, _seed(k)), k) for k in range(COLUMNS if rich else 0)]
+        smoke = [self._effect(partial(meshes.smoke_column, ceiling, seed(k)), k) for k in range(COLUMNS if rich else 0)]
         self.patches = [e for e in patch if e is not None]
         self.columns = [e for e in smoke if e is not None]
         self.light = _lamp(scene) if rich else None
 
-    def _effect(self, make: Callable[[RenderMaterial], RenderShapeTriangleMesh | None], number: int) -> _Effect | None:
-        """An effect with the mesh that `make(material)` gives; None where it gives none."""
-        material = RenderMaterial(base_color=[1.0, 1.0, 1.0, 1.0])
-        material.base_color_texture = self.noise
-        material.base_color = [1.0, 1.0, 1.0, 1.0]  # a texture is only seen after a scalar has been set (SAPIEN 3.0.3)
-        shape = make(material)
-        if shape is None:
-            return None
-        body = RenderBodyComponent()
-        body.attach(shape)
-        body.disable_render_id()
-        entity = sapien.Entity()
-        entity.name = f"effect_{number}"
-        entity.add_component(body)
-        entity.set_pose(_HIDDEN)
-        self.scene.add_entity(entity)
-        body.shading_mode = shader_pack.EFFECT_PASS
-        for node in body._internal_node.children:
-            node.cast_shadow = False  # nothing to cast, but each would cost a draw in every shadow map
-        return _Effect(entity, material, _seed(number))
+    def _effect(self, make: Callable[[RenderMaterial], RenderShapeTriangleMesh | None], number: int) -> Effect | None:
+        return make_effect(self.scene, self.noise, make, number)
 
     def show_things(self, pose: np.ndarray, strength: np.ndarray, time: float) -> None:
         """Flames on things. `pose` of their bases, [B, 7]; `strength` 0..1, [B]."""
@@ -153,17 +111,19 @@ class _SceneFire:
 class FireEffects:
     """What a fire looks like, in each of E scenes."""
 
-    def __init__(self, scenes: list[_SceneFire], mode: str, device: sapien.Device | None) -> None:
-        self._scenes, self._mode, self._device = scenes, mode, device
+    def __init__(self, scenes: list[_SceneFire], mode: str, device: sapien.Device | None, around: Sequence[Surroundings] = ()) -> None:
+        self._scenes, self._mode, self._device, self._around = scenes, mode, device, around
 
     @classmethod
-    def build(cls, scenes: list[sapien.Scene], specs: tuple[SceneSpec, ...], world: World, mode: str = "full") -> FireEffects:
+    def build(
+        cls, scenes: list[sapien.Scene], specs: tuple[SceneSpec, ...], world: World, mode: str = "full", around: Sequence[Surroundings] = ()
+    ) -> FireEffects:
         """Effects of `mode` (full; fast: without smoke and firelight; off) for `scenes` in which the things of `specs` stand.
 
         Without a renderer, or with a SAPIEN whose shaders are unknown, nothing is shown.
         """
         shader_pack.shader_config(mode)
-        if not all(_draws(s) for s in scenes):
+        if not all(draws(s) for s in scenes):
             return cls([], mode, None)
         device = scenes[0].render_system.device
         if not shader_pack.available(mode):
@@ -171,7 +131,7 @@ class FireEffects:
         lattices = max(1, *(len(spec.fires) for spec in specs))
         patches = min(roster_length(LONGEST, lattices), MOST_PATCHES)
         rows = zip(scenes, specs, world.names, strict=True)
-        return cls([_SceneFire(scene, spec, names, patches, mode == "full") for scene, spec, names in rows], mode, device)
+        return cls([_SceneFire(scene, spec, names, patches, mode == "full") for scene, spec, names in rows], mode, device, around)
 
     def update(self, world: World, fire: FireState, frame: Tensor) -> None:
         """Show `world` and `fire` at `frame` [E]. Call it before a picture is taken; it changes nothing but the picture."""
@@ -205,24 +165,3 @@ def _lamp(scene: sapien.Scene) -> RenderPointLightComponent:
     entity.add_component(light)
     scene.add_entity(entity)
     return light
-
-
-def _draws(scene: sapien.Scene) -> bool:
-    """Whether the scene has a renderer."""
-    try:
-        return scene.render_system is not None
-    except RuntimeError:  # SAPIEN's way of saying that there is none
-        return False
-
-
-def _entities(scene: sapien.Scene, names: tuple[str, ...]) -> list[sapien.Entity]:
-    """The entities of things: called by the thing's name, after whatever prefix the builder of the scene gives."""
-    found = {e.name.rsplit("/", 1)[-1]: e for e in scene.entities}
-    missing = [n for n in names if n not in found]
-    if missing:
-        raise ValueError(f"the scene has no entity for {', '.join(missing)}; it has {', '.join(sorted(found))}")
-    return [found[n] for n in names]
-
-
-def _seed(number: int) -> float:
-    return (number + 1) * meshes.GOLDEN % 1.0

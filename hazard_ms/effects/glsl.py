@@ -1,4 +1,4 @@
-"""Our own shader text: charring of opaque things, and the pass that draws flames, scorch marks, smoke and embers.
+"""Our own shader text: charring of opaque things, and the pass that draws flames, scorch marks, smoke, embers, water and what flies.
 
 Effect geometry is a set of quads whose four corners coincide; only EFFECT_VERT spreads them out. So every other shader (shadows,
 labels, ray tracing, SAPIEN's stock packs) sees triangles without area, that is: nothing. A corner carries
@@ -7,13 +7,17 @@ labels, ray tracing, SAPIEN's stock packs) sees triangles without area, that is:
     normal    (half width [m], height [m], kind + seed), seed in [0, 1)
     uv        (-1 or 1, 0 or 1): the corner
 
-and the material's otherwise unused scalars carry transmission = strength 0..1 and transmission_roughness = time [s]. In materials of
+and the material's otherwise unused scalars carry transmission = strength 0..1 and transmission_roughness = time [s]. Of water, uv is
+the place in the room [m], and normal (way of the water [m], its direction [rad], kind); see water_glsl.py and wind_glsl.py. In materials of
 solid things transmission_roughness holds `char code`: 0 untouched, else 1 + floor(255 char) + glow, char in 0..1, glow in [0, 1).
 """
 
 from __future__ import annotations
 
-FLAME, SCORCH, SMOKE, EMBER = range(4)  # kinds of quads
+from hazard_ms.effects.water_glsl import WATER as WATER_FRAG
+from hazard_ms.effects.wind_glsl import WIND_FRAG, WIND_VERT
+
+FLAME, SCORCH, SMOKE, EMBER, WATER, LEAF, PAPER, STREAK, DUST = range(9)  # kinds of quads
 SMOKE_PERIOD = 4.0  # from floor to ceiling [s]; an entity's turn about z tells the phase, since only poses reach the vertex shader
 
 _SETS = """
@@ -35,7 +39,17 @@ layout(location = 2) in vec2 uv;
 layout(location = 3) in vec3 tangent;
 layout(location = 4) in vec3 bitangent;
 layout(location = 0) out vec2 outCorner;
-layout(location = 1) out vec4 outLife;  // kind, seed, age 0..1, visible near the camera 0..1
+layout(location = 1) out vec4 outLife;  // kind; seed; age 0..1, light 0..1 or way [m]; visible near the camera 0..1
+layout(location = 2) out vec3 outPlace;  // world frame [m]
+"""
+    + WIND_VERT
+    + """
+void show(vec3 place, vec2 corner, vec4 life) {
+  outCorner = corner;
+  outLife = life;
+  outPlace = place;
+  gl_Position = cameraBuffer.projectionMatrix * (cameraBuffer.viewMatrix * vec4(place, 1));
+}
 
 void main() {
   mat4 model = objectTransformBuffer.modelMatrix;
@@ -44,6 +58,19 @@ void main() {
   float kind = floor(normal.z), seed = fract(normal.z), age = 0.0;
   vec3 across, up;
   vec2 size = normal.xy;
+  if (kind > 4.5) {  // what the wind carries
+    float shade;
+    carry(kind, seed, position, model, camera[3].xyz, size, anchor, across, up, shade);
+    vec3 place = anchor + across * uv.x * size.x + up * (2.0 * uv.y - 1.0) * size.y;
+    float seen = smoothstep(0.25, kind > 7.5 ? 2.5 : 0.8, distance(camera[3].xyz, anchor)) * step(0.0, model[3].z);
+    show(place, vec2(uv.x, 2.0 * uv.y - 1.0), vec4(kind, seed, shade, seen));
+    return;
+  }
+  if (kind > 3.5) {  // water: the entity's height is the level at its source, its turn the slope
+    float fall = model[0].y / max(model[0].x, 1e-3);
+    show(vec3(uv, model[3].z - fall * normal.x), vec2(cos(normal.y), sin(normal.y)), vec4(kind, seed, normal.x, 1.0));
+    return;
+  }
   if (kind > 1.5) {  // smoke and embers rise from the anchor and start again
     float phase = atan(model[0].y, model[0].x) * 0.15915494;
     float turns = kind > 2.5 ? 1.0 + floor(seed * 3.0) : 1.0;
@@ -68,19 +95,22 @@ void main() {
   }
   float y = kind > 0.5 ? 2.0 * uv.y - 1.0 : uv.y;
   vec3 place = anchor + across * uv.x * size.x + up * y * size.y;
-  outCorner = vec2(uv.x, y);
-  outLife = vec4(kind, seed, age, smoothstep(0.15, 0.50, length(toEye)));
-  gl_Position = cameraBuffer.projectionMatrix * (cameraBuffer.viewMatrix * vec4(place, 1));
+  show(place, vec2(uv.x, y), vec4(kind, seed, age, smoothstep(0.15, 0.50, length(toEye))));
 }
 """
 )
 
-EFFECT_FRAG = """#version 450
+EFFECT_FRAG = (
+    """#version 450
+#define SET_NUM 0
+#include "./camera_set.glsl"
+#undef SET_NUM
 #define SET_NUM 2
 #include "./material_set.glsl"
 #undef SET_NUM
 layout(location = 0) in vec2 corner;
 layout(location = 1) in vec4 life;
+layout(location = 2) in vec3 place;
 layout(location = 0) out vec4 outLighting;  // the only target: labels, depth and normals stay those of the solid scene
 
 float noise(vec2 p) { return texture(colorTexture, p).r; }
@@ -119,18 +149,29 @@ vec4 smoke(vec2 p, float seed, float age, float strength) {
   return vec4(mix(vec3(0.05, 0.045, 0.04), vec3(0.16), age) * (0.5 + grain), alpha);
 }
 
+"""
+    + WATER_FRAG
+    + WIND_FRAG
+    + """
 void main() {
   float time = materialBuffer.transmissionRoughness, strength = materialBuffer.transmission;
   vec4 colour;
   if (life.x < 0.5) colour = flame(corner, life.y, time, strength);
   else if (life.x < 1.5) colour = scorch(corner, life.y, time, strength);
   else if (life.x < 2.5) colour = smoke(corner, life.y, life.z, strength);
-  else colour = vec4(1.6, 0.55, 0.08, step(length(corner), 1.0) * step(life.z, 0.95) * step(0.05, strength));
+  else if (life.x < 3.5) colour = vec4(1.6, 0.55, 0.08, step(length(corner), 1.0) * step(life.z, 0.95) * step(0.05, strength));
+  else if (life.x < 4.5) colour = water(place, corner, life.z, time, strength);
+  else if (life.x < 5.5) colour = leaf(corner, life.y, life.z);
+  else if (life.x < 6.5) colour = paper(corner, life.y, life.z);
+  else if (life.x < 7.5) colour = streak(corner, strength);
+  else colour = dust(corner, life.y, strength, time);
+  if (life.x > 4.5 && life.x < 7.5) colour.a *= step(life.y, strength);  // a weak wind carries less
   colour.a *= life.w;
   if (colour.a < (life.x < 0.5 ? 0.10 : 0.02)) discard;  // what is drawn hides flames behind it: do not draw faint rims
   outLighting = colour;
 }
 """
+)
 
 CHAR = """
 float hazardHash(vec3 p) {

@@ -1,7 +1,7 @@
 """Shader packs with our effects, derived at run time from those of the installed SAPIEN: we ship no text of others.
 
-A pack is a folder of GLSL. Ours is SAPIEN's own, with charring added to its opaque pass and a third pass that draws flames and smoke
-into the picture alone. It is kept in the user's cache under a hash of all that it is made of, so another SAPIEN makes another pack.
+A pack is a folder of GLSL. Ours is SAPIEN's own, with charring, water and haze added to its opaque pass and a third pass that draws flames,
+smoke, the water's surface and what flies into the picture alone. It is kept in the user's cache under a hash of all that it is made of, so another SAPIEN makes another pack.
 If the installed files are not as expected, pictures are SAPIEN's own, without effects, and labels stay right.
 """
 
@@ -23,6 +23,7 @@ from mani_skill.render import PREBUILT_SHADER_CONFIGS, ShaderConfig
 from torch import Tensor
 
 from hazard_ms.effects.glsl import CHAR, CHAR_DEFERRED, CHAR_FORWARD, EFFECT_FRAG, EFFECT_VERT
+from hazard_ms.effects.water_glsl import IMMERSE, IMMERSE_DEFERRED, IMMERSE_FORWARD
 from hazard_ms.rendering import home
 
 NAMES = {"full": "hazard", "fast": "hazard-fast", "off": "default"}  # effects mode -> shader pack of the cameras
@@ -114,24 +115,24 @@ def _pack(name: str) -> str | None:
 
 
 def _full(files: dict[str, str]) -> dict[str, str]:
-    """SAPIEN's deferred pack with charring and the effect pass."""
+    """SAPIEN's deferred pack with charring, water, haze and the effect pass."""
     _known(files, "gbuffer1.frag", "gbuffer1.vert", "deferred.frag", *SETS)
     end = re.compile(r"\}\s*\Z")
-    opaque = _insert(files, "gbuffer.frag", "void main() {", CHAR)
+    opaque = _insert(files, "gbuffer.frag", "void main() {", CHAR + IMMERSE)
     files = files | {"gbuffer.frag": opaque}
     _known_words(opaque, "outAlbedo", "outSpecular", "outEmission", "objectCoord", "transmissionRoughness")
     if not end.search(opaque):
         raise UnknownSapienError("gbuffer.frag does not end with its main function")
-    files["gbuffer.frag"] = end.sub(lambda _: CHAR_DEFERRED + "}\n", opaque)
+    files["gbuffer.frag"] = end.sub(lambda _: CHAR_DEFERRED + IMMERSE_DEFERRED + "}\n", opaque)
     return files | {"gbuffer2.vert": EFFECT_VERT, "gbuffer2.frag": EFFECT_FRAG}
 
 
 def _fast(files: dict[str, str]) -> dict[str, str]:
-    """SAPIEN's single-pass pack with charring and the effect pass, which here writes colours as they are shown."""
+    """SAPIEN's single-pass pack with charring, water, haze and the effect pass, which here writes colours as they are shown."""
     _known(files, "gbuffer.vert", *SETS)
-    forward = _insert(files, "gbuffer.frag", "void main() {", CHAR)
+    forward = _insert(files, "gbuffer.frag", "void main() {", CHAR + "#define FAST\n" + IMMERSE)
     files = files | {"gbuffer.frag": forward}
-    forward = _insert(files, "gbuffer.frag", "  vec3 diffuseAlbedo", _fast_char())
+    forward = _insert(files, "gbuffer.frag", "  vec3 diffuseAlbedo", _fast_char() + IMMERSE_FORWARD)
     _known_words(forward, "outColorRaw", "outPositionSegmentation", "objectCoord", "transmissionRoughness")
     files["gbuffer.frag"] = forward.replace("outPositionSegmentation", f"out{LABELS}")
     sky = "mix(bg, color.rgb, "  # by the pixel's alpha, which a flame's rim lowers: there the room shines through, not the sky

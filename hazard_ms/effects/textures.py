@@ -35,3 +35,15 @@ def noise_texture() -> sapien.render.RenderTexture2D:
     """`noise` on the renderer, in all four channels."""
     grey = (noise() * 255 + 0.5).astype(np.uint8)
     return sapien.render.RenderTexture2D(np.repeat(grey[..., None], 4, -1), "R8G8B8A8Unorm", mipmap_levels=5)
+
+
+def ripples(side: int = NOISE_SIDE) -> np.ndarray:
+    """Tileable ripples of water: slope along x and along y about 0.5, height and other noise in 0..1, [side, side, 4], float32."""
+    height = noise(side, seed=1)
+    slopes = [(np.roll(height, -1, axis) - np.roll(height, 1, axis)) * (side / 16.0) for axis in (1, 0)]
+    return np.stack([*(np.clip(0.5 + 0.5 * s, 0.0, 1.0) for s in slopes), height, noise(side, seed=2)], -1)
+
+
+def ripple_texture() -> sapien.render.RenderTexture2D:
+    """`ripples` on the renderer."""
+    return sapien.render.RenderTexture2D((ripples() * 255 + 0.5).astype(np.uint8), "R8G8B8A8Unorm", mipmap_levels=5)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from hazard_ms.robots.fetch import HazardFetch
+from hazard_ms.robots.g1 import HazardG1
+from hazard_ms.robots.planar import PlanarRobot
 from hazard_ms.robots.robot import Build, Robot
 
-ROBOTS: dict[str, type[HazardFetch]] = {"fetch": HazardFetch}
+ROBOTS: dict[str, type[PlanarRobot]] = {"fetch": HazardFetch, "g1": HazardG1}
 
-__all__ = ["ROBOTS", "Build", "HazardFetch", "Robot", "robot_uid"]
+__all__ = ["ROBOTS", "Build", "HazardFetch", "HazardG1", "PlanarRobot", "Robot", "robot_uid"]
 
 
 def robot_uid(name: str) -> str:
     """ManiSkill's uid of the robot that users call `name`."""
     if name not in ROBOTS:
         raise ValueError(f"no robot is called {name!r}; there are {', '.join(ROBOTS)}")
-    return str(ROBOTS[name].uid)
+    return ROBOTS[name].uid

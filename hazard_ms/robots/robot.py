@@ -1,5 +1,7 @@
 """What the skills ask of a robot. A robot that keeps this contract can be used by every skill, task and agent.
 
+A robot may have two hands; then hand, arm, gripper and shoulder are those of the hand in use, and postures are the same for both. What
+bends or lifts the shoulder counts as part of the arm.
 Tensors are batched over E environments; numpy arrays are of the first environment, which is the one that skills run in.
 """
 
@@ -26,23 +28,26 @@ class Build:
     reach: float  # from the shoulder to the middle of the hand, arm stretched [m]
     elbow_room: float  # from the base's middle: how far ahead nothing higher than a seat may stand where the arm unfolds [m]
     nearest: float  # horizontal distance from the base's middle below which the hand would meet its own base [m]
+    stoops: tuple[tuple[float, float], ...] = ()  # other places where bending or crouching can bring the shoulder [m]
 
     def span(self, height: float) -> tuple[float, float]:
         """Nearest and farthest horizontal distance [m] from the base's middle at which the hand gets to `height` [m]."""
-        left = self.reach**2 - (height - self.shoulder[1]) ** 2
-        far = self.shoulder[0] + float(np.sqrt(left)) if left > 0.0 else 0.0
+        far = 0.0
+        for ahead, above in (self.shoulder, *self.stoops):
+            left = self.reach**2 - (height - above) ** 2
+            far = max(far, ahead + float(np.sqrt(left))) if left > 0.0 else far
         return self.nearest, far
 
 
 class Robot(abc.ABC):
-    """A robot with a base that drives and turns on the floor, one arm, and a camera in its head. World frame, metres, radians."""
+    """A robot with a base that drives and turns on the floor, an arm or two, and a camera in its head. World frame, metres, radians."""
 
     build: Build
     head_camera: str  # uid of the sensor
     skill_control_mode: str  # the control mode whose actions `action` makes
     tucked: NDArray[np.float64]  # arm joints where the arm is out of the way [rad], [J]
     folded: NDArray[np.float64]  # arm joints with the elbow up and the hand close, between tucked and reaching out [rad], [J]
-    stretched: tuple[NDArray[np.float64], ...]  # arm joints from which to look for a way to reach something [rad], [J] each
+    pointing: tuple[float, ...]  # how far below the horizon the fingers point at a thing, in the order of trying [rad]
 
     @abc.abstractmethod
     def place(self, rows: Tensor, position: Tensor, heading: Tensor) -> None:
@@ -80,6 +85,11 @@ class Robot(abc.ABC):
     def arm_limits(self) -> NDArray[np.float64]:
         """Lower and upper limit of each arm joint [rad], [J, 2]."""
 
+    @property
+    @abc.abstractmethod
+    def stretched(self) -> tuple[NDArray[np.float64], ...]:
+        """Arm joints from which to look for a way to reach something [rad], [J] each."""
+
     @abc.abstractmethod
     def kinematics(self, arm: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Were the arm at `arm` [J]: the hand's position [3], rotation matrix [3, 3], and Jacobian [6, J] (linear, angular)."""
@@ -87,6 +97,12 @@ class Robot(abc.ABC):
     @abc.abstractmethod
     def action(self, forward: float, turn: float, arm: NDArray[np.float64], open_hand: bool) -> NDArray[np.float32]:
         """The env's action that drives `forward` [m] and turns `turn` [rad] within one frame while the arm goes to `arm` [J]."""
+
+    def use_hand(self, point: NDArray[np.float64], attempt: int = 0) -> None:  # noqa: B027 one hand needs no choice
+        """Choose the hand that is to reach for `point` [m], in the first environment: another one at every further attempt.
+
+        A hand that holds something stays in use.
+        """
 
     def base(self) -> tuple[float, float, float]:
         """x, y [m] and heading [rad] of the base in the first environment."""

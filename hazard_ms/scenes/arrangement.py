@@ -2,27 +2,37 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass, field
 
-from hazard_ms.assets import asset, asset_ids
+from hazard_ms.assets import Asset, asset, asset_ids
 from hazard_ms.scenes import boxes
 from hazard_ms.scenes.boxes import Box
 from hazard_ms.scenes.draw import Draw
 from hazard_ms.scenes.floor import FLAT
-from hazard_ms.scenes.shell import on_wall
+from hazard_ms.scenes.shell import on_wall, runs_along_x, thickness_of
 from hazard_ms.spec import Fixture, Opening, Room
 
 GAP = 0.01  # between any two things [m]
 RESTING = 0.0005  # above what it stands on, so that the simulator starts without contact [m]
 DOOR_SPACE = 0.9  # kept free before a door [m]
 WINDOW_SPACE = 0.3  # nothing that hides a window within this of the wall [m]
+LONG, ROUND = 2.5, 0.03  # length over height, and difference of the other two edges over it, of what rolls [-] [ours]
 FACING = {"south": 180.0, "east": -90.0, "north": 0.0, "west": 90.0}  # yaw with the back to that wall [degrees]
 
 
+@functools.lru_cache(maxsize=256)
 def models_of(category: str) -> tuple[str, ...]:
-    """Ids of the models of a category, in an order that does not depend on the index."""
-    return tuple(sorted(asset_ids(category=category)))
+    """Ids of the models of a category, in an order that does not depend on the index; without those that roll, if there are others."""
+    ids = sorted(asset_ids(category=category))
+    return tuple([i for i in ids if not rolls(asset(i))] or ids)
+
+
+def rolls(model: Asset) -> bool:
+    """Whether a model is long and round, and lies: it would roll a little before it comes to rest."""
+    x, y, z = model.extent
+    return model.kind == "object" and max(x, y) > LONG * z and abs(min(x, y) - z) < ROUND * z
 
 
 class NoPlaceError(Exception):
@@ -71,34 +81,9 @@ class Arrangement:
 
 
 def space_before(room: Room, o: Opening) -> Box:
-    """What furniture keeps clear: the floor before a door, the wall around a window."""
-    deep = DOOR_SPACE if o.kind == "door" else WINDOW_SPACE
-    x, y, _ = on_wall(room, o.wall, o.centre, 0.0, -deep / 2)
-    return Box(x, y, o.width / 2 + 0.05, deep / 2, math.radians(FACING[o.wall]), o.sill, o.sill + o.height)
-
-
-def mirrored(made: Arrangement, sideways: bool, lengthways: bool) -> Arrangement:
-    """The same room with left and right, or front and back, exchanged. Models keep their own handedness."""
-    (w, d), room = made.room.size, made.room
-    for wanted, ends, walls in ((sideways, ("east", "west"), "x"), (lengthways, ("north", "south"), "y")):
-        if not wanted:
-            continue
-        swap = dict(zip(ends, reversed(ends), strict=True))
-        length = w if walls == "x" else d
-        openings = tuple(
-            Opening(o.kind, swap[o.wall], o.centre, o.width, o.height, o.sill)
-            if o.wall in swap
-            else Opening(o.kind, o.wall, round(length - o.centre, 4), o.width, o.height, o.sill)
-            for o in room.openings
-        )
-        room = Room(room.size, room.height, room.floor, room.wall, openings)
-        made.fixtures = [_mirrored_piece(f, walls, length) for f in made.fixtures]
-    made.boxes = [boxes.box_of(f, asset(f.asset).extent) for f in made.fixtures]
-    return Arrangement(room, made.draw, made.fixtures, made.boxes, [space_before(room, o) for o in room.openings])
-
-
-def _mirrored_piece(f: Fixture, axis: str, length: float) -> Fixture:
-    x, y, z = f.position
-    yaw = boxes.yaw_of(f.rotation)
-    position = (round(length - x, 4), y, z) if axis == "x" else (x, round(length - y, 4), z)
-    return Fixture(f.name, f.category, f.asset, position, boxes.turned(-yaw if axis == "x" else math.pi - yaw), f.scale)
+    """What furniture keeps clear: the floor before a door, on both sides of a doorway, the wall around a window."""
+    deep = WINDOW_SPACE if o.kind == "window" else DOOR_SPACE
+    facing = FACING.get(o.wall, 0.0 if runs_along_x(room, o.wall) else 90.0)
+    behind = 0.0 if o.wall in FACING else deep + thickness_of(room, o.wall)  # the other side of a partition
+    x, y, _ = on_wall(room, o.wall, o.centre, 0.0, (behind - deep) / 2)
+    return Box(x, y, o.width / 2 + 0.05, (deep + behind) / 2, math.radians(facing), o.sill, o.sill + o.height)

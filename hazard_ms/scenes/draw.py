@@ -13,6 +13,8 @@ import numpy as np
 
 T = TypeVar("T")
 
+GENERATOR = "2"  # goes up whenever the same name would give another scene
+
 
 class Draw:
     """Draws one after the other. Attempts at the same scene differ by `attempt`."""

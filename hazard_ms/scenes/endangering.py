@@ -10,14 +10,17 @@ from hazard_ms.scenes.arrangement import NoPlaceError
 from hazard_ms.scenes.boxes import Box
 from hazard_ms.scenes.draw import Draw
 from hazard_ms.scenes.floor import Grid, cells, centre_of, path, steps_from
-from hazard_ms.spec import AgentStart, Vec2
+from hazard_ms.scenes.shell import WALLS
+from hazard_ms.spec import AgentStart, Room, Vec2
 
 START = 0.5  # radius that is free around the agent's start [m]
 FLAME = 0.15  # half the diagonal of a floor fire of 0.2 m: its floor must be free [m]
 APART = 0.5  # from targets, at least [m]
 FROM_AGENT = 1.0  # from the agent's start, at least [m] [ours]
 BETWEEN = 0.8  # from each other, at least [m] [ours]
+FROM_DOORWAYS = 0.4  # from the thresholds of doorways, at least: the only way to what is beyond [m] [ours]
 NEAR = 1.1  # from a target or a way to one, at most [m] [ours]
+LEAKY = 4.0  # how much sooner water comes through a wall with a door or a window [-] [ours]
 
 
 def start(roomy: Grid, draw: Draw) -> AgentStart:
@@ -65,3 +68,9 @@ def _ways(free: Grid, agent: AgentStart, targets: list[Box], size: Vec2) -> Grid
         for a, b in path(steps, (int(i), int(j))):
             ways[max(a - 1, 0) : a + 2, max(b - 1, 0) : b + 2] = True
     return ways
+
+
+def flood_side(room: Room, draw: Draw) -> str:
+    """The wall from which water comes, sooner one with a door or a window."""
+    leaky = {o.wall for o in room.openings}
+    return draw.weighted(WALLS, [LEAKY if wall in leaky else 1.0 for wall in WALLS])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable
 
@@ -11,11 +12,13 @@ from scipy import ndimage
 
 from hazard_ms.assets import asset
 from hazard_ms.scenes.boxes import Array, Box, box_of
-from hazard_ms.spec import SceneSpec, Vec2
+from hazard_ms.scenes.shell import on_wall, runs_along_x, shell, thickness_of
+from hazard_ms.spec import Room, SceneSpec, Vec2
 
 CELL = 0.05  # edge of a cell [m]; cell (i, j) is centred on ((i + 0.5) CELL, (j + 0.5) CELL)
 FLAT = 0.03  # fixtures lower than this are driven over: rugs [m] [ours]
 OVERHEAD = 1.3  # what begins above this hangs over a robot: Fetch's head is at 1.1 m [ours]
+THRESHOLD = 0.8  # on each side of the middle of a doorway's wall [m] [ours]
 
 Grid = NDArray[np.bool_]
 
@@ -54,10 +57,24 @@ def take(free: Grid, size: Vec2, boxes: Iterable[Box], radius: float) -> Grid:
     return free
 
 
-def free_for(size: Vec2, fixtures: Iterable[Box], bodies: Iterable[Box], radius: float) -> Grid:
-    """Cells at which a disc of `radius` [m] touches neither wall nor thing in a room of `size` [m], [X, Y]."""
-    standing = [b for b in fixtures if b.low < OVERHEAD and b.high > FLAT] + [b for b in bodies if b.low < OVERHEAD]
-    return take(within_walls(size, radius), size, standing, radius)
+def partitions(room: Room) -> list[Box]:
+    """What the walls inside a room occupy: pieces beside and above doorways."""
+    names = tuple(f"wall_{p.name}_" for p in room.partitions)
+    pieces = [b for b in shell(room) if b.name.startswith(names)] if names else []
+    return [Box(*b.centre[:2], b.size[0] / 2, b.size[1] / 2, 0.0, b.centre[2] - b.size[2] / 2, b.centre[2] + b.size[2] / 2) for b in pieces]
+
+
+def doorways(room: Room) -> list[Box]:
+    """The thresholds of the doorways inside a room, as high as these: nothing stands or burns in them."""
+    spots = [(o, on_wall(room, o.wall, o.centre, 0.0, thickness_of(room, o.wall) / 2)) for o in room.openings if o.kind == "doorway"]
+    sizes = [(o.width / 2, THRESHOLD) if runs_along_x(room, o.wall) else (THRESHOLD, o.width / 2) for o, _ in spots]
+    return [Box(x, y, *half, 0.0, 0.0, o.height) for (o, (x, y, _)), half in zip(spots, sizes, strict=True)]
+
+
+def free_for(room: Room, fixtures: Iterable[Box], bodies: Iterable[Box], radius: float) -> Grid:
+    """Cells at which a disc of `radius` [m] touches neither wall nor thing in a room, [X, Y]."""
+    standing = [*partitions(room), *bodies, *(b for b in fixtures if b.high > FLAT)]
+    return take(within_walls(room.size, radius), room.size, [b for b in standing if b.low < OVERHEAD], radius)
 
 
 def boxes_of(spec: SceneSpec) -> tuple[list[Box], list[Box]]:
@@ -68,7 +85,7 @@ def boxes_of(spec: SceneSpec) -> tuple[list[Box], list[Box]]:
 
 def free_floor(spec: SceneSpec, radius: float) -> Grid:
     """Cells at which a disc of `radius` [m] touches neither wall nor thing at the start of a scene, [X, Y]."""
-    return free_for(spec.room.size, *boxes_of(spec), radius)
+    return free_for(spec.room, *boxes_of(spec), radius)
 
 
 def largest(free: Grid) -> Grid:
@@ -93,6 +110,24 @@ def distance_to(part: Grid) -> Array:
     if not part.any():
         return np.full(part.shape, np.inf)
     return ndimage.distance_transform_edt(~part) * CELL
+
+
+def halls(room: Room) -> list[tuple[slice, slice]]:
+    """The parts into which partitions divide the grid of a room; one part where there are none."""
+    shape = within_walls(room.size, 0.0).shape
+    ends = [
+        sorted([0, n, *(cell_of((p.at, p.at))[0] for p in room.partitions if p.axis == axis)]) for n, axis in zip(shape, "yx", strict=True)
+    ]
+    xs, ys = ([slice(a, b) for a, b in itertools.pairwise(e)] for e in ends)
+    return [(x, y) for x in xs for y in ys]
+
+
+def away_from(part: Grid, room: Room) -> Array:
+    """Distance of every cell's centre from the nearest cell of `part` on its own side of all partitions [m], [X, Y]."""
+    found = np.full(part.shape, np.inf)
+    for hall in halls(room):
+        found[hall] = distance_to(part[hall])
+    return found
 
 
 def steps_from(free: Grid, start: tuple[int, int]) -> NDArray[np.int64]:

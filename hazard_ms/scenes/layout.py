@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hazard_ms.spec import Vec2
-
 Span = tuple[float, float]
 Area = tuple[float, float, float, float]
 
@@ -34,6 +32,7 @@ class Row:
     wall: str
     categories: tuple[str, ...]
     start: Span = (0.02, 0.05)  # [m]
+    optional: bool = False
 
 
 @dataclass(frozen=True)
@@ -74,6 +73,7 @@ class Around:
     of: str
     count: tuple[int, int]
     distance: Span = (0.04, 0.12)  # between the boxes [m]
+    optional: bool = False
 
 
 @dataclass(frozen=True)
@@ -117,28 +117,41 @@ class Hanging:
     optional: bool = True
 
 
-Rule = Row | Against | Corner | Standing | Around | Before | OnTop | Rug | Hanging
+@dataclass(frozen=True)
+class Either:
+    """One of several rules, drawn; where it finds no place, another of them."""
+
+    rules: tuple[Rule, ...]
+    optional: bool = False
+
+
+Rule = Row | Against | Corner | Standing | Around | Before | OnTop | Rug | Hanging | Either
+
+
+@dataclass(frozen=True)
+class Part:
+    """A room, or one of several side by side behind partitions: its walls are called as if it were alone."""
+
+    width: Span  # inner extent along x [m]
+    holes: tuple[Hole, ...]
+    rules: tuple[Rule, ...]
 
 
 @dataclass(frozen=True)
 class Layout:
-    """A kind of room. Scenes of it differ by what the seed draws: sizes, finishes, models, places, objects."""
+    """A kind of room or flat. Scenes of it differ by what the seed draws: sizes, finishes, models, places, objects."""
 
     name: str  # "kitchen_a"
-    width: Span  # inner extent along x [m]
+    parts: tuple[Part, ...]  # from west to east, joined by open doorways
     depth: Span  # inner extent along y [m]
     floors: tuple[str, ...]
     walls: tuple[str, ...]
-    holes: tuple[Hole, ...]
-    rules: tuple[Rule, ...]
-    pool: tuple[str, ...]  # categories of the objects
+    pool: tuple[str, ...]  # categories that may be targets
+    things: tuple[str, ...] = ()  # categories of other objects, besides those of the pool
     targets: tuple[int, int] = (6, 14)  # number of target objects
-    bodies: int = 30  # number of objects; the same in every scene, so that scenes can share a batch
+    bodies: int = 60  # number of objects; the same in every scene, so that scenes can share a batch
     fires: tuple[int, ...] = (1, 2, 3)  # numbers of fire sources, equally likely
     height: float = 2.6  # [m]
     aisle: float = 0.8  # width of the passages [m]
+    doorway: Span = (0.3, 0.7)  # where in a partition, as fractions of its length
     mirror: bool = True  # draw left and right, front and back
-
-    def in_room(self, area: Area, size: Vec2) -> Area:
-        """`area` in metres."""
-        return area[0] * size[0], area[1] * size[1], area[2] * size[0], area[3] * size[1]

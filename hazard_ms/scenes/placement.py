@@ -1,42 +1,25 @@
-"""Puts furniture into a room by the rules of its layout; nothing touches, doors stay free, windows are not hidden."""
+"""Finds places for furniture by the rules of a layout; nothing touches, doors stay free, windows are not hidden."""
 
 from __future__ import annotations
 
 import math
 
 from hazard_ms.assets import Asset, asset
-from hazard_ms.scenes.arrangement import FACING, GAP, RESTING, Arrangement, NoPlaceError, mirrored, space_before
+from hazard_ms.scenes.arrangement import FACING, GAP, RESTING, Arrangement
 from hazard_ms.scenes.boxes import Box
-from hazard_ms.scenes.draw import Draw
-from hazard_ms.scenes.layout import Against, Around, Before, Corner, Hanging, Layout, OnTop, Row, Rug, Rule, Standing
+from hazard_ms.scenes.layout import Against, Around, Before, Corner, Either, Hanging, OnTop, Row, Rug, Rule, Standing
 from hazard_ms.scenes.shell import on_wall, wall_length
 from hazard_ms.scenes.surfaces import surfaces_of
-from hazard_ms.spec import Opening, Room
 
 BESIDE = 0.012  # between pieces of a row [m]
 BEHIND = 0.015  # between a wall and what stands against it: the skirting is 12 mm thick [m]
 TRIES = 25  # draws for one piece
 
 
-def furnish(layout: Layout, draw: Draw) -> Arrangement:
-    """A furnished room. Raises NoPlaceError when a piece that it needs does not fit."""
-    size = (round(draw.uniform(*layout.width), 1), round(draw.uniform(*layout.depth), 1))
-    bare = Room(size, layout.height, draw.one(layout.floors), draw.one(layout.walls))
-    openings = []
-    for hole in layout.holes:
-        length = wall_length(bare, hole.wall)
-        centre = round(draw.uniform(*hole.reach) * length, 2)
-        openings.append(Opening(hole.kind, hole.wall, centre, hole.width, hole.height, hole.sill))
-    room = Room(size, layout.height, bare.floor, bare.wall, tuple(openings))
-    made = Arrangement(room, draw, kept_clear=[space_before(room, o) for o in openings])
-    for rule in layout.rules:
-        if not _place(rule, made, layout) and not getattr(rule, "optional", False):
-            raise NoPlaceError(f"{rule} finds no place in {layout.name}")
-    return mirrored(made, draw.whole(0, 1) == 1, draw.whole(0, 1) == 1) if layout.mirror else made
-
-
-def _place(rule: Rule, made: Arrangement, layout: Layout) -> bool:
+def place(rule: Rule, made: Arrangement) -> bool:
     """Put what `rule` says; False when it found no place."""
+    if isinstance(rule, Either):
+        return any(place(one, made) for one in made.draw.shuffled(rule.rules))
     if isinstance(rule, Row):
         return _row(rule, made)
     if isinstance(rule, Around):
@@ -47,7 +30,7 @@ def _place(rule: Rule, made: Arrangement, layout: Layout) -> bool:
     if model is None:
         return False
     for _ in range(TRIES):
-        pose = _pose(rule, asset(model), made, layout)
+        pose = _pose(rule, asset(model), made)
         if pose is not None and made.try_at(rule.category, model, *pose, against=not isinstance(rule, Rug)):
             return True
         model = made.model(rule.category) or model
@@ -55,7 +38,7 @@ def _place(rule: Rule, made: Arrangement, layout: Layout) -> bool:
 
 
 def _pose(
-    rule: Against | Corner | Standing | Before | OnTop | Rug | Hanging, model: Asset, made: Arrangement, layout: Layout
+    rule: Against | Corner | Standing | Before | OnTop | Rug | Hanging, model: Asset, made: Arrangement
 ) -> tuple[float, float, float, float] | None:
     """A drawn pose: x, y, z [m], yaw [rad]."""
     if isinstance(rule, Against):
@@ -71,9 +54,9 @@ def _pose(
     if isinstance(rule, Hanging):
         x, y, _, yaw = _against(Against(rule.category, rule.walls, (0.1, 0.9)), model, made)
         return x, y, rule.height, yaw
-    left, lower, right, upper = layout.in_room(rule.area, made.room.size)
+    (left, lower, right, upper), (w, d) = rule.area, made.room.size
     yaw = made.draw.one(rule.yaws) + made.draw.uniform(-rule.sway, rule.sway)
-    return made.draw.uniform(left, right), made.draw.uniform(lower, upper), 0.0, math.radians(yaw)
+    return made.draw.uniform(left, right) * w, made.draw.uniform(lower, upper) * d, 0.0, math.radians(yaw)
 
 
 def _against(rule: Against, model: Asset, made: Arrangement) -> tuple[float, float, float, float]:

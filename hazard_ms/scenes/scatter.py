@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Protocol
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from hazard_ms.scenes import boxes
 from hazard_ms.scenes.arrangement import GAP, RESTING, Arrangement, NoPlaceError, models_of
 from hazard_ms.scenes.boxes import Box
 from hazard_ms.scenes.draw import Draw
-from hazard_ms.scenes.floor import FLAT, Grid, cell_of, distance_to, free_for, largest, take
+from hazard_ms.scenes.floor import FLAT, Grid, away_from, cell_of, distance_to, doorways, free_for, largest, partitions, take
 from hazard_ms.scenes.layout import Layout
 from hazard_ms.scenes.surfaces import Surface, surfaces_of
 from hazard_ms.spec import Body, Vec3
@@ -24,33 +25,50 @@ TALLEST = 1.1  # the top of nothing that stands on furniture is above this plus 
 MARGIN = 0.02  # to the edge of a surface [m]
 LOW = 0.1  # what stands lower is in the robot's way: on the floor or on a rug [m]
 TARGET_CATEGORIES = 4  # HAZARD, table 1
-BULKY = 0.30  # things longer than this mostly stand on the floor [m] [ours]
-ON_FLOOR = {False: 0.3, True: 0.75}  # share that stands on the floor, of small and of bulky things [ours]
+BULKY = 0.30  # things longer or taller than this mostly stand on the floor [m] [ours]
+ON_FLOOR = {False: 0.2, True: 0.8}  # share that stands on the floor, of small and of bulky things [ours]
 ASIDE = 0.6  # most things on the floor stand no farther than this from wall or furniture [m] [ours]
 IN_THE_OPEN = 0.25  # share of things on the floor that may stand anywhere [ours]
 TRIES = 40  # draws for one thing
 WHOLE = 0.97  # share of the robot's free floor that must be one piece
 
 
+class Kind(Protocol):
+    """What a layout, indoors or in the open, says about the ways in it."""
+
+    @property
+    def name(self) -> str:
+        """Of the kind of scene."""
+
+    @property
+    def aisle(self) -> float:
+        """Width of the passages [m]."""
+
+
 class Scatter:
     """The objects of a furnished room so far, and the floor that they leave free to the robot."""
 
-    def __init__(self, made: Arrangement, layout: Layout) -> None:
-        """Nothing placed yet. Raises NoPlaceError where the floor falls apart or passages are too narrow."""
-        self.made, self.layout, self.draw, self.size = made, layout, made.draw, made.room.size
+    def __init__(self, made: Arrangement, kind: Kind, hollow: tuple[str, ...] = (), in_the_open: float = IN_THE_OPEN) -> None:
+        """Nothing placed yet; nothing is put into furniture of the categories `hollow`, shopping carts say.
+
+        `in_the_open`: share of things on the floor that may stand anywhere. Raises NoPlaceError where the floor falls apart or
+        passages are too narrow.
+        """
+        self.made, self.draw, self.size, self.in_the_open = made, made.draw, made.room.size, in_the_open
         self.bodies: list[Body] = []
         self.boxes: list[Box] = []  # of the bodies
-        for radius in (layout.aisle / 2, ROBOT):
-            free = free_for(self.size, made.boxes, [], radius)
+        for radius in (kind.aisle / 2, ROBOT):
+            free = free_for(made.room, made.boxes, [], radius)
             whole = largest(free)
             if whole.sum() < WHOLE * max(free.sum(), 1) or not whole.any():
-                raise NoPlaceError(f"the floor of {layout.name} falls apart for a disc of {radius} m")
+                raise NoPlaceError(f"the floor of {kind.name} falls apart for a disc of {radius} m")
         self.free: Grid = whole  # where the robot can stand and get to
-        self._way_off = distance_to(self.free)  # of every cell from there [m]
-        self._openness = distance_to(~free_for(self.size, made.boxes, [], 0.0))
-        self._rows = boxes.rows(made.boxes)  # of fixtures, then of bodies
-        fixtures = enumerate(zip(made.fixtures, made.boxes, strict=True))
-        found = [(k, s) for k, (f, b) in fixtures for s in surfaces_of(f.name, asset(f.asset), f.scale, b)]
+        self._way_off = away_from(self.free, made.room)  # of every cell from there [m]
+        self._openness = distance_to(~free_for(made.room, made.boxes, [], GAP))
+        walls = [*partitions(made.room), *doorways(made.room)]
+        self._rows = boxes.rows([*made.boxes, *walls])  # of fixtures, of what divides the room, then of bodies
+        usable = [(k, f, b) for k, (f, b) in enumerate(zip(made.fixtures, made.boxes, strict=True)) if f.category not in hollow]
+        found = [(k, s) for k, f, b in usable for s in surfaces_of(f.name, asset(f.asset), f.scale, b)]
         self._surfaces = [(k, s) for k, s in found if s.z <= FLAT or LOWEST <= s.z <= HIGHEST]
 
     def place(self, category: str, on_floor: bool) -> bool:
@@ -71,15 +89,11 @@ class Scatter:
                 return True
         return False
 
-    def stranded(self) -> list[str]:
-        """Names of things that the robot can no longer reach, because of others placed later."""
-        return [b.name for b, box in zip(self.bodies, self.boxes, strict=True) if self._way_off[cell_of((box.x, box.y))] > REACH]
-
     def _floor_point(self) -> Vec3:
         w, d = self.size
         for _ in range(TRIES):
             x, y = self.draw.uniform(0.0, w), self.draw.uniform(0.0, d)
-            if self.draw.uniform() < IN_THE_OPEN or min(self._openness[cell_of((x, y))], x, y, w - x, d - y) < ASIDE:
+            if self.draw.uniform() < self.in_the_open or min(self._openness[cell_of((x, y))], x, y, w - x, d - y) < ASIDE:
                 break
         return x, y, 0.0
 
@@ -112,8 +126,8 @@ class Scatter:
             free = largest(left)
             if free.sum() < WHOLE * left.sum():
                 return False
-            way_off = distance_to(free)
-        if way_off[cell_of((box.x, box.y))] > REACH:
+            way_off = away_from(free, self.made.room)
+        if any(way_off[cell_of((b.x, b.y))] > REACH for b in (box, *self.boxes)):
             return False
         self.free, self._way_off = free, way_off
         self.bodies.append(body)
@@ -122,17 +136,15 @@ class Scatter:
         return True
 
 
-def fill(scatter: Scatter) -> tuple[str, ...]:
+def fill(scatter: Scatter, layout: Layout) -> tuple[str, ...]:
     """Place all objects of a room, those for the floor and the bulky ones first; returns the categories of the targets."""
-    draw, layout = scatter.draw, scatter.layout
+    draw = scatter.draw
     wanted, chosen = wanted_things(layout, draw)
-    length = {c: max(asset(m).extent[k] for m in models_of(c) for k in (0, 1)) for c in dict.fromkeys(wanted)}
+    length = {c: _length(c) for c in dict.fromkeys(wanted)}
     things = [(c, draw.uniform() < ON_FLOOR[length[c] > BULKY]) for c in wanted]
     for category, on_floor in sorted(things, key=lambda t: (not t[1], -length[t[0]], t[0])):
         if not scatter.place(category, on_floor):
             raise NoPlaceError(f"a {category} finds no place in {layout.name}")
-    if scatter.stranded():
-        raise NoPlaceError(f"out of reach in {layout.name}: {', '.join(scatter.stranded())}")
     return chosen
 
 
@@ -141,8 +153,10 @@ def wanted_things(layout: Layout, draw: Draw) -> tuple[list[str], tuple[str, ...
     pool = [c for c in layout.pool if models_of(c)]
     chosen, others = choose_targets(pool, draw)
     targets = list(chosen) + [draw.one(chosen) for _ in range(draw.whole(*layout.targets) - len(chosen))]
-    variety = draw.shuffled(others)
-    return targets + [variety[k % len(variety)] for k in range(layout.bodies - len(targets))], chosen
+    variety = draw.shuffled(others + [c for c in layout.things if models_of(c) and c not in pool])
+    again = [c for c in variety if _length(c) <= BULKY]  # one of each bulky kind is enough
+    more = layout.bodies - len(targets)
+    return targets + (variety + again * (1 + more // len(again)))[:more], chosen
 
 
 def choose_targets(pool: list[str], draw: Draw) -> tuple[tuple[str, ...], list[str]]:
@@ -155,3 +169,8 @@ def choose_targets(pool: list[str], draw: Draw) -> tuple[tuple[str, ...], list[s
         four = [CATEGORIES[c] for c in pile[:TARGET_CATEGORIES]]
         if len({k.value == HIGH_VALUE for k in four}) == 2 and len({k.flammable for k in four}) == 2:
             return tuple(sorted(pile[:TARGET_CATEGORIES])), pile[TARGET_CATEGORIES:]
+
+
+def _length(category: str) -> float:
+    """The longest edge of any model of a category [m]."""
+    return max(max(asset(m).extent) for m in models_of(category))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from hazard_ms.spec import Opening, Partition, Room, Vec3
+from hazard_ms.spec import Opening, Partition, Patch, Room, Vec3
 
 WALL = 0.12  # thickness [m]
 FRAME = 0.05  # width of door and window frames [m]
@@ -17,7 +17,7 @@ SKIRTING = (0.08, 0.012)  # height, thickness [m]
 WALLS = ("south", "east", "north", "west")
 KINDS = ("door", "window", "doorway")  # of openings
 HORIZON = 60.0  # how far the ground is drawn around an open place [m]
-PATCH = 0.002  # thickness of a patch of ground [m]
+PATCH = 0.002  # by which a patch of ground stands out of what it lies on [m]
 
 MATERIALS: dict[str, Vec3] = {  # linear base colours; a material is also the name of a texture where the assets have one
     "wood": (0.30, 0.16, 0.08),
@@ -32,6 +32,21 @@ MATERIALS: dict[str, Vec3] = {  # linear base colours; a material is also the na
     "door": (0.42, 0.26, 0.14),
     "metal": (0.55, 0.55, 0.57),
     "glass": (0.62, 0.78, 0.90),
+    "parquet": (0.41, 0.23, 0.10),
+    "light_wood": (0.48, 0.36, 0.22),
+    "dark_tile": (0.06, 0.06, 0.07),
+    "carpet_blue": (0.05, 0.10, 0.13),
+    "wallpaper_stripes": (0.59, 0.53, 0.40),
+    "wallpaper_flowers": (0.60, 0.64, 0.58),
+    "brick": (0.28, 0.10, 0.07),
+    "concrete": (0.35, 0.34, 0.31),
+    "asphalt": (0.06, 0.06, 0.06),
+    "pavement": (0.30, 0.29, 0.27),
+    "grass": (0.09, 0.13, 0.03),
+    "gravel": (0.13, 0.12, 0.10),
+    "soil": (0.10, 0.05, 0.03),
+    "line_white": (0.75, 0.75, 0.72),
+    "line_yellow": (0.72, 0.48, 0.05),
 }
 FLOORS = ("wood", "tile", "carpet")
 WALL_FINISHES = ("plaster", "paint_white", "paint_green", "paint_blue")
@@ -127,12 +142,20 @@ def _ground(room: Room) -> Iterator[ShellBox]:
     x, y = room.size
     around = room.beyond + HORIZON
     yield ShellBox("ground", "floor", (x / 2, y / 2, -WALL / 2), (x + 2 * around, y + 2 * around, WALL), room.floor)
+    layers: dict[Patch, int] = {}
     for i, p in enumerate(room.patches):
-        middle, top = ((p.min[0] + p.max[0]) / 2, (p.min[1] + p.max[1]) / 2), (i + 1) * PATCH
-        size = (p.max[0] - p.min[0], p.max[1] - p.min[1], top)
+        below = [q for q in room.patches[:i] if _overlap(p, q)]
+        layer = 1 + max((layers[q] for q in below), default=0)
+        layers[p] = layer
+        size = (p.max[0] - p.min[0], p.max[1] - p.min[1], layer * PATCH)
         if min(size) <= 0.0:
             raise ValueError(f"{p} has no area; max must be beyond min")
-        yield ShellBox(f"patch_{i}", "floor", (*middle, top / 2), size, p.material, collides=False)
+        centre = ((p.min[0] + p.max[0]) / 2, (p.min[1] + p.max[1]) / 2, size[2] / 2)
+        yield ShellBox(f"patch_{i}", "floor", centre, size, p.material, collides=False)
+
+
+def _overlap(a: Patch, b: Patch) -> bool:
+    return all(a.min[k] < b.max[k] and b.min[k] < a.max[k] for k in (0, 1))
 
 
 def _slabs(room: Room) -> Iterator[ShellBox]:

@@ -1,70 +1,75 @@
-"""Names of scenes, which split holds them, and the scene of each name."""
+"""Names of scenes, which split of which family holds them, and the scene of each name: the one list of all scenes."""
 
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
+from dataclasses import dataclass
 
-from hazard_ms.scenes.arrangement import NoPlaceError
-from hazard_ms.scenes.draw import Draw
-from hazard_ms.scenes.endangering import FLAME, START, fires, start
-from hazard_ms.scenes.floor import free_for
-from hazard_ms.scenes.layout import Layout
-from hazard_ms.scenes.placement import furnish
-from hazard_ms.scenes.rooms import LAYOUTS
-from hazard_ms.scenes.scatter import Scatter, fill
+from hazard_ms.scenes import indoor, streets
 from hazard_ms.spec import SceneSpec
 
-GENERATOR = "1"  # goes up whenever the same name would give another scene
-ATTEMPTS = 60  # at one scene
-NUMBERS = {"train": range(0, 20), "test": range(20, 25)}  # of the scenes of every room
+SCENES = 25  # of every place, HAZARD 4.1
 
 
-def split_names() -> tuple[str, ...]:
-    """Names of the splits."""
-    return tuple(NUMBERS)
+@dataclass(frozen=True)
+class Family:
+    """Scenes of one sort: the places of each split, and what makes a scene from its place, its name and its split."""
+
+    places: dict[str, tuple[str, ...]]
+    make: Callable[[str, str, str], SceneSpec]
 
 
-def scene_names(split: str) -> tuple[str, ...]:
+FAMILIES: dict[str, Family] = {
+    "indoor": Family(
+        {
+            "train": ("kitchen_a", "living_room_a", "craft_room_a"),
+            "test": ("kitchen_b",),
+            "large": ("flat_a",),
+            "new_objects": ("kitchen_b_new",),
+        },
+        indoor.make,
+    ),
+    "outdoor": Family({"train": ("street", "crossing", "park"), "test": ("parking",)}, streets.make),
+}
+
+
+def families() -> tuple[str, ...]:
+    """Names of the families."""
+    return tuple(FAMILIES)
+
+
+def split_names(family: str = "indoor") -> tuple[str, ...]:
+    """Names of the splits of a family."""
+    return tuple(_family(family).places)
+
+
+def scene_names(split: str, family: str = "indoor") -> tuple[str, ...]:
     """Names of the scenes of a split: "kitchen_a/00", ..."""
-    if split not in NUMBERS:
-        raise ValueError(f"no split is called {split!r}; there are {', '.join(NUMBERS)}")
-    return tuple(f"{room}/{n:02d}" for room in LAYOUTS for n in NUMBERS[split])
+    places = _family(family).places
+    if split not in places:
+        raise ValueError(f"no split is called {split!r}; there are {', '.join(places)}")
+    return tuple(f"{place}/{n:02d}" for place in places[split] for n in range(SCENES))
 
 
-def all_scene_names() -> tuple[str, ...]:
-    """Names of all scenes."""
-    return tuple(name for split in NUMBERS for name in scene_names(split))
+def all_scene_names(family: str = "indoor") -> tuple[str, ...]:
+    """Names of all scenes of a family."""
+    return tuple(name for split in split_names(family) for name in scene_names(split, family))
 
 
-@functools.lru_cache(maxsize=256)
+@functools.lru_cache(maxsize=512)
 def scene(name: str) -> SceneSpec:
-    """The scene called `name`: always the same."""
-    for split in NUMBERS:
-        if name in scene_names(split):
-            return generate(LAYOUTS[name.split("/")[0]], name, split)
-    known = ", ".join(f"{room}/00 to {room}/{max(max(n) for n in NUMBERS.values()):02d}" for room in LAYOUTS)
+    """The scene called `name`, of whichever family: always the same."""
+    for family in FAMILIES:
+        for split in split_names(family):
+            if name in scene_names(split, family):
+                return FAMILIES[family].make(name.split("/")[0], name, split)
+    places = [place for f in FAMILIES.values() for split in f.places.values() for place in split]
+    known = ", ".join(f"{place}/00 to {place}/{SCENES - 1:02d}" for place in places)
     raise ValueError(f"no scene is called {name!r}; there are {known}")
 
 
-def generate(layout: Layout, name: str, split: str) -> SceneSpec:
-    """A scene of the kind `layout`; `name` is the seed."""
-    for attempt in range(ATTEMPTS):
-        draw = Draw(GENERATOR, name, attempt)
-        try:
-            return _attempt(layout, name, split, draw)
-        except NoPlaceError as problem:
-            last = problem
-    raise ValueError(f"{name} could not be laid out in {ATTEMPTS} attempts; the last: {last}")
-
-
-def _attempt(layout: Layout, name: str, split: str, draw: Draw) -> SceneSpec:
-    made = furnish(layout, draw)
-    scatter = Scatter(made, layout)
-    chosen = fill(scatter)
-    size, standing = made.room.size, (made.boxes, scatter.boxes)
-    agent = start(free_for(size, *standing, START) & scatter.free, draw)
-    targets = [box for body, box in zip(scatter.bodies, standing[1], strict=True) if body.category in chosen]
-    bare = free_for(size, *standing, FLAME)
-    burning = fires(draw.one(layout.fires), scatter.free, bare, agent, targets, size, draw)
-    bodies = tuple(sorted(scatter.bodies, key=lambda b: b.name))
-    return SceneSpec(name, made.room, tuple(made.fixtures), bodies, chosen, burning, agent, split)
+def _family(name: str) -> Family:
+    if name not in FAMILIES:
+        raise ValueError(f"no family of scenes is called {name!r}; there are {', '.join(FAMILIES)}")
+    return FAMILIES[name]

@@ -13,7 +13,6 @@ from hazard_ms.skills.kinematics import Posture, solve
 from hazard_ms.skills.motion import CLOSE, finite, wrap
 from hazard_ms.skills.stage import Skill, Stage
 
-POINTING = np.deg2rad([60.0, 30.0, 85.0, 0.0])  # how far below the horizon the fingers point, in the order of trying
 ENOUGH = 0.05  # position error of a posture that counts as reaching [m]
 OVER = 0.25  # the hand comes to things above this height from above, with the arm unfolded first [m]
 NEARLY = 0.35  # a posture on the way is passed when every joint is this close [rad]
@@ -31,7 +30,7 @@ def way(stage: Stage, point: NDArray[np.float64]) -> Posture:
     level = point[:2] - shoulder[:2]
     level = level / max(float(np.hypot(*level)), 1e-6)
     best: Posture | None = None
-    for down in POINTING:
+    for down in stage.robot.pointing:
         found = solve(stage.robot, point, np.array([*(np.cos(down) * level), -np.sin(down)]))
         if best is None or found.error < best.error:
             best = found
@@ -46,6 +45,7 @@ def reach_for(stage: Stage, point: tuple[float, float, float] | NDArray[np.float
     goal = np.array([finite(c, "coordinate of the point") for c in point])
     if goal.shape != (3,):
         raise ValueError(f"point {tuple(goal)} has {len(goal)} coordinates; 3 are allowed")
+    stage.robot.use_hand(goal)
     best = way(stage, goal)
     if best.error > ENOUGH:
         return Result(False, UNREACHABLE)
@@ -62,7 +62,8 @@ def ready(stage: Stage, height: float) -> NDArray[np.float64]:
     ahead = READY * build.span(height)[1] - build.shoulder[0]
     level = np.array([np.cos(heading), np.sin(heading)])
     point = np.array([*(stage.robot.shoulder()[:2] + ahead * level), height])
-    return solve(stage.robot, point, np.array([*(np.cos(POINTING[0]) * level), -np.sin(POINTING[0])])).arm
+    down = stage.robot.pointing[0]
+    return solve(stage.robot, point, np.array([*(np.cos(down) * level), -np.sin(down)])).arm
 
 
 def never() -> bool:

@@ -41,6 +41,7 @@ def pick_up(stage: Stage, index: int, frames: int = PICK_FRAMES) -> Skill:
             used += near.frames
             if not near.ok and attempt:
                 break
+        stage.robot.use_hand(stage.position(index), attempt)
         turned = yield from turn_to(stage, stage.position(index)[:2])
         taken = yield from _take(stage, index)
         used += turned.frames + taken.frames

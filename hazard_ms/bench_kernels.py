@@ -1,0 +1,99 @@
+"""What the kernels of hazards cost: milliseconds of one thread for 1,024 environments of 64 bodies, the sizes of physics.md 4."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial
+
+import torch
+
+from hazard_ms.hazards import floating, presets
+from hazard_ms.hazards.buoyancy import immersion
+from hazard_ms.hazards.drag import axes_of, drag, face_areas, planes, spin_drag
+from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec
+from hazard_ms.world import World
+
+ENVIRONMENTS, BODIES = 1024, 64
+REPEATS = 10
+STEP = 0.01  # [s]
+
+Kernel = Callable[[], object]
+
+
+def flood_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
+    """Those of water, on bodies of all shapes in all attitudes near the surface."""
+    shape = (environments, bodies)
+    chance = torch.Generator().manual_seed(0)
+
+    def random(*more: int) -> torch.Tensor:
+        return torch.rand(*shape, *more, generator=chance)
+
+    rotation = torch.nn.functional.normalize(random(4) - 0.5, dim=-1)
+    extent, velocity, spin = 0.1 + 0.2 * random(3), random(3) - 0.5, random(3) - 0.5
+    kind = (3 * random()).long()
+    things = dict(mass=0.1 + random(), volume=extent.prod(-1), shape=kind, drag_coefficient=torch.ones(shape))
+    body = floating.Bodies.of(velocity, spin, rotation, extent, **things)
+    height, slope = 0.2 * (random() - 0.5), 0.05 * planes(random(2))
+    flow, pull, water = planes(velocity), face_areas(body.extent), floating.Water()
+    wet = immersion(height, slope, body.axes, body.extent / 2, kind)
+    return {
+        "axes of quaternions": lambda: axes_of(rotation),
+        "flood: 3x3 columns": lambda: immersion(height, slope, body.axes, body.extent / 2, kind),
+        "flood, wind: drag per face": lambda: drag(flow, body.axes, pull, body.mass, STEP),
+        "flood, wind: drag of turning": lambda: spin_drag(flow, body.axes, body.extent, body.mass, 1000.0, STEP),
+        "flood: the whole push of water": lambda: floating.push(water, body, wet, flow, height, STEP),
+    }
+
+
+def wind_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
+    """Those of wind: a whole step of each preset, and a frame, on bodies in all attitudes in a street with three carts and a hedge."""
+    carts = tuple(Fixture(f"cart_{k}", "cart", "", (4.0 * k + 2.0, 8.0, 0.0)) for k in range(3))
+    hedge = Fixture("hedge_1", "hedge", "", (8.0, 4.0, 0.0))
+    moving = tuple(Body(f"bag_{k}", "bag", "", (0.3 * k, 6.0, 0.0)) for k in range(max(1, bodies - 4)))
+    street = Room((16.0, 16.0), open_air=True, beyond=4.0)
+    spec = SceneSpec("bench/street", street, (*carts, hedge), moving, ("bag",), (), AgentStart((1.0, 1.0)), wind=(3.0, 2.0))
+    extents = [(0.3, 0.2, 0.25)] * len(moving) + [(0.54, 0.94, 1.03)] * 3 + [(5.0, 0.6, 1.4)]
+    world = World.of((spec,) * environments, [extents] * environments, [[1.0] * len(extents)] * environments)
+    chance = torch.Generator().manual_seed(0)
+    world.rotation[:] = torch.nn.functional.normalize(torch.rand(world.rotation.shape, generator=chance) - 0.5, dim=-1)
+    world.velocity[:] = torch.rand(world.velocity.shape, generator=chance) - 0.5
+    made: dict[str, Kernel] = {}
+    for name in ("paper", "shipped", "realistic"):
+        hazard = presets.wind(name)
+        state = hazard.state_type.allocate({"E": environments, "B": len(extents), **hazard.sizes(world)}, "cpu")
+        hazard.reset(state, world, torch.arange(environments))
+        world.chance.tick()
+        hazard.advance(state, world, STEP)
+        made[f"wind: force, {name}"] = partial(hazard.force, state, world, STEP)
+        made[f"wind: a frame, {name}"] = partial(hazard.advance, state, world, STEP)
+    return made
+
+
+KERNELS: tuple[Callable[[int, int], dict[str, Kernel]], ...] = (flood_kernels, wind_kernels)
+
+
+def milliseconds(kernel: Kernel, repeats: int = REPEATS) -> float:
+    """The least time of one call in this thread, after a first one [ms]: other work on the machine is left out as far as possible."""
+    kernel()
+    spans = []
+    for _ in range(repeats):
+        start = time.thread_time()
+        kernel()
+        spans.append(time.thread_time() - start)
+    return 1e3 * min(spans)
+
+
+def report(environments: int = ENVIRONMENTS, bodies: int = BODIES, repeats: int = REPEATS) -> str:
+    """A table of all kernels, one thread each."""
+    for name, value in (("environments", environments), ("bodies", bodies), ("repeats", repeats)):
+        if not value > 0:
+            raise ValueError(f"{name} is {value}; a positive number is allowed")
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        found = {name: milliseconds(kernel, repeats) for make in KERNELS for name, kernel in make(environments, bodies).items()}
+    finally:
+        torch.set_num_threads(threads)
+    lines = [f"{environments} environments of {bodies} bodies, one thread, best of {repeats} calls"]
+    return "\n".join([*lines, *(f"  {name:34s} {ms:8.2f} ms" for name, ms in found.items())])

@@ -1,0 +1,97 @@
+"""Effect entities: one mesh with its own material, drawn by the effect pass alone; and the entities of things."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import sapien
+from sapien.render import RenderBodyComponent, RenderMaterial, RenderShapeTriangleMesh, RenderTexture2D
+
+from hazard_ms.effects import meshes, shader_pack
+
+FRAMES_PER_SECOND = 30.0  # of the animation, as videos play
+PREFIX = "effect_"  # of the names of effect entities
+HIDDEN = sapien.Pose([0.0, 0.0, meshes.NOWHERE])
+
+
+@dataclass
+class Effect:
+    """One effect entity with its own material."""
+
+    entity: sapien.Entity
+    material: RenderMaterial
+    seed: float
+    shown: bool = False
+
+    def show(self, pose: sapien.Pose, strength: float, time: float) -> None:
+        """Show it at `pose`, with the two numbers that glsl.py reads from the material."""
+        self.entity.set_pose(pose)
+        self.material.transmission = strength
+        self.material.transmission_roughness = time + 10.0 * self.seed
+        self.shown = True
+
+    def hide(self) -> None:
+        if self.shown:
+            self.entity.set_pose(HIDDEN)
+            self.shown = False
+
+
+def make_effect(
+    scene: sapien.Scene, texture: RenderTexture2D, make: Callable[[RenderMaterial], RenderShapeTriangleMesh | None], number: int
+) -> Effect | None:
+    """A hidden effect with the mesh that `make(material)` gives, its material showing `texture`; None where it gives none."""
+    material = RenderMaterial(base_color=[1.0, 1.0, 1.0, 1.0])
+    material.base_color_texture = texture
+    material.base_color = [1.0, 1.0, 1.0, 1.0]  # a texture is only seen after a scalar has been set (SAPIEN 3.0.3)
+    shape = make(material)
+    if shape is None:
+        return None
+    body = RenderBodyComponent()
+    body.attach(shape)
+    body.disable_render_id()
+    entity = sapien.Entity()
+    entity.name = f"{PREFIX}{number}"
+    entity.add_component(body)
+    entity.set_pose(HIDDEN)
+    scene.add_entity(entity)
+    body.shading_mode = shader_pack.EFFECT_PASS
+    for node in body._internal_node.children:
+        node.cast_shadow = False  # nothing to cast, but each would cost a draw in every shadow map
+    return Effect(entity, material, seed(number))
+
+
+def draws(scene: sapien.Scene) -> bool:
+    """Whether the scene has a renderer."""
+    try:
+        return scene.render_system is not None
+    except RuntimeError:  # SAPIEN's way of saying that there is none
+        return False
+
+
+def entities_of(scene: sapien.Scene, names: tuple[str, ...]) -> list[sapien.Entity]:
+    """The entities of things: called by the thing's name, after whatever prefix the builder of the scene gives."""
+    found = {e.name.rsplit("/", 1)[-1]: e for e in scene.entities}
+    missing = [n for n in names if n not in found]
+    if missing:
+        raise ValueError(f"the scene has no entity for {', '.join(missing)}; it has {', '.join(sorted(found))}")
+    return [found[n] for n in names]
+
+
+def solid_materials(scene: sapien.Scene) -> Iterator[RenderMaterial]:
+    """Materials of all that is drawn in `scene`, effects apart."""
+    for entity in scene.entities:
+        if not entity.name.startswith(PREFIX):
+            yield from materials(entity)
+
+
+def materials(entity: sapien.Entity) -> list[RenderMaterial]:
+    """Materials of all that is drawn of `entity`."""
+    body = entity.find_component_by_type(RenderBodyComponent)
+    shapes = body.render_shapes if body else []
+    return [m for s in shapes for m in ([p.material for p in s.parts] if isinstance(s, RenderShapeTriangleMesh) else [s.material])]
+
+
+def seed(number: int) -> float:
+    """A number in [0, 1) for the effect `number`: evenly spread."""
+    return (number + 1) * meshes.GOLDEN % 1.0

@@ -1,0 +1,43 @@
+"""How wind varies: gusts in time, less of it near the ground, and turbulence from thing to thing.
+
+Gust    an Ornstein-Uhlenbeck process of unit variance, advanced exactly: g' = c g + sqrt(1 - c^2) n, c = exp(-dt / T), n normal. Its
+        distribution does not depend on dt. Below 0.3 Hz as good as a von Karman spectrum (physics.md 3.3).
+Profile u(z) / u(10 m) = ln(z / z0) / ln(10 / z0), the logarithmic law over ground of roughness z0; 0 below z0.
+Turbulence  r, a new random vector per frame (paper: of fixed length; original: normal). A force F r that is held for a frame of dt
+        makes a random walk whose variance grows with dt times time: r is scaled by sqrt(0.01 s / dt), so that it does not.
+"""
+
+from __future__ import annotations
+
+import math
+
+import torch
+from torch import Tensor
+
+from hazard_ms.chance import Chance
+
+ORIGINAL_FRAME = 0.01  # for which the strengths of turbulence are given [s] [physics.md 0.1]
+REFERENCE = 10.0  # height at which meteorologists measure wind [m]
+
+
+def gust(now: Tensor, dt: float, time: float, normal: Tensor) -> Tensor:
+    """Standardised gusts after `dt` seconds, correlated over `time` [s]; `normal`: standard normal numbers, all of one shape."""
+    kept = math.exp(-dt / time)
+    return kept * now + math.sqrt(1.0 - kept**2) * normal
+
+
+def profile(height: Tensor, roughness: float) -> Tensor:
+    """Share of the wind at 10 m that blows at `height` [m] over ground of `roughness` [m]."""
+    return torch.log(height.clamp(min=roughness) / roughness) / math.log(REFERENCE / roughness)
+
+
+def per_frame(dt: float) -> float:
+    """By how much a random force that is held for `dt` seconds must differ from one held for the original's frame."""
+    return math.sqrt(ORIGINAL_FRAME / dt)
+
+
+def normal_pairs(chance: Chance, stream: str, *shape: int) -> tuple[Tensor, Tensor]:
+    """Two independent sets of standard normal numbers, each [E, *shape]: both halves of Box and Muller's transform."""
+    first, second = chance.uniform(stream, *shape, 2).unbind(-1)
+    length = torch.sqrt(-2.0 * torch.log(first))
+    return length * torch.cos(2.0 * math.pi * second), length * torch.sin(2.0 * math.pi * second)

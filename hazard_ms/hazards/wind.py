@@ -1,0 +1,188 @@
+"""Wind as in the HAZARD challenge: a steady flow over the whole scene pushes, sways and turns every free thing.
+
+    F = F1 + r x F1,   F1 = gain rho A |s| s,   s = felt wind - velocity along the wind,   torque = F1 x r' h / 2
+
+The felt wind is the scene's wind / (1 + resistance); r and r' are drawn anew in every frame (none in the first), h is the height of
+the thing's box. The step is exact for a free body (hazard_ms.hazards.air), so no thing outruns the wind. What lies in a cart has
+settled: it feels nothing, for ever. Constants: physics.md 1.3; what the presets change: physics.md 1.5, R9 to R13.
+
+`realistic` is the same with c = Cd / 2 for the gain, the whole relative velocity, gusts, the logarithmic profile, sheltered lees, and for
+a torque the pressure upwind of the centre. Wind damages nothing. Things that it carries away stop at the enclosure that `Room.beyond`
+sets. Limits: no lift, no added mass; things do not shelter one another.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from hazard_ms.catalogue import IMMOVABLE
+from hazard_ms.hazards import air, drag, gusts, shelter
+from hazard_ms.hazards.base import Hazard, Push, State, quantity
+from hazard_ms.hazards.containers import container_index, in_containers
+from hazard_ms.world import World
+
+SLOWEST, FASTEST = 2.5, 5.0  # of a wind that the scene leaves open [m/s] [the original's shipped scenes, physics.md 1.3]
+CALM = 1e-3  # slower air does nothing [m/s] [C object.py:41]
+CHEST = 1.0  # height at which the wind acts on the agent [m] [ours]
+
+
+@dataclass
+class WindState(State):
+    """C carts; a shelter map of Y x X cells."""
+
+    heading: Tensor = quantity("E 2", "", "where the wind blows to, a unit vector")
+    speed: Tensor = quantity("E", "m/s", "mean wind, at 10 m where there is a profile")
+    gust: Tensor = quantity("E", "", "excess over the mean wind in standard deviations")
+    felt: Tensor = quantity("E B", "", "share of the wind that a thing feels")
+    strength: Tensor = quantity("E B", "", "force over density, area and speed squared")
+    sway: Tensor = quantity("E 3 B", "", "sideways force over the force along the wind")
+    twist: Tensor = quantity("E 3 B", "m", "torque over the force along the wind")
+    carts: Tensor = quantity("E C", "", "index of a cart, -1 for none", dtype="int", fill=-1)
+    settled: Tensor = quantity("E B", "", "lies in a cart: the wind does not touch it any more", dtype="bool")
+    corner: Tensor = quantity("E 2", "m", "south-west corner of the shelter map")
+    loss: Tensor = quantity("E Y X", "", "share of the wind that is lost near the ground")
+    cause: Tensor = quantity("E Y X", "m", "height of what shelters the cell")
+
+
+@dataclass(frozen=True)
+class Wind(Hazard):
+    """Parameters; the defaults are those of the preset `paper`."""
+
+    name: ClassVar[str] = "wind"
+    state_type: ClassVar[type[State]] = WindState
+
+    # A frame lasts 10/3 of the original's, and walking speeds are given per frame, so the wind's is, too: the agent must not meet things
+    # that are three times as fast for it. Weight does not slow down with the frames, so the gain grows. With it the models of the wind
+    # tasks, at their own masses and a friction of 0.5, drift 1.25 cm per frame in the mean over winds and models, as 1 kg does at 0.3 in
+    # the original (physics.md W-9's law); 0.79 of them move (original: 0.77), 0.32 outrun the agent (0.31). [ours]
+    scale: float = 0.3  # of the scene's wind
+    gain: float = 1400.0  # times rho A v^2 [the paper: "hand-adjusted"]
+    implicit: bool = True  # the exact step for a free body, else the original's explicit one, held at the flow's speed [R12]
+    projected: bool = True  # area across the flow, else x extent times z extent of the axis-aligned box [R9]
+    crossflow: bool = False  # the whole relative velocity counts, else the part along the wind [C object.py:45]
+    turbulence: float = 0.0866  # root mean square length of r per 0.01 s [C wind_utils.py:9: 0.05 per axis]
+    fixed_length: bool = True  # r has exactly this length, else it is normal [R10]
+    torque: float = 0.1  # standard deviation of r' per axis, per 0.01 s [C wind.py:42-47]
+    resistances: bool = True  # those of the catalogue count up to 10, else only those that a scene sets
+    shaped: bool = False  # gain times Cd / 2 of the catalogue
+    pressure: bool = False  # it acts upwind of the centre, so plates turn broadside on, and air slows turning
+    roughness: float = 0.0  # of the ground, for the logarithmic profile [m]; 0: the same wind at all heights
+    gust_intensity: float = 0.0  # standard deviation of the wind's speed over its mean
+    gust_time: float = 5.0  # correlation time of gusts [s] [physics.md W-20]
+    sheltered: bool = False  # fixtures have a lee
+    sweeps_agent: float = (
+        3.354  # at this speed the agent only drifts [m/s]; in a wind of 5 m/s in the scene it keeps 0.8 of its motion [ours]
+    )
+
+    def __post_init__(self) -> None:
+        for name in ("scale", "gain", "gust_time", "sweeps_agent"):
+            if not 0 < getattr(self, name) < math.inf:
+                raise ValueError(f"{name} is {getattr(self, name)}; a positive number is allowed")
+        for name in ("turbulence", "torque", "roughness", "gust_intensity"):
+            if not 0 <= getattr(self, name) < gusts.REFERENCE:
+                raise ValueError(f"{name} is {getattr(self, name)}; 0 or more, below {gusts.REFERENCE}, is allowed")
+
+    def sizes(self, world: World) -> dict[str, int]:
+        deep, wide = shelter.map_size(world) if self.sheltered else (1, 1)
+        return {"C": container_index(world).shape[1], "Y": deep, "X": wide}
+
+    def reset(self, state: WindState, world: World, rows: Tensor) -> None:
+        wind = torch.tensor([world.specs[row].wind for row in rows.tolist()], device=world.device).reshape(-1, 2)
+        draw = world.chance.uniform("wind.mean", 2)[rows]
+        angle, speed = 2.0 * math.pi * draw[:, 0], SLOWEST + (FASTEST - SLOWEST) * draw[:, 1]
+        drawn = torch.stack([speed * torch.cos(angle), speed * torch.sin(angle)], -1)
+        wind = torch.where((wind == 0.0).all(-1, keepdim=True), drawn, wind)
+        state.speed[rows] = self.scale * wind.norm(dim=-1)
+        state.heading[rows] = wind / wind.norm(dim=-1, keepdim=True)
+        state.gust[rows] = world.chance.normal("wind.gust")[rows] if self.gust_intensity else 0.0
+        state.felt[rows] = self._felt_share(world)[rows]
+        state.strength[rows] = self.gain * (0.5 * world.lookup("drag_coefficient")[rows] if self.shaped else 1.0)
+        state.carts[rows] = container_index(world)[rows]
+        if self.sheltered:
+            state.corner[rows] = shelter.south_west(world)[rows]
+            obstacles = shelter.height_map(world, rows, (state.loss.shape[1], state.loss.shape[2]))
+            state.loss[rows], state.cause[rows] = shelter.lee(*obstacles, state.heading[rows])
+
+    def _felt_share(self, world: World) -> Tensor:
+        """1 / (1 + resistance) of every thing, 0 if that is above 10, [E, B]."""
+        resistance = world.lookup("wind_resistance")
+        if not self.resistances:
+            resistance = torch.where(resistance < IMMOVABLE, 0.0, resistance)
+        for e, spec in enumerate(world.specs):
+            for b, body in enumerate(spec.bodies):
+                if body.wind_resistance is not None:
+                    resistance[e, b] = body.wind_resistance
+        return torch.where(resistance > IMMOVABLE - 1, 0.0, 1.0 / (1.0 + resistance))
+
+    def force(self, state: WindState, world: World, dt: float) -> Push:
+        felt = self.speed_at(state, world, world.position) * state.felt
+        free = world.exists & world.movable & ~(world.safe | world.held | state.settled) & (felt.abs() > CALM)
+        slip_of = air.slip_all if self.crossflow else air.slip_along
+        slip, direction = slip_of(felt, state.heading, drag.planes(world.velocity))
+        axes, extent = drag.axes_of(world.rotation), drag.planes(world.extent)
+        across = drag.to_body(axes, direction)
+        if self.projected:
+            area = air.projected_area(across, extent)
+        else:
+            wide, _, high = air.spans(axes, extent)
+            area = wide * high
+        main = air.drag(slip, state.strength * air.DENSITY * area, world.mass, dt, self.implicit).masked_fill_(~free, 0.0)
+        torque = main * state.twist.movedim(1, 0)
+        if self.pressure:
+            torque = torque + main * drag.to_world(axes, air.pressure_arm(across, extent))
+            spin = drag.spin_drag(drag.planes(world.angular_velocity), axes, extent, world.mass, air.DENSITY, dt)
+            torque = torque + spin.masked_fill_(~free, 0.0)
+        return Push(drag.rows(main * (direction + state.sway.movedim(1, 0))), drag.rows(torque))
+
+    def advance(self, state: WindState, world: World, dt: float) -> None:
+        state.settled |= in_containers(world, state.carts, state.settled)
+        if self.gust_intensity:
+            state.gust.copy_(gusts.gust(state.gust, dt, self.gust_time, world.chance.normal("wind.gust")))
+        if not self.turbulence and not self.torque:
+            return
+        draws = gusts.normal_pairs(world.chance, "wind.turbulence", world.num_bodies, 3)
+        sway, twist = (d.movedim(-1, 1) for d in draws)
+        if self.fixed_length:  # a normal vector has no preferred direction
+            sway = math.sqrt(3.0) * sway / sway.square().sum(1, keepdim=True).sqrt()
+        scale = gusts.per_frame(dt)
+        high = air.spans(drag.axes_of(world.rotation), drag.planes(world.extent))[2]
+        state.sway.copy_(air.sideways(state.heading, sway) * (scale * self.turbulence / math.sqrt(3.0)))
+        state.twist.copy_(air.sideways(state.heading, twist) * (0.5 * scale * self.torque * high)[:, None])
+
+    def speed_at(self, state: WindState, world: World, points: Tensor) -> Tensor:
+        """Speed of the air along its heading [m/s] at `points` [m], [E, P, 3], world frame: [E, P]."""
+        speed = (state.speed * (1.0 + self.gust_intensity * state.gust))[:, None].expand(points.shape[:2])
+        if self.roughness:
+            speed = speed * gusts.profile(points[..., 2], self.roughness)
+        if self.sheltered:
+            speed = speed * shelter.share(state.loss, state.cause, state.corner, points)
+        return speed
+
+    def damaged(self, state: WindState, world: World) -> Tensor:
+        """Nothing: wind carries things off."""
+        return torch.zeros_like(world.exists)
+
+    def image(self, state: WindState, world: World, points: Tensor) -> Tensor:
+        """Speed of the air [m/s] at `points` [m], [E, P, 3], world frame, before any thing's resistance: [E, P]."""
+        return self.speed_at(state, world, points).abs()
+
+    def slow(self, state: WindState, world: World) -> Tensor:
+        """What is left of the agent's motion, [E, 3]: the share of its own velocity, and the velocity x, y [m/s] that comes on top.
+
+        The two are a weighted mean of its own velocity and the air's, so it is carried no faster than the wind, and never toppled.
+        """
+        speed = self.speed_at(state, world, self._chest(world))
+        kept = (1.0 - (speed / self.sweeps_agent).square()).clamp(min=0.0)
+        return torch.cat([kept, (1.0 - kept) * speed * state.heading], 1)
+
+    def agent_info(self, state: WindState, world: World) -> dict[str, Tensor]:
+        return {"agent_wind": self.image(state, world, self._chest(world))[:, 0]}
+
+    def _chest(self, world: World) -> Tensor:
+        """Where the wind acts on the agent [m], [E, 1, 3]."""
+        return (world.agent_position + world.agent_position.new_tensor([0.0, 0.0, CHEST]))[:, None]

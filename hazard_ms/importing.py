@@ -1,0 +1,77 @@
+"""`hazard-ms scenes import`: the original benchmark's scene folders -> our JSON files, one for each scene."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+LOG = "log.txt"  # a folder that holds one is a scene
+MOST_SCENES = 2000
+
+
+def import_scenes(paths: Sequence[Path], out: Path) -> int:
+    """Write the scenes of all folders in `paths` into the folder `out`; tell each, and what had to be guessed.
+
+    A scene that cannot be read does not keep the others from being written. Returns the exit code: 1 if there was one.
+    Raises ValueError where there is nothing to read, or nowhere to write.
+    """
+    from hazard_ms.scenes.original import read
+    from hazard_ms.scenes.schema import to_json
+
+    folders = list(dict.fromkeys(f for p in paths for f in _folders(p)))
+    target = _target(out)
+    failed, written = 0, set()
+    for folder in folders:
+        try:
+            found = read(folder)
+            if found.spec.name in written:
+                raise ValueError(f"{folder}: a second scene is called {found.spec.name!r}; names must differ")
+            _write(target, found.spec.name, to_json(found.spec))
+        except ValueError as error:
+            failed += 1
+            print(f"hazard-ms: {error}", file=sys.stderr)
+            continue
+        written.add(found.spec.name)
+        spec = found.spec
+        counts = f"{len(spec.bodies)} bodies, {len(spec.fixtures)} fixtures, {len(spec.targets)} targets, {len(spec.containers)} containers"
+        print(f"{spec.name}: {counts}")
+        for note in found.notes:
+            print(f"  {note}")
+    print(f"{len(written)} scenes in {target}" + (f", {failed} could not be read" if failed else ""))
+    return 1 if failed else 0
+
+
+def _folders(path: Path) -> Iterator[Path]:
+    """The scene folders that a path means: itself, or those in it, or those in folders in it."""
+    if not path.is_dir():
+        raise ValueError(f"{path}: there is no such folder; a scene's folder, or a folder of them, is allowed")
+    path = path.resolve()
+    found = [path] if (path / LOG).is_file() else sorted(f.parent for depth in ("*", "*/*") for f in path.glob(f"{depth}/{LOG}"))
+    if not found or len(found) > MOST_SCENES:
+        raise ValueError(f"{path}: {len(found)} scene folders (with a {LOG}); 1 to {MOST_SCENES} are allowed")
+    yield from found
+
+
+def _target(out: Path) -> Path:
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(f"{out} cannot be made: {error.strerror}") from None
+    return out.resolve()
+
+
+def _write(target: Path, name: str, text: str) -> None:
+    """Write `name`.json into `target`, nowhere else: links are replaced, not followed."""
+    path = target / f"{name}.json"
+    if path.parent != target or path.is_dir():
+        raise ValueError(f"{path} cannot be written: a file directly in {target} is allowed")
+    part = target / f".{name}.{os.getpid()}.part"
+    try:
+        part.unlink(missing_ok=True)
+        with part.open("x", encoding="utf-8") as file:
+            file.write(text)
+        part.replace(path)
+    except OSError as error:
+        raise ValueError(f"{path} cannot be written: {error.strerror}") from None

@@ -1,0 +1,204 @@
+"""Unitree's G1: a humanoid with two hands and a camera in its head, after ManiSkill's own, on a base that moves in the plane.
+
+It walks as on rails: the legs carry it, but do not step. They crouch, and the upper body bends at the hips, so that its short arms
+reach the floor: 0.33 m down and 63 degrees forward at most, within the limits of its joints. An action of skills moves, beside
+the base, one arm; torso, crouch and bend belong to that arm. Which hand is in use, see HandsController.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import sapien
+import torch
+from mani_skill.agents.base_agent import Keyframe
+from mani_skill.agents.controllers import PDJointPosControllerConfig
+from mani_skill.agents.registration import register_agent
+from mani_skill.agents.robots.unitree_g1.g1_upper_body import UnitreeG1UpperBodyWithHeadCamera
+from mani_skill.sensors.camera import CameraConfig
+from numpy.typing import NDArray
+from torch import Tensor
+
+from hazard_ms.robots.g1_controllers import LEFT, RIGHT, HandsController, HandsControllerConfig, LegsControllerConfig
+from hazard_ms.robots.g1_description import DOWN, LEG_JOINTS, g1_description
+from hazard_ms.robots.planar import FORWARD_STEP, HEAD_FOV, TURN_STEP, PlanarRobot, drive_share, turned
+from hazard_ms.robots.robot import Build
+
+BASE_FORCE = 15.0  # per frame rate [N/Hz] and [N m/Hz]; as Fetch's for its weight: 33 kg reach full speed within two to four frames
+BASE_DAMPING = 2e4  # [N s/m] and [N m s/rad]; holds the base's speed while the upper body swings
+CROUCH = 0.2  # way of the crouch that counts as a radian of an arm joint [m/rad]: 0.6 m/s when a skill moves it at 30 Hz
+TWIST = 0.8  # most that skills turn the torso to a side [rad]; the joint could turn by 2.6
+EYES = sapien.Pose([0.07, 0.0, 0.46], [np.cos(np.pi / 12), 0.0, np.sin(np.pi / 12), 0.0])  # in the head, 30 degrees down as ManiSkill's
+
+BODY = ("torso_joint", "crouch_joint", "bend_joint")
+ARM = ("shoulder_pitch", "shoulder_roll", "shoulder_yaw", "elbow_pitch", "elbow_roll")
+ARMS = tuple([f"{side}_{part}_joint" for part in ARM] for side in ("right", "left"))  # by RIGHT, LEFT
+FINGERS = ("zero", "one", "two", "three", "four", "five", "six")
+GRIP = (0.0, -0.6, -0.8, 0.9, 0.9, 0.9, 0.9)  # the right hand's fingers when shut [rad]; the left's mirrored
+MIRROR = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0, 1.0, -1.0])  # of the arm's joints from the right to the left
+SCALE = np.array([1.0, CROUCH, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])  # from joints as skills see them to those of the simulator
+
+# Arm joints: torso turn, crouch, bend; shoulder pitch, roll, yaw; elbow; forearm roll. Here with the hands beside the thighs.
+TUCKED = np.array([0.0, 0.0, 0.0, 0.4, -0.12, 0.0, 1.1, 0.0])
+# The same with all joints in SAPIEN's order, left before right: base x, y, turn; crouch; bend; hip pitch; torso; shoulder pitch; knee;
+# shoulder roll; ankle; shoulder yaw; elbow; forearm roll; seven fingers of each hand.
+REST = np.array([0.0] * 8 + [0.4, 0.4, 0, 0, 0.12, -0.12, 0, 0, 0, 0, 1.1, 1.1, 0, 0] + [0.0] * 14)
+
+# Where to look from for a way to reach something: straight ahead, bent, crouched and bent, up.
+STRETCHED = (
+    np.array([0.0, 0.0, 0.1, -0.8, 0.0, 0.0, 0.8, 0.0]),
+    np.array([0.0, 0.3, 0.7, -1.2, 0.0, 0.0, 0.9, 0.0]),
+    np.array([0.0, 1.5, 1.0, -1.3, 0.0, 0.0, 1.0, 0.0]),
+    np.array([0.0, 0.0, 0.1, -2.0, 0.0, 0.0, 1.2, 0.0]),
+)
+
+
+@register_agent()
+class HazardG1(UnitreeG1UpperBodyWithHeadCamera, PlanarRobot):
+    """G1 as a rescuer; `robot_uids="g1"` of the hazard environments."""
+
+    uid = "hazard_g1"
+    disable_self_collisions = True  # as Fetch's: arms pass close to the body
+    keyframes = {"rest": Keyframe(pose=sapien.Pose(), qpos=REST)}
+    build = Build(
+        forward_step=FORWARD_STEP,
+        turn_step=TURN_STEP,
+        arm_step=0.1,
+        radius=0.29,
+        shoulder=(0.0, 1.02),
+        reach=0.46,
+        elbow_room=0.45,
+        nearest=0.25,
+        stoops=((0.12, 1.00), (0.36, 0.78), (0.34, 0.50)),
+    )
+    rest = REST
+    ride_height = 0.0
+    bag = (-0.20, 0.0, 0.64)  # behind the hips, out of the camera's sight, within reach of both hands
+    head_camera = "head"
+    skill_control_mode = "pd_joint_pos"
+    tucked = TUCKED
+    folded = np.array([0.0, 0.0, 0.0, -0.3, -0.1, 0.9, 0.0, 0.0])
+    pointing = tuple(np.deg2rad([30.0, 0.0, 60.0, -30.0]).tolist())  # up, too, to the top of a shelf
+
+    @property
+    def _sensor_configs(self) -> list[CameraConfig]:
+        size = dict(width=256, height=256, fov=HEAD_FOV, near=0.01, far=100.0)
+        return [CameraConfig(uid=self.head_camera, pose=EYES, entity_uid="head_link", **size)]
+
+    @property
+    def _controller_configs(self) -> dict[str, Any]:
+        names = [*BODY, *ARMS[RIGHT], *ARMS[LEFT]]
+        quicker = self._control_freq / 30.0  # the gains are for 30 Hz; so they keep the joints' way per frame
+        stiffness = np.array([1e3, 4e4, 2e4] + [1e3] * 10) * quicker
+        gains = dict(
+            stiffness=stiffness.tolist(),
+            damping=(np.array([1e2, 2e3, 2e3] + [1e2] * 10) * np.sqrt(quicker)).tolist(),
+            force_limit=(np.array([1e2, 2e3, 5e2] + [1e2] * 10) * quicker).tolist(),
+        )
+        step = np.array([0.2, 0.2 * CROUCH, 0.2] + [0.2] * 10)  # [rad] and [m], as ManiSkill's
+        modes = {
+            "pd_joint_pos": PDJointPosControllerConfig(names, None, None, normalize_action=False, **gains),
+            "pd_joint_delta_pos": PDJointPosControllerConfig(names, (-step).tolist(), step.tolist(), use_delta=True, **gains),
+        }
+        return {name: self._parts(body) for name, body in modes.items()}
+
+    def _parts(self, body: PDJointPosControllerConfig) -> dict[str, Any]:
+        """All controllers of a control mode; `body` moves torso, crouch, bend and arms."""
+        fingers = [f"{side}_{finger}_joint" for side in ("right", "left") for finger in FINGERS]
+        free: dict[str, Any] = dict(lower=None, upper=None, normalize_action=False)
+        hands = HandsControllerConfig(fingers, stiffness=10.0, damping=1.0, force_limit=5.0, grip=(*GRIP, *(-g for g in GRIP)), **free)
+        legs = LegsControllerConfig(list(LEG_JOINTS), stiffness=4e3, damping=130.0, drive_mode="acceleration", **free)
+        return {
+            "body": body,
+            "hands": hands,
+            "legs": legs,
+            "base": self.base_controller(BASE_DAMPING, BASE_FORCE),
+        }
+
+    def _load_articulation(self, initial_pose: Any = None) -> None:
+        installed = Path(UnitreeG1UpperBodyWithHeadCamera.urdf_path)
+        self.urdf_path = str(g1_description(installed, bare=not self.scene.can_render()))
+        super()._load_articulation(initial_pose)
+
+    def _after_init(self) -> None:
+        super()._after_init()
+        self.base_link = self.robot.links_map["base_link"]
+        self._arms = [self.joint_numbers([*BODY, *names]) for names in ARMS]
+        self._tcps = (self.right_tcp, self.left_tcp)
+        self.make_model()
+        self._hands = [self.link_number(tcp) for tcp in self._tcps]
+
+    @property
+    def stretched(self) -> tuple[NDArray[np.float64], ...]:
+        """See Robot; first from where the arm is: of the many ways of so many joints, the nearest is the quickest."""
+        return (self.arm(), *STRETCHED)
+
+    def gripper_pose(self) -> tuple[Tensor, Tensor]:
+        """See Robot."""
+        right, left = (tcp.pose for tcp in self._tcps)
+        first = (self._hand_controller.used == RIGHT)[:, None]
+        return torch.where(first, right.p, left.p), torch.where(first, right.q, left.q)
+
+    def grip_closed(self) -> Tensor:
+        """See Robot."""
+        return self._hand_controller.closed()
+
+    def use_hand(self, point: NDArray[np.float64], attempt: int = 0) -> None:
+        """See Robot; the hand on the point's side, and the other one at every second attempt."""
+        x, y, heading = self.base()
+        to_the_left = (point[1] - y) * np.cos(heading) - (point[0] - x) * np.sin(heading) > 0.0
+        self._hand_controller.use(LEFT if bool(to_the_left) != bool(attempt % 2) else RIGHT)
+
+    def bag_position(self) -> Tensor:
+        """See Robot; it goes down with the hips."""
+        position, heading = self.base_pose()
+        crouch = self.robot.get_qpos()[:, self._arms[RIGHT][1], None]
+        return position + turned(position.new_tensor(self.bag) + crouch * position.new_tensor(DOWN), heading)
+
+    def arm(self) -> NDArray[np.float64]:
+        """See Robot."""
+        used = self._used
+        return self.all_joints()[self._arms[used]] / self._signs(used)
+
+    @cached_property
+    def arm_limits(self) -> NDArray[np.float64]:
+        """See Robot."""
+        limits = self.joint_limits([*BODY, *ARMS[RIGHT]], np.pi) / SCALE[:, None]
+        limits[0] = -TWIST, TWIST
+        return limits
+
+    def kinematics(self, arm: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """See Robot."""
+        used, joints = self._used, self.all_joints()
+        joints[self._arms[used]] = arm * self._signs(used)
+        hand, turn, jacobian = self.hand_kinematics(joints, self._hands[used], self._arms[used])
+        return hand, turn, jacobian * self._signs(used)
+
+    def action(self, forward: float, turn: float, arm: NDArray[np.float64], open_hand: bool) -> NDArray[np.float32]:
+        """See Robot; the other arm hangs beside the body, its hand open."""
+        used = self._used
+        goal = np.clip(arm, self.arm_limits[:, 0], self.arm_limits[:, 1])
+        both = [TUCKED[3:] * MIRROR[3:] ** side for side in (RIGHT, LEFT)]
+        both[used] = (goal * self._signs(used))[3:]
+        hands = np.ones(2)
+        hands[used] = 1.0 if open_hand else -1.0
+        body = np.concatenate([(goal * SCALE)[:3], *both])
+        return self.make_action({"body": body, "hands": hands, "legs": [], "base": drive_share(forward, turn)})
+
+    @property
+    def _hand_controller(self) -> HandsController:
+        hands: HandsController = self.controller.controllers["hands"]
+        return hands
+
+    @property
+    def _used(self) -> int:
+        """The hand in use in the first environment."""
+        return int(self._hand_controller.used[0])
+
+    @staticmethod
+    def _signs(used: int) -> NDArray[np.float64]:
+        """From the arm's joints as skills see them to those of the hand `used` [rad] and [m]."""
+        return SCALE * (MIRROR if used == LEFT else 1.0)

@@ -1,0 +1,145 @@
+"""Robots whose base is moved by three joints (x, y, turn), so that it neither tips nor sinks: what they have in common.
+
+A base is driven by a velocity controller with the benchmark's limits per frame, whatever the length of a frame. A robot names its
+joints and its resting posture; a mixin for agents of ManiSkill.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import sapien
+import torch
+from mani_skill.agents.controllers import PDBaseForwardVelControllerConfig
+from numpy.typing import NDArray
+from torch import Tensor
+
+from hazard_ms.robots.robot import Robot
+
+FORWARD_STEP = 1.0 / 62.0  # walking speed of the benchmark [m per frame]
+TURN_STEP = float(np.deg2rad(6.0))  # turning speed of the benchmark [rad per frame]
+HEAD_FOV = 2.0 * np.pi / 3.0  # vertical field of view of the benchmark's head camera [rad]
+BASE_JOINTS = ("root_x_axis_joint", "root_y_axis_joint", "root_z_rotation_joint")  # the first three joints, as ManiSkill calls them
+LOOK_AHEAD = 3.0  # frames within which the base surely stops
+RIM = 48  # points of the base's rim that are kept out of forbidden floor: 0.04 m apart, so that no corner of it slips between
+
+
+class PlanarRobot(Robot):
+    """The part of the contract that only the base decides, and kinematics from the robot's own description."""
+
+    uid: str  # ManiSkill's name of this kind of robot
+    robot: Any  # ManiSkill's articulation
+    controller: Any  # the controller of the present control mode
+    control_mode: str
+    single_action_space: Any
+    device: torch.device
+    _control_freq: int
+
+    rest: NDArray[np.float64]  # all joints where the robot stands tucked, in SAPIEN's order
+    ride_height: float  # of the description's root above the floor [m]
+    bag: tuple[float, float, float]  # mouth of the bag in the base's frame [m]
+
+    def base_controller(self, damping: float, force: float) -> PDBaseForwardVelControllerConfig:
+        """The base's controller: `damping` [N s/m] and [N m s/rad], `force` per frame rate [N/Hz] and [N m/Hz]."""
+        return PDBaseForwardVelControllerConfig(
+            list(BASE_JOINTS),
+            lower=[-FORWARD_STEP * self._control_freq, -TURN_STEP * self._control_freq],
+            upper=[FORWARD_STEP * self._control_freq, TURN_STEP * self._control_freq],
+            damping=damping,
+            force_limit=force * self._control_freq,
+        )
+
+    def joint_numbers(self, names: list[str]) -> list[int]:
+        """Where the joints of these `names` stand among all joints."""
+        every = [joint.name for joint in self.robot.active_joints]
+        return [every.index(name) for name in names]
+
+    def joint_limits(self, names: list[str], most: float) -> NDArray[np.float64]:
+        """Lower and upper limit of the joints of these `names` [rad] or [m], [J, 2], and `most` to both sides at most."""
+        joints = {joint.name: joint for joint in self.robot.active_joints}
+        return np.clip(np.array([joints[name].limits[0].tolist() for name in names]), -most, most)
+
+    def place(self, rows: Tensor, position: Tensor, heading: Tensor) -> None:
+        """Stand still and tucked, see Robot."""
+        qpos = torch.as_tensor(self.rest, dtype=torch.float32, device=self.device).repeat(len(rows), 1)
+        qpos[:, :2] = position.to(qpos)
+        qpos[:, 2] = heading.to(qpos)
+        self.robot.set_pose(sapien.Pose([0, 0, self.ride_height]))
+        self.robot.set_qpos(qpos)
+        self.robot.set_qvel(torch.zeros_like(qpos))
+        held = self.robot.active_joints[3:]  # all but the base stay where they are until an action moves them
+        self.robot.set_joint_drive_targets(qpos[:, 3:], held, torch.arange(3, qpos.shape[1], device=self.device))
+
+    def base_pose(self) -> tuple[Tensor, Tensor]:
+        """See Robot."""
+        qpos = self.robot.get_qpos()
+        return torch.cat([qpos[:, :2], torch.zeros_like(qpos[:, :1])], dim=-1), qpos[:, 2].clone()
+
+    def bag_position(self) -> Tensor:
+        """See Robot."""
+        position, heading = self.base_pose()
+        return position + turned(position.new_tensor(self.bag).expand_as(position), heading)
+
+    def keep_out(self, forbidden: Callable[[Tensor], Tensor]) -> Tensor:
+        """See Robot; looks LOOK_AHEAD frames ahead of the front half of the base's rim, and of its middle."""
+        position, heading = self.base_pose()
+        joints = self.robot.active_joints[:2]
+        velocity = torch.stack([j.drive_velocity_target.reshape(-1) for j in joints], dim=-1)
+        around = torch.arange(RIM, device=position.device) * (2.0 * np.pi / RIM)
+        rim = self.build.radius * torch.stack([around.cos(), around.sin(), torch.zeros_like(around)], dim=-1)
+        points = torch.cat([rim, torch.zeros_like(rim[:1])])
+        now = position[:, None] + points
+        then = now.clone()
+        then[..., :2] += velocity[:, None] * (LOOK_AHEAD / self._control_freq)
+        front = velocity @ points[:, :2].T >= 0.0  # so that it may always leave what burns beside or behind it
+        stop = (forbidden(then) & ~forbidden(now) & front).any(-1)
+        index = torch.arange(2, dtype=torch.int32, device=self.device)
+        self.robot.set_joint_drive_velocity_targets(torch.where(stop[:, None], 0.0, velocity), joints, index)
+        return stop
+
+    def hand_kinematics(
+        self, joints: NDArray[np.float64], number: int, moving: list[int]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Were all joints at `joints`: position and rotation matrix of link `number`, and its Jacobian for the joints `moving`."""
+        self._model.compute_forward_kinematics(joints)
+        pose = self._model.get_link_pose(number).to_transformation_matrix()
+        self._model.compute_full_jacobian(joints)
+        local = self._model.get_link_jacobian(number, True)[:, moving]
+        turn = pose[:3, :3].astype(np.float64)
+        jacobian = np.vstack([turn @ local[:3], turn @ local[3:]])
+        return pose[:3, 3] + np.array([0.0, 0.0, self.ride_height]), turn, jacobian
+
+    def make_action(self, parts: dict[str, Any]) -> NDArray[np.float32]:
+        """The env's action of what each controller is told; ValueError where the environment has other controllers."""
+        if self.control_mode != self.skill_control_mode:
+            raise ValueError(f"skills need control_mode={self.skill_control_mode!r}; the environment has {self.control_mode!r}")
+        action = np.zeros(self.single_action_space.shape, dtype=np.float32)
+        for name, (start, end) in self.controller.action_mapping.items():
+            action[start:end] = parts[name]
+        return action
+
+    def all_joints(self) -> NDArray[np.float64]:
+        """All joints of the first environment [rad] or [m]."""
+        return self.robot.get_qpos()[0].cpu().numpy().astype(np.float64)
+
+    def make_model(self) -> None:
+        """Prepare `hand_kinematics`; to be called once, when the robot is built."""
+        self._model = self.robot._objs[0].create_pinocchio_model()
+
+    def link_number(self, link: Any) -> int:
+        """Where `link` stands among the robot's links."""
+        return int(self.robot._objs[0].links.index(link._objs[0]))
+
+
+def drive_share(forward: float, turn: float) -> NDArray[np.float64]:
+    """What the base's controller is told to drive `forward` [m] and `turn` [rad] within one frame, within its limits."""
+    return np.clip([forward / FORWARD_STEP, turn / TURN_STEP], -1.0, 1.0)
+
+
+def turned(vector: Tensor, heading: Tensor) -> Tensor:
+    """`vector` [E, 3] turned about z by `heading` [rad], [E]."""
+    c, s = heading.cos(), heading.sin()
+    x, y, z = vector.unbind(-1)
+    return torch.stack([c * x - s * y, s * x + c * y, z], dim=-1)

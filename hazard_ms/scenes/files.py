@@ -1,0 +1,66 @@
+"""Scenes from files: any of our JSON in place of the scenes that a task comes with."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from hazard_ms.scenes.schema import LARGEST_FILE, from_json
+from hazard_ms.spec import SceneSpec, Task
+
+MOST_FILES = 2000
+
+
+def playing(task: Task, scenes: Any) -> Task:
+    """`task` in the scenes of these files, in every split; None: in its own. `scenes`: a JSON file, a folder of them, or a list."""
+    if scenes is None:
+        return task
+    found = read_scenes(scenes)
+    names = tuple(found)
+    return dataclasses.replace(task, scenes=lambda split: names, build=found.__getitem__)
+
+
+def read_scenes(scenes: Any) -> dict[str, SceneSpec]:
+    """The scenes of JSON files by name; folders give all of theirs, in the order of their names. Raises ValueError naming the file."""
+    paths = [scenes] if isinstance(scenes, (str, os.PathLike)) else scenes
+    if not isinstance(paths, Sequence) or not paths or not all(isinstance(p, (str, os.PathLike)) for p in paths):
+        raise ValueError(f"scenes is {scenes!r:.200}; a JSON file, a folder of them, or a list of both is allowed")
+    found: dict[str, SceneSpec] = {}
+    for path in (p for given in paths for p in _files(Path(given))):
+        spec = read_scene(path)
+        if spec.name in found:
+            raise ValueError(f"{path}: a second scene is called {spec.name!r}; names must differ")
+        found[spec.name] = spec
+    return found
+
+
+def read_scene(path: Path) -> SceneSpec:
+    """The scene in a JSON file. Raises ValueError naming the file and what is wrong with it."""
+    try:
+        with path.open("rb") as file:
+            raw = file.read(LARGEST_FILE + 1)
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
+    try:
+        return from_json(raw)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _files(given: Path) -> list[Path]:
+    """The JSON files that a path means, at least one."""
+    found = sorted(given.glob("*.json"), key=_natural) if given.is_dir() else [given]
+    if not found or len(found) > MOST_FILES:
+        raise ValueError(f"{given}: {len(found)} files *.json; 1 to {MOST_FILES} are allowed")
+    return found
+
+
+def _natural(path: Path) -> list[tuple[int, str]]:
+    """Sorts scene-2 before scene-10."""
+    parts: list[tuple[int, str]] = []
+    for word in path.stem.replace("_", "-").split("-"):
+        parts.append((int(word), "") if word.isascii() and word.isdigit() and len(word) < 10 else (-1, word))
+    return parts

@@ -202,13 +202,15 @@ def pose_of(position: tuple[float, float, float], heading: float) -> Pose:
 
 
 def build_lights(scene: Any, specs: tuple[SceneSpec, ...]) -> None:
-    """Daylight from above with one shadow, and a lamp under each ceiling; in the open, the sky."""
+    """Daylight from above with one shadow, and a lamp under each ceiling; in the open, the sky and its sun."""
     outdoors = specs[0].room.open_air
-    scene.set_ambient_light([0.38, 0.42, 0.48] if outdoors else [0.45, 0.44, 0.42])
+    scene.set_ambient_light([0.0, 0.0, 0.0] if outdoors else [0.45, 0.44, 0.42])  # in the open, light comes from the sky
     wide = max(np.hypot(*s.room.size) for s in specs)  # a place outside of the shadows' reach would shine through the ceiling
-    pixels = 2048 if outdoors else 1024
-    scene.add_directional_light([0.4, 0.6, -1.0], [0.9, 0.87, 0.8], shadow=True, shadow_scale=wide, shadow_map_size=pixels)
+    toward, colour, pixels = (SUN, SUNLIGHT, 2048) if outdoors else (WINDOW_LIGHT, [0.9, 0.87, 0.8], 1024)
+    scene.add_directional_light(toward, colour, shadow=True, shadow_scale=wide, shadow_map_size=pixels)
     for e, spec in enumerate(specs):
+        if spec.room.open_air and scene.can_render():
+            scene.sub_scenes[e].set_environment_map(str(asset_path(asset(SKY).visual)))
         for x, y in lamp_places(spec.room) if not spec.room.open_air else ():
             scene.add_point_light([x, y, spec.room.height - 0.4], [2.0, 1.9, 1.7], scene_idxs=[e])
 

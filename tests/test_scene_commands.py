@@ -56,10 +56,10 @@ def crash_or_hang(name: str) -> scene_checks.Finding:
 @pytest.mark.long
 def test_a_check_that_hangs_or_crashes_is_a_problem(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(scene_checks, "check_one", crash_or_hang)
-    monkeypatch.setattr(scene_checks, "LONGEST", 20.0)
+    monkeypatch.setattr(scene_checks, "LONGEST", 30.0)
     before = time.monotonic()
     assert scene_checks.check_all(["hangs", "crashes", "fine"], workers=2) == 1
-    assert time.monotonic() - before < 70.0
+    assert time.monotonic() - before < 100.0
     out = capsys.readouterr().out
     assert "PROBLEM hangs" in out and "PROBLEM crashes" in out and "ok fine" in out and "3 scenes, 2 with problems" in out
 

@@ -81,18 +81,7 @@ class Fire(Hazard):
     def reset(self, state: FireState, world: World, rows: Tensor) -> None:
         state.temperature[rows] = state.agent_temperature[rows] = self.room_temperature
         state.threshold[rows] = torch.where(world.lookup("flammable") > 0, world.lookup("ignition_temperature"), torch.inf)[rows]
-        lattices, window = state.free.shape[1:3]
-        fires = [world.specs[row].fires for row in rows.tolist()]
-        padded = [[*f, *[(0.0, 0.0)] * (lattices - len(f))] for f in fires]
-        state.anchor[rows] = torch.tensor(padded, device=world.device)
-        lattice = torch.arange(lattices, device=world.device)
-        there = lattice < torch.tensor([[len(f)] for f in fires], device=world.device)
-        first = torch.full_like(state.flame_cell[rows], -1)
-        first[:, :lattices] = torch.where(there, lattice * window**2 + window**2 // 2, -1)
-        self._light(state, rows, first, torch.zeros_like(rows))
-        free = floor.free_floor(world, rows, state.anchor[rows], window, self.fixtures_block)
-        free[:, :, window // 2, window // 2] |= there
-        state.free[rows] = free
+        begin_flames(state, world, rows, self.fixtures_block)
 
     def advance(self, state: FireState, world: World, dt: float) -> None:
         due = world.frame % self.heat_every == 0
@@ -151,35 +140,10 @@ class Fire(Hazard):
         state.flame_used.scatter_add_(1, chosen, some.long() << direction)
         state.flame_last.copy_(torch.where(success, frame[:, None], state.flame_last))
         aim = spread.neighbour(torch.where(some, state.flame_cell.gather(1, chosen), -1), direction, state.free.shape[-1])
-        kept = self._can_burn(state, world, aim)
+        kept = can_burn(state, world, aim, self.crowd)
         if nobody(kept):
             return
-        new = spread.compact(kept, spread.AT_ONCE)
-        cell = torch.where(new >= 0, aim.gather(1, new.clamp(min=0)), -1)
-        number = torch.arange(slots, device=aim.device) - (state.flame_cell >= 0).sum(1, keepdim=True)  # of the new flame per slot
-        fresh = torch.where((number >= 0) & (number < spread.AT_ONCE), cell.gather(1, number.clamp(0, spread.AT_ONCE - 1)), -1)
-        self._light(state, slice(None), fresh, frame + 1)
-
-    def _can_burn(self, state: FireState, world: World, aim: Tensor) -> Tensor:
-        """Which of the cells `aim`, [E, C], -1 for none, are free of furniture, flames, crowds, and aims of earlier flames."""
-        there = (aim >= 0) & state.free.flatten(1).gather(1, aim.clamp(min=0))
-        place = spread.places(aim, state.anchor, state.free.shape[-1])
-        there &= ~(floor.overlap(place, state.flame_place) & (state.flame_cell >= 0)[:, None]).any(-1)
-        if nobody(there):
-            return there
-        there &= floor.crowd(world, place) < self.crowd
-        earlier = (floor.overlap(place, place) & there[:, None]).tril(-1)
-        return there & ~earlier.any(-1)
-
-    @staticmethod
-    def _light(state: FireState, rows: Tensor | slice, cell: Tensor, frame: Tensor) -> None:
-        """Enter the cells `cell` [rows, F], -1 for none, on the roster, born at `frame` [rows]."""
-        new = cell >= 0
-        place = spread.places(cell, state.anchor[rows], state.free.shape[-1])
-        state.flame_cell[rows] = torch.where(new, cell, state.flame_cell[rows])
-        state.flame_place[rows] = torch.where(new[..., None], place, state.flame_place[rows])
-        state.flame_birth[rows] = torch.where(new, frame[:, None], state.flame_birth[rows])
-        state.flame_last[rows] = torch.where(new, frame[:, None], state.flame_last[rows])
+        light(state, slice(None), enlisted(state, aim, kept), frame + 1)
 
     def damaged(self, state: FireState, world: World) -> Tensor:
         return state.status != NORMAL
@@ -201,6 +165,53 @@ class Fire(Hazard):
             "agent_overheated": state.agent_temperature > self.endurance,
             "agent_in_fire": self.forbids(state, world, place)[:, 0],
         }
+
+
+def enlisted(state: FireState, aim: Tensor, kept: Tensor) -> Tensor:
+    """The cells `aim`, [E, C], that are `kept`, [E, C], at the next places of the roster: [E, F], -1 elsewhere."""
+    new = spread.compact(kept, spread.AT_ONCE)
+    cell = torch.where(new >= 0, aim.gather(1, new.clamp(min=0)), -1)
+    slot = torch.arange(state.flame_cell.shape[1], device=aim.device)
+    number = slot - (state.flame_cell >= 0).sum(1, keepdim=True)  # of the new flame per slot
+    return torch.where((number >= 0) & (number < spread.AT_ONCE), cell.gather(1, number.clamp(0, spread.AT_ONCE - 1)), -1)
+
+
+def can_burn(state: FireState, world: World, aim: Tensor, crowd: int) -> Tensor:
+    """Which of the cells `aim`, [E, C], -1 for none, are free of furniture, flames, `crowd` things, and aims of earlier flames."""
+    there = (aim >= 0) & state.free.flatten(1).gather(1, aim.clamp(min=0))
+    place = spread.places(aim, state.anchor, state.free.shape[-1])
+    there &= ~(floor.overlap(place, state.flame_place) & (state.flame_cell >= 0)[:, None]).any(-1)
+    if nobody(there):
+        return there
+    there &= floor.crowd(world, place) < crowd
+    earlier = (floor.overlap(place, place) & there[:, None]).tril(-1)
+    return there & ~earlier.any(-1)
+
+
+def light(state: FireState, rows: Tensor | slice, cell: Tensor, frame: Tensor) -> None:
+    """Enter the cells `cell` [rows, F], -1 for none, on the roster, born at `frame` [rows]."""
+    new = cell >= 0
+    place = spread.places(cell, state.anchor[rows], state.free.shape[-1])
+    state.flame_cell[rows] = torch.where(new, cell, state.flame_cell[rows])
+    state.flame_place[rows] = torch.where(new[..., None], place, state.flame_place[rows])
+    state.flame_birth[rows] = torch.where(new, frame[:, None], state.flame_birth[rows])
+    state.flame_last[rows] = torch.where(new, frame[:, None], state.flame_last[rows])
+
+
+def begin_flames(state: FireState, world: World, rows: Tensor, fixtures_block: bool) -> None:
+    """Light the fires of the scenes `rows`, and find out where their floors can burn."""
+    lattices, window = state.free.shape[1:3]
+    fires = [world.specs[row].fires for row in rows.tolist()]
+    padded = [[*f, *[(0.0, 0.0)] * (lattices - len(f))] for f in fires]
+    state.anchor[rows] = torch.tensor(padded, device=world.device)
+    lattice = torch.arange(lattices, device=world.device)
+    there = lattice < torch.tensor([[len(f)] for f in fires], device=world.device)
+    first = torch.full_like(state.flame_cell[rows], -1)
+    first[:, :lattices] = torch.where(there, lattice * window**2 + window**2 // 2, -1)
+    light(state, rows, first, torch.zeros_like(rows))
+    free = floor.free_floor(world, rows, state.anchor[rows], window, fixtures_block)
+    free[:, :, window // 2, window // 2] |= there
+    state.free[rows] = free
 
 
 def lit(state: FireState, frame: Tensor) -> Tensor:

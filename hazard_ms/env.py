@@ -214,9 +214,10 @@ class HazardEnv(BaseEnv):
 
     def _before_control_step(self) -> None:
         if self.affects_agent:
+            self.agent.carry(self.episode.slowed)
             self.agent.keep_out(self.episode.forbidden)
-            if self.gpu_sim_enabled:
-                self.scene.px.gpu_apply_articulation_target_velocity()  # ManiSkill has sent the velocities already
+        if self.affects_agent and self.gpu_sim_enabled:
+            self.scene.px.gpu_apply_articulation_target_velocity()  # ManiSkill has sent the velocities already
 
     def _before_simulation_step(self) -> None:
         self.episode.push(self.sim_timestep)
@@ -279,17 +280,7 @@ class HazardEnv(BaseEnv):
 
     def set_state_dict(self, state: dict[str, Any], env_idx: Tensor | None = None) -> None:
         """Restore what `get_state_dict` gave. Hazards, damage and chance exactly; bodies within reliability.md M4."""
-        rows = torch.arange(self.num_envs, device=self.device) if env_idx is None else env_idx
-        state = snapshot.batched(state)
-        snapshot.restore(self, state.get("hazard_ms"), rows)
-        super().set_state_dict({k: v for k, v in state.items() if k not in ("hazard_ms", "controller")}, env_idx)
-        if "controller" in state:
-            self.agent.set_controller_state(state["controller"])
-        self.world.read()
-        self._read_agent()
-        self.episode.freeze(self.agent.gripper_pose())
-        if self.world.handles is not None:
-            self.world.handles.put_to_sleep(torch.as_tensor(state["hazard_ms"]["bodies"]["asleep"]))
+        snapshot.put_back(self, state, env_idx, super().set_state_dict)
 
     def set_state(self, state: Any, env_idx: Tensor | None = None) -> None:
         """Restore a flat state, [E, D], as `get_state` gave it."""

@@ -6,6 +6,7 @@ float32, which holds whole numbers exactly only up to 2**24.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import torch
@@ -56,6 +57,21 @@ def restore(env: HazardEnv, saved: dict[str, Any] | None, rows: Tensor) -> None:
     env.world.away[rows] = episode.rescue.safe[rows] & (episode.carts is None)
     index = torch.arange(env.world.num_bodies, device=env.device)
     env.world.held[rows] = index == episode.hand.held[rows][:, None]
+
+
+def put_back(env: HazardEnv, state: dict[str, Any], env_idx: Tensor | None, plain: Callable[..., None]) -> None:
+    """Restore what `get_state_dict` gave; `plain`: ManiSkill's own way of doing it."""
+    rows = torch.arange(env.num_envs, device=env.device) if env_idx is None else env_idx
+    state = batched(state)
+    restore(env, state.get("hazard_ms"), rows)
+    plain({k: v for k, v in state.items() if k not in ("hazard_ms", "controller")}, env_idx)
+    if "controller" in state:
+        env.agent.set_controller_state(state["controller"])
+    env.world.read()
+    env._read_agent()
+    env.episode.freeze(env.agent.gripper_pose())
+    if env.world.handles is not None:
+        env.world.handles.put_to_sleep(torch.as_tensor(state["hazard_ms"]["bodies"]["asleep"]))
 
 
 def batched(state: Any) -> Any:

@@ -13,9 +13,10 @@ from hazard_ms.skills import failures
 from hazard_ms.skills.actions import explore, skill, stop
 from hazard_ms.skills.arm import reach_for
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action
-from hazard_ms.skills.grasping import drop, pick_up
+from hazard_ms.skills.grasping import pick_up
 from hazard_ms.skills.motion import drive, move_by, turn_by, turn_to
 from hazard_ms.skills.stage import Skill
+from hazard_ms.skills.stowing import drop
 from hazard_ms.skills.walking import walk_to
 from tests.arena import Arena, Box
 

@@ -31,6 +31,7 @@ import patterns
 import skies
 import small_things
 import surfaces
+import table_things
 from attribution import attribution
 from source import Model, find_models, open_package
 
@@ -42,7 +43,7 @@ US = "the authors of hazard_ms"
 FACES = {"object": 3000, "fixture": 5000}  # at most
 PIXELS = {"object": 256, "fixture": 512}  # of a texture, longest edge, at most
 SNAP = 0.04  # a support's height may differ so much from the level found on the model [m]
-OURS = (small_things, large_things, carried_things, household_things, indoor_things, carts, houses, outdoor_things, greenery)
+OURS = (small_things, large_things, carried_things, household_things, table_things, indoor_things, carts, houses, outdoor_things, greenery)
 MAKERS = {name: make for module in OURS for name, make in module.MAKERS.items()}
 TEXTURES = {  # names of materials in hazard_ms/scenes/shell.py
     "wood": patterns.planks,

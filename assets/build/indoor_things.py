@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from trimesh.visual.material import PBRMaterial
 
 from patterns import Rgb, blend, fabric, label, noise, picture, wood
 from shapes import Mesh, block, bulge, disc, lathe, material, moved, panel, spline, tube
@@ -17,7 +18,7 @@ BEECH: tuple[Rgb, Rgb] = ((186, 146, 100), (222, 188, 142))
 ART = 256  # edge of the pictures [pixels]
 
 
-def board(size: tuple[float, float, float], at: tuple[float, float, float], of: object, round_by: float = 0.003) -> Mesh:
+def board(size: tuple[float, float, float], at: tuple[float, float, float], of: PBRMaterial, round_by: float = 0.003) -> Mesh:
     """A box of `size` around `at`, its edges eased."""
     return moved(block(size, of, round_by, tile=0.5), at)
 
@@ -57,7 +58,12 @@ def chest_of_drawers(color: str = "#7f95a0") -> list[Mesh]:
         for x, wide in halves:
             parts.append(board((wide, 0.02, tall - 0.012), (x, -d / 2 + 0.03, z), paint, 0.004))
             knobs = (x,) if wide < 0.5 else (-0.2, 0.2)
-            parts += [moved(lathe([(0.005, 0), (0.006, 0.012), (0.015, 0.02), (0.013, 0.028), (0, 0.03)], METAL, 18), (n, -d / 2 + 0.02, z), "x", 90) for n in knobs]
+            parts += [
+                moved(
+                    lathe([(0.005, 0), (0.006, 0.012), (0.015, 0.02), (0.013, 0.028), (0, 0.03)], METAL, 18), (n, -d / 2 + 0.02, z), "x", 90
+                )
+                for n in knobs
+            ]
     sides = [board((0.02, d - 0.03, h - 0.08), (s * (w / 2 - 0.012), 0.005, (h + 0.02) / 2), paint, 0.002) for s in (-1, 1)]
     feet = [board((0.06, 0.06, 0.06), (sx * (w / 2 - 0.04), sy * (d / 2 - 0.045), 0.03), oak) for sx in (-1, 1) for sy in (-1, 1)]
     return [*parts, *sides, *feet]
@@ -68,7 +74,9 @@ def workbench() -> list[Mesh]:
     beech, steel = material(rough=0.6, image=wood(*BEECH, seed=43)), material("#5d6166", 0.4, 0.6)
     w, d, h = 1.5, 0.7, 0.84
     parts = [board((w, d, 0.06), (0, 0, h - 0.03), beech, 0.006), board((w - 0.16, d - 0.16, 0.025), (0, 0, 0.2 - 0.0125), beech)]
-    parts += [board((0.08, 0.08, h - 0.06), (sx * (w / 2 - 0.1), sy * (d / 2 - 0.1), (h - 0.06) / 2), beech) for sx in (-1, 1) for sy in (-1, 1)]
+    parts += [
+        board((0.08, 0.08, h - 0.06), (sx * (w / 2 - 0.1), sy * (d / 2 - 0.1), (h - 0.06) / 2), beech) for sx in (-1, 1) for sy in (-1, 1)
+    ]
     parts += [board((w - 0.28, 0.025, 0.1), (0, sy * (d / 2 - 0.09), h - 0.11), beech) for sy in (-1, 1)]
     for x in (-0.32, 0.32):
         parts.append(board((0.5, 0.02, 0.085), (x, -d / 2 + 0.075, h - 0.11), material(rough=0.5, image=wood(*OAK, seed=47)), 0.003))
@@ -129,6 +137,7 @@ def reading_lamp() -> list[Mesh]:
 
 
 def _rug(width: float, depth: float, art: np.ndarray, edge: str) -> list[Mesh]:
+    """A mat of the colour `edge` with the picture on it."""
     body = moved(block((width, depth, 0.01), material(edge, 1.0), 0.003), (0, 0, 0.005))
     face = moved(panel(width - 0.02, depth - 0.02, material(rough=1.0, image=picture(art))), (0, 0, 0.0105))
     return [body, face]
@@ -137,7 +146,16 @@ def _rug(width: float, depth: float, art: np.ndarray, edge: str) -> list[Mesh]:
 def striped_rug() -> list[Mesh]:
     """A flat weave with bands across it."""
     size = 512
-    bands: list[Rgb] = [(198, 186, 160), (158, 66, 46), (198, 186, 160), (58, 78, 92), (210, 158, 72), (58, 78, 92), (198, 186, 160), (120, 50, 40)]
+    bands: list[Rgb] = [
+        (198, 186, 160),
+        (158, 66, 46),
+        (198, 186, 160),
+        (58, 78, 92),
+        (210, 158, 72),
+        (58, 78, 92),
+        (198, 186, 160),
+        (120, 50, 40),
+    ]
     wide = np.array([5, 2, 1, 3, 2, 3, 1, 2])
     edges = np.cumsum(np.tile(wide, 4)) / (4 * wide.sum())
     which = np.searchsorted(edges, (np.arange(size) + 0.5) / size) % len(bands)
@@ -162,7 +180,7 @@ def patterned_rug() -> list[Mesh]:
     return _rug(2.2, 1.7, art * pile[..., None], "#2a3a46")
 
 
-def _framed(width: float, height: float, art: np.ndarray, bar: object, mount: float) -> list[Mesh]:
+def _framed(width: float, height: float, art: np.ndarray, bar: PBRMaterial, mount: float) -> list[Mesh]:
     """A picture `width` by `height` in a frame 3 cm wide, with a white mount; hangs with its back at +y, lowest edge at z = 0."""
     mid, b = height / 2, 0.03
     w, h = width - 2 * b, height - 2 * b

@@ -17,7 +17,7 @@ from __future__ import annotations
 from hazard_ms.effects.water_glsl import WATER as WATER_FRAG
 from hazard_ms.effects.wind_glsl import WIND_FRAG, WIND_VERT
 
-FLAME, SCORCH, SMOKE, EMBER, WATER, LEAF, PAPER, STREAK, DUST = range(9)  # kinds of quads
+FLAME, SCORCH, SMOKE, EMBER, WATER, LEAF, PAPER, STREAK = range(8)  # kinds of quads
 SMOKE_PERIOD = 4.0  # from floor to ceiling [s]; an entity's turn about z tells the phase, since only poses reach the vertex shader
 
 _SETS = """
@@ -62,7 +62,7 @@ void main() {
     float shade;
     carry(kind, seed, position, model, camera[3].xyz, size, anchor, across, up, shade);
     vec3 place = anchor + across * uv.x * size.x + up * (2.0 * uv.y - 1.0) * size.y;
-    float seen = smoothstep(0.25, kind > 7.5 ? 2.5 : 0.8, distance(camera[3].xyz, anchor)) * step(0.0, model[3].z);
+    float seen = smoothstep(0.3, 0.9, distance(camera[3].xyz, anchor)) * step(0.0, model[3].z);
     show(place, vec2(uv.x, 2.0 * uv.y - 1.0), vec4(kind, seed, shade, seen));
     return;
   }
@@ -163,9 +163,8 @@ void main() {
   else if (life.x < 4.5) colour = water(place, corner, life.z, time, strength);
   else if (life.x < 5.5) colour = leaf(corner, life.y, life.z);
   else if (life.x < 6.5) colour = paper(corner, life.y, life.z);
-  else if (life.x < 7.5) colour = streak(corner, strength);
-  else colour = dust(corner, life.y, strength, time);
-  if (life.x > 4.5 && life.x < 7.5) colour.a *= step(life.y, strength);  // a weak wind carries less
+  else colour = streak(corner, strength);
+  if (life.x > 4.5) colour.a *= step(life.y, strength);  // a weak wind carries less
   colour.a *= life.w;
   if (colour.a < (life.x < 0.5 ? 0.10 : 0.02)) discard;  // what is drawn hides flames behind it: do not draw faint rims
   outLighting = colour;

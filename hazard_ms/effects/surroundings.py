@@ -5,8 +5,8 @@ there its red, 0, says: none. Row 0 holds facts, the other rows a map of the roo
 
     fact 0   south-west corner of the map x, y [m], time [s]
     fact 1   size of the map x, y [m], height of the ceiling [m], 0 in the open
-    fact 2   1 if there is water, density of haze [1/m], 0
-    fact 3   height of the smoke's lower side [m], its density [1/m], 0
+    fact 2   1 if there is water, density of haze [1/m], how far the wind has blown x [m]
+    fact 3   height of the smoke's lower side [m], its density [1/m], how far the wind has blown y [m]
     fact 4   colour of haze, linear
     map      level of the water [m], light on the ceiling, 0
 
@@ -62,9 +62,10 @@ class Surroundings:
         self._data[0, 0, 3] = time if wet else 0.0
         self._data[1:, :, 1] = np.maximum(level, DRY) if wet else DRY
 
-    def haze(self, density: float) -> None:
-        """Let there be haze of `density` [1/m] everywhere."""
+    def haze(self, density: float, drift: tuple[float, float]) -> None:
+        """Let there be haze of `density` [1/m] everywhere, and clouds of it that have drifted so far [m]."""
         self._data[0, 2, 2] = density
+        self._data[0, 2:4, 3] = drift
 
     def smoke(self, height: float, density: float) -> None:
         """Let there be smoke of `density` [1/m] above `height` [m]."""

@@ -52,11 +52,28 @@ void hazardDrown(inout vec3 albedo, inout vec3 emission, inout float specular, i
   if (depth > 0.0) path = sunk > 0.0 ? far : far * min(depth / max(eye.z - place.z, 1e-3), 1.0);
   else if (sunk > 0.0) path = far * min(sunk / max(place.z - eye.z, 1e-3), 1.0);
   if (depth > 0.0) albedo *= 1.0 + hazardCaustics(place.xy + 0.3 * place.z, time) * smoothstep(0.0, 0.12, depth) * (0.35 + 0.65 * max(up, 0.0));
+  emission += vec3(0.16, 0.19, 0.19) * smoothstep(0.010, 0.0, abs(depth - 0.002)) * step(0.03, level);  // the rim of the water
   vec3 seen = exp(-hazardAbsorption * path);
   albedo *= seen * exp(-hazardAbsorption * 0.5 * max(depth, 0.0));
   emission = emission * seen + hazardMurk * (1.0 - seen);
   specular *= seen.g * (depth > 0.0 ? 0.3 : 1.0);
-  emission += vec3(0.16, 0.19, 0.19) * smoothstep(0.010, 0.0, abs(depth - 0.002)) * step(0.03, level);  // the rim of the water
+}
+
+float hazardDust(vec3 place, vec3 eye, float far) {  // how much dust the wind drives between eye and place, in clouds near the ground
+#ifdef FAST
+  return 0.0;
+#else
+  vec2 drift = vec2(hazardFact(2).w, hazardFact(3).w);
+  float dust = 0.0, reach = min(far, 18.0);
+  for (int k = 0; k < 3; ++k) {
+    vec3 p = mix(eye, place, (0.2 + 0.35 * float(k)) * reach / far);
+    vec2 q = p.xy - drift;
+    float broad = sin(0.61 * q.x + 1.4 * sin(0.47 * q.y + 0.3 * q.x)) * sin(0.53 * q.y - 1.2 * sin(0.39 * q.x));
+    float fine = sin(2.3 * q.x + 1.5 * sin(1.9 * q.y + 1.7 * p.z)) * sin(2.1 * q.y - 1.3 * sin(1.6 * q.x));
+    dust += max(broad + 0.45 * fine, 0.0) * exp(-max(p.z, 0.0) / 0.7);
+  }
+  return dust * reach * 2.2;
+#endif
 }
 
 void hazardVeil(inout vec3 albedo, inout vec3 emission, inout float specular, vec3 veil, float seen) {
@@ -74,7 +91,7 @@ void hazardImmerse(inout vec3 albedo, inout vec3 emission, inout float specular,
     float share = clamp((high - smoke.y) / max(high - low, 1e-3), 0.0, 1.0);
     hazardVeil(albedo, emission, specular, vec3(0.045, 0.042, 0.040), exp(-smoke.z * far * share));
   }
-  if (air.z > 0.0) hazardVeil(albedo, emission, specular, hazardFact(4).yzw, exp(-air.z * far));
+  if (air.z > 0.0) hazardVeil(albedo, emission, specular, hazardFact(4).yzw, exp(-air.z * (far + hazardDust(place, eye, far))));
 }
 
 bool hazardSurrounded() { return (materialBuffer.textureMask & 32) != 0; }

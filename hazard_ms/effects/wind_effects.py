@@ -1,6 +1,6 @@
 """What a wind carries past the camera, and its haze, driven by the state of `hazard_ms.hazards.wind.Wind`.
 
-Leaves, paper, streaks and dust are four meshes per scene, blown along the heading by the mean speed; a gust makes more of them fly.
+Leaves, paper and streaks are three meshes per scene, blown along the heading by the mean speed; a gust makes more of them fly.
 Nothing that stands sways: its labels must stay where it is.
 """
 
@@ -16,7 +16,7 @@ from torch import Tensor
 
 from hazard_ms.effects import meshes, shader_pack
 from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, draws, make_effect
-from hazard_ms.effects.glsl import DUST, LEAF, PAPER, STREAK
+from hazard_ms.effects.glsl import LEAF, PAPER, STREAK
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.textures import noise_texture
 from hazard_ms.effects.wind_glsl import BOX
@@ -25,16 +25,15 @@ from hazard_ms.spec import SceneSpec
 from hazard_ms.world import World
 
 NUMBERS = {  # of each kind in a box of air, full and fast [ours]
-    LEAF: (330, 180),
-    PAPER: (22, 12),
-    STREAK: (90, 40),
-    DUST: (26, 0),
+    LEAF: (900, 450),
+    PAPER: (50, 25),
+    STREAK: (180, 90),
 }
-HALF = {LEAF: (0.034, 0.055), PAPER: (0.085, 0.12), STREAK: (0.006, 0.42), DUST: (1.6, 0.65)}  # width and height [m] [ours]
-CEILING = {LEAF: 4.5, PAPER: 2.5, STREAK: 4.0, DUST: 0.55}  # highest place [m] [ours]
-USUAL = 1.0  # wind at which 63 % of all fly [m/s] [ours]
+HALF = {LEAF: (0.042, 0.062), PAPER: (0.09, 0.125), STREAK: (0.007, 0.5)}  # width and height [m] [ours]
+HIGHEST = {LEAF: 5.5, PAPER: 3.0, STREAK: 4.5}  # highest place [m] [ours]
+USUAL = 0.6  # wind at which 63 % of all fly [m/s] [ours]
 GUST = 0.17  # share of the mean wind of one standard deviation of gusts [physics.md 3.3]
-HAZE = 0.011  # density of haze in a strong wind [1/m] [ours]
+HAZE = 0.008  # density of haze in a strong wind [1/m] [ours]
 
 
 class _SceneWind:
@@ -49,11 +48,11 @@ class _SceneWind:
     def show(self, heading: tuple[float, float], speed: float, gust: float, time: float) -> None:
         """A wind of `speed` [m/s] towards `heading`, a unit vector; `gust` in standard deviations."""
         strength = 1.0 - math.exp(-max(speed * (1.0 + GUST * gust), 0.0) / USUAL)
-        self._around.haze(HAZE * strength)
         half = math.atan2(heading[1], heading[0]) / 2
-        drift = [heading[0] * speed * time, heading[1] * speed * time, time]
+        drift = heading[0] * speed * time, heading[1] * speed * time
+        self._around.haze(HAZE * strength, drift)
         for part in self._parts:
-            part.show(sapien.Pose(drift, [math.cos(half), 0.0, 0.0, math.sin(half)]), strength, time)
+            part.show(sapien.Pose([*drift, time], [math.cos(half), 0.0, 0.0, math.sin(half)]), strength, time)
 
 
 class WindEffects:
@@ -66,7 +65,7 @@ class WindEffects:
     def build(
         cls, scenes: list[sapien.Scene], specs: tuple[SceneSpec, ...], world: World, mode: str, around: list[Surroundings]
     ) -> WindEffects:
-        """Effects of `mode` (full; fast: less flies, no dust; off) for `scenes` in which the things of `specs` stand.
+        """Effects of `mode` (full; fast: less flies, and no clouds of dust; off) for `scenes` in which the things of `specs` stand.
 
         Without a renderer, or with a SAPIEN whose shaders are unknown, nothing is shown.
         """
@@ -89,13 +88,11 @@ class WindEffects:
             scene.show(heading[e], speed[e], gust[e], time[e])
 
 
-def flying(kind: int, count: int, material: RenderMaterial) -> RenderShapeTriangleMesh | None:
-    """`count` quads of `kind`, spread over a box of air, more of them near the ground; None for no quads."""
-    if count == 0:
-        return None
+def flying(kind: int, count: int, material: RenderMaterial) -> RenderShapeTriangleMesh:
+    """`count` quads of `kind`, spread over a box of air, more of them near the ground."""
     draw = np.random.default_rng(kind)  # the same air in every scene
     place = draw.random((count, 3)) * [BOX, BOX, 1.0]
-    place[:, 2] = 0.03 + CEILING[kind] * place[:, 2] ** 2.2
+    place[:, 2] = 0.03 + HIGHEST[kind] * place[:, 2] ** 2.2
     sizes = np.array(HALF[kind]) * (0.65 + 0.7 * draw.random((count, 1)))
     seeds = np.arange(1, count + 1) * meshes.GOLDEN % 1
     return meshes.quads(place, sizes, np.full(count, kind), seeds, material)

@@ -1,4 +1,4 @@
-"""Shader text for what the wind carries: leaves, paper, streaks of fast air, dust. All of it belongs to the effect pass.
+"""Shader text for what the wind carries: leaves, paper, streaks of fast air. All of it belongs to the effect pass.
 
 What flies repeats itself every BOX metres, and each camera sees the copy around it: so the air is full everywhere, for few corners. It
 is carried by the entity's pose, the one thing that reaches the vertex shader: x, y is how far the wind has blown [m], z the time [s],
@@ -7,7 +7,7 @@ the turn about z the heading.
 
 from __future__ import annotations
 
-BOX = 14.0  # [m]
+BOX = 18.0  # [m]
 
 WIND_VERT = f"""
 const float box = {BOX};
@@ -32,11 +32,6 @@ void carry(float kind, float seed, vec3 home, mat4 model, vec3 eye, vec2 size, o
   anchor = vec3(at, height);
   vec3 toEye = normalize(eye - anchor), ahead = vec3(heading, 0.05 * sin(swing));
   shade = 1.0;
-  if (kind > 7.5) {  // dust faces the camera, long in the wind's direction
-    up = vec3(0, 0, 1);
-    across = normalize(cross(up, toEye));
-    return;
-  }
   if (kind > 6.5) {  // a streak lies along the wind
     across = normalize(cross(ahead, toEye));
     up = ahead;
@@ -66,11 +61,5 @@ vec4 paper(vec2 p, float seed, float shade) {
 
 vec4 streak(vec2 p, float strength) {
   return vec4(vec3(0.80, 0.80, 0.77), 0.42 * strength * (1.0 - p.x * p.x) * (1.0 - p.y * p.y));
-}
-
-vec4 dust(vec2 p, float seed, float strength, float time) {
-  float grain = noise(p * vec2(0.22, 0.10) + seed * 7.0) * 0.7 + noise(p * vec2(0.5, 0.23) + seed * 3.0 + 0.02 * time) * 0.3;
-  float body = smoothstep(1.0, 0.1, length(p)) * smoothstep(0.30, 0.75, grain);
-  return vec4(vec3(0.50, 0.46, 0.39), 0.36 * strength * body);
 }
 """

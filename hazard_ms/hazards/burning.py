@@ -41,8 +41,8 @@ def course(growth: Tensor, peak: Tensor, energy: Tensor) -> Course:
     return Course(alpha, top, decline, end, torch.full_like(top, -1, dtype=torch.int64))
 
 
-def t_squared(growth: Tensor, age: Tensor) -> Tensor:
-    """alpha t^2 [kW] of fires of `growth` [kW/s^2] at `age` [s]."""
+def t_squared(growth: Tensor | float, age: Tensor) -> Tensor:
+    """Heat release alpha t^2 [kW] of fires of `growth` [kW/s^2] at `age` [s]."""
     return growth * age.clamp(min=0.0).square()
 
 

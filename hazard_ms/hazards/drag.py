@@ -8,7 +8,7 @@ step of constant flow: no step is too long, no body too light, and the slip neve
 (not |s_i|) is the slip that they would leave at the end of the step. T is the box form of MuJoCo's
 inertia model (its documentation, "Fluid forces"). Limits: no lift, no shading of one body by another.
 
-Vectors come with their components first, [3, ...], as `planes` makes them of [..., 3]: ten times faster on a CPU than components last.
+Vectors come with their components first, [3, ...], as `planes` makes them of [..., 3]: five times faster on a CPU than components last.
 """
 
 from __future__ import annotations

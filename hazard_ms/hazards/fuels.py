@@ -31,7 +31,7 @@ class Material:
 MATERIALS: dict[str, Material] = {
     # particleboard 12.7 mm; plywood's heat of combustion; wood crib's 11 g/m^2 s [3.1]; soot of wood [M]
     "wood": Material(412, 18, 0.93, 0, 131, 11900, MEDIUM, 0.015),
-    # paper's ignition [3.1: NUREG-1805] on a stack like insulation board, whose critical flux is scaled to it; corrugated paper's 14 g/m^2 s
+    # paper's ignition [3.1: NUREG-1805] on a stack like insulation board, critical flux scaled to it; corrugated paper's 14 g/m^2 s
     "paper": Material(230, 8.8, 0.46, 0, 182, 13000, MEDIUM, 0.015),
     # a wall of corrugated board: 0.5 kg/m^2 of 1.3 kJ/kg K [M]; else paper
     "cardboard": Material(230, 8.8, 0, 0.65, 182, 13000, FAST, 0.015),
@@ -91,9 +91,7 @@ CURVES: dict[str, Curve] = {  # [3.1: CFAST fire library]
         *(100, 135.9, 200, 953.9, 300, 1864, 400, 3447, 500, 1667, 600, 531.7),
         *(700, 539, 800, 416, 900, 317, 1000, 241, 1100, 217),
     ),
-    "mattress": Curve(
-        0.30, ((0, 25), (400, 100), (580, 300), (615, 540), (760, 300), (910, 660), (1100, 300), (1500, 100), (1700, 75))
-    ),
+    "mattress": Curve(0.30, ((0, 25), (400, 100), (580, 300), (615, 540), (760, 300), (910, 660), (1100, 300), (1500, 100), (1700, 75))),
     "wardrobe": _curve(0.33, 60, 250, 120, 1050, 160, 3500, 170, 4500, 180, 3500, 200, 1400, 240, 600, 600, 150, 900, 150),
     "workstation": _curve(0.37, 50, 166, 164, 274, 356, 798, 420, 1050, 484, 3080, 550, 6710, 616, 2590, 744, 1140, 872, 714),
     "kiosk": _curve(0.37, 350, 33, 775, 136, 927, 348, 1080, 403, 1230, 1750, 1420, 1080, 1750, 805),

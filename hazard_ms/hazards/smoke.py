@@ -17,7 +17,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.radiation import AIR, GRAVITY, KELVIN
+from hazard_ms.hazards.radiation import AIR, GRAVITY, KELVIN, Fires
 from hazard_ms.spec import Room
 
 ZUKOSKI = 0.21  # entrainment [-] [physics.md 3.1]
@@ -27,6 +27,7 @@ GAP = 0.02  # width of the gaps of a closed door or window [m] [physics.md 4.4]
 SIGHT = 8700.0  # extinction area of smoke, K_m [m^2/kg] [physics.md 3.1]
 THIN = 1e-3  # least volume with a temperature [m^3]
 PLUME_LIMIT = 900.0  # rise of temperature in flames [K] [physics.md 3.1: CFAST]
+PLUME_WIDTH = 0.12  # radius of a plume per height above its fire [-] [M: Heskestad]
 VIRTUAL = (-1.02, 0.083)  # of a plume's origin: per diameter, per Q^0.4 [physics.md 3.1: Heskestad]
 
 
@@ -77,7 +78,16 @@ def leak(vents: Tensor, lower: Tensor, hot: Tensor, room: float) -> Tensor:
 
 
 def fill(
-    layer: Layer, walls: Walls, vents: Tensor, power: Tensor, heat: Tensor, base: Tensor, soot: Tensor, room: float, hottest: float, dt: float
+    layer: Layer,
+    walls: Walls,
+    vents: Tensor,
+    power: Tensor,
+    heat: Tensor,
+    base: Tensor,
+    soot: Tensor,
+    room: float,
+    hottest: float,
+    dt: float,
 ) -> Layer:
     """The layer after `dt` seconds. All [E] but `vents`.
 
@@ -112,6 +122,17 @@ def plume_rise(power: Tensor, radiant: Tensor | float, diameter: Tensor, height:
     strength = 9.1 * (kelvin / (GRAVITY * (AIR / kelvin) ** 2)) ** (1.0 / 3.0)
     above = (height - virtual_origin(power, diameter)).clamp(min=1e-3)
     return (strength * ((1.0 - radiant) * power) ** (2.0 / 3.0) / above ** (5.0 / 3.0)).clamp(max=PLUME_LIMIT)
+
+
+def above(fires: Fires, points: Tensor, room: float) -> Tensor:
+    """Rise of temperature [K] at `points` [m], [E, P, 3], in the hottest of the plumes that they are in: [E, P]; 0 outside of all."""
+    apart = points[:, None] - fires.place[:, :, None]  # [E, M, P, 3]
+    height = apart[..., 2]
+    aside = apart[..., :2].square().sum(-1)
+    wide = fires.diameter[..., None] / 2 + PLUME_WIDTH * height
+    inside = (height >= 0) & (aside <= wide.square()) & (fires.power > 0)[..., None]
+    rise = plume_rise(fires.power[..., None], fires.radiant[..., None], fires.diameter[..., None], height, room)
+    return torch.where(inside, rise, 0.0).amax(1)
 
 
 def virtual_origin(power: Tensor, diameter: Tensor) -> Tensor:

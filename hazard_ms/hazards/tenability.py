@@ -1,7 +1,7 @@
 """How much heat people and robots bear: doses that add up over time.
 
-    people   dose per minute = 1 / (4.1e8 T^-3.61) + 1 / (4.2 q^-1.9), the second from 2.5 kW/m^2 on; 1 is unbearable (ISO 13571)
-    robots   thermal classes of firefighters' electronics (NIST TN 1474): the air temperature [C] and flux [kW/m^2] that each allows
+people   dose per minute = 1 / (4.1e8 T^-3.61) + 1 / (4.2 q^-1.9), the second from 2.5 kW/m^2 on; 1 is unbearable (ISO 13571)
+robots   thermal classes of firefighters' electronics (NIST TN 1474): the air temperature [C] and flux [kW/m^2] that each allows
 """
 
 from __future__ import annotations

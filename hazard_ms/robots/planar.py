@@ -85,8 +85,7 @@ class PlanarRobot(Robot):
     def keep_out(self, forbidden: Callable[[Tensor], Tensor]) -> Tensor:
         """See Robot; looks LOOK_AHEAD frames ahead of the front half of the base's rim, and of its middle."""
         position, heading = self.base_pose()
-        joints = self.robot.active_joints[:2]
-        velocity = torch.stack([j.drive_velocity_target.reshape(-1) for j in joints], dim=-1)
+        velocity = self._drive()
         around = torch.arange(RIM, device=position.device) * (2.0 * np.pi / RIM)
         rim = self.build.radius * torch.stack([around.cos(), around.sin(), torch.zeros_like(around)], dim=-1)
         points = torch.cat([rim, torch.zeros_like(rim[:1])])
@@ -95,9 +94,20 @@ class PlanarRobot(Robot):
         then[..., :2] += velocity[:, None] * (LOOK_AHEAD / self._control_freq)
         front = velocity @ points[:, :2].T >= 0.0  # so that it may always leave what burns beside or behind it
         stop = (forbidden(then) & ~forbidden(now) & front).any(-1)
-        index = torch.arange(2, dtype=torch.int32, device=self.device)
-        self.robot.set_joint_drive_velocity_targets(torch.where(stop[:, None], 0.0, velocity), joints, index)
+        self._set_drive(torch.where(stop[:, None], 0.0, velocity))
         return stop
+
+    def carry(self, slowed: Callable[[Tensor], Tensor]) -> None:
+        """See Robot."""
+        self._set_drive(slowed(self._drive()))
+
+    def _drive(self) -> Tensor:
+        """Velocity at which the base is to drive [m/s], [E, 2]."""
+        return torch.stack([j.drive_velocity_target.reshape(-1) for j in self.robot.active_joints[:2]], dim=-1)
+
+    def _set_drive(self, velocity: Tensor) -> None:
+        index = torch.arange(2, dtype=torch.int32, device=self.device)
+        self.robot.set_joint_drive_velocity_targets(velocity, self.robot.active_joints[:2], index)
 
     def hand_kinematics(
         self, joints: NDArray[np.float64], number: int, moving: list[int]

@@ -77,6 +77,13 @@ class Robot(abc.ABC):
         """
 
     @abc.abstractmethod
+    def carry(self, slowed: Callable[[Tensor], Tensor]) -> None:
+        """Change this frame's drive to what is left of it: `slowed`: velocity over the floor [m/s], [E, 2] -> [E, 2].
+
+        Call it after the action is set and before physics steps.
+        """
+
+    @abc.abstractmethod
     def arm(self) -> NDArray[np.float64]:
         """Arm joints [rad] of the first environment, [J]."""
 

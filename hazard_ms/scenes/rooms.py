@@ -215,6 +215,7 @@ FLAT_A = Layout(  # a kitchen and a living room, of more than twice the floor of
                 Around("chair", "table", (2, 4)),
                 Against("table", ("north", "west"), (0.05, 0.3), optional=True),
                 Around("chair", "table", (1, 1), optional=True),
+                Against("bed", ("south", "west"), (0.0, 0.45), optional=True),
                 Against("cabinet", ("south", "north"), (0.1, 0.9)),
                 Against("cabinet", ("west", "south"), (0.0, 0.5), optional=True),
                 Against("shelf", ("west", "north"), (0.0, 0.9)),

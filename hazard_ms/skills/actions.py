@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Result
-from hazard_ms.skills.grasping import drop, pick_up
+from hazard_ms.skills.grasping import pick_up
 from hazard_ms.skills.motion import turn_by, wrap
 from hazard_ms.skills.stage import Skill, Stage
+from hazard_ms.skills.stowing import drop
 from hazard_ms.skills.walking import WALK_FRAMES, walk_to
 
 LOOKS = 12  # of a look around (benchmark rules 3)

@@ -1,4 +1,4 @@
-"""pick_up and drop: the arm goes to the thing; within a hand's breadth of it the hand shuts and holds it (assisted grasp)."""
+"""pick_up: the arm goes to the thing; within a hand's breadth of it the hand shuts and holds it (assisted grasp)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hazard_ms.skills.decision import Result
 from hazard_ms.skills.kinematics import Posture
 from hazard_ms.skills.motion import drive, turn_to
 from hazard_ms.skills.stage import Skill, Stage
-from hazard_ms.skills.walking import way_to
+from hazard_ms.skills.walking import known, way_to
 
 LIMIT = 2.5  # from the shoulder to the thing, for a pick-up to begin (benchmark rules 3) [m]
 GRASP = 0.8 * GRASP_REACH  # the hand shuts this close to the thing [m]
@@ -37,7 +37,7 @@ def pick_up(stage: Stage, index: int, frames: int = PICK_FRAMES) -> Skill:
     used = 0
     for attempt in range(ATTEMPTS):
         if attempt or not _within_span(stage, stage.position(index)):
-            near = yield from _come_near(stage, stage.position(index), attempt)
+            near = yield from come_near(stage, stage.position(index), attempt)
             used += near.frames
             if not near.ok and attempt:
                 break
@@ -60,6 +60,8 @@ def _refusal(stage: Stage, index: int) -> str:
         return failures.NOT_A_TARGET
     if bool(stage.world.safe[0, index]):
         return failures.ALREADY_RESCUED
+    if not known(stage, index):
+        return failures.UNKNOWN
     if float(np.linalg.norm(stage.position(index) - stage.robot.shoulder())) > LIMIT:
         return failures.TOO_FAR
     return ""
@@ -71,7 +73,7 @@ def _within_span(stage: Stage, thing: NDArray[np.float64]) -> bool:
     return nearest <= float(np.hypot(thing[0] - x, thing[1] - y)) <= farthest
 
 
-def _come_near(stage: Stage, thing: NDArray[np.float64], attempt: int) -> Skill:
+def come_near(stage: Stage, thing: NDArray[np.float64], attempt: int) -> Skill:
     """Drive to where the arm is long enough; nearer at every further attempt."""
     nearest, farthest = stage.robot.build.span(float(thing[2]))
     stand = max(nearest, farthest * STAND_OFF - 0.1 * attempt)
@@ -97,13 +99,13 @@ def _take(stage: Stage, index: int) -> Skill:
     used, height = 0, float(stage.position(index)[2])
     over = None if height < OVER else height + HOVER
     if over is not None:
-        used += (yield from unfold(stage, over, -_lacking(stage))).frames
-        used += (yield from _close_in(stage, stage.position(index), over)).frames
+        used += (yield from unfold(stage, over, -lacking(stage))).frames
+        used += (yield from close_in(stage, stage.position(index), over)).frames
     for aim in _reachable(stage, index)[:HANDS]:
         used += (yield from _grasp(stage, index, aim)).frames
         if stage.held == index:
             break
-    back = yield from retract(stage, over, 0.0 if over is None else -_lacking(stage))
+    back = yield from retract(stage, over, 0.0 if over is None else -lacking(stage))
     return Result(stage.held == index, "" if stage.held == index else failures.UNREACHABLE, used + back.frames)
 
 
@@ -120,13 +122,13 @@ def _grasp(stage: Stage, index: int, aim: NDArray[np.float64]) -> Skill:
     return Result(stage.held == index, frames=used)
 
 
-def _lacking(stage: Stage) -> float:
+def lacking(stage: Stage) -> float:
     """How far the base must draw back for the arm to fold or unfold before furniture [m]."""
     room = stage.robot.build.elbow_room
     return room - stage.room_ahead(LEG_ROOM, room)
 
 
-def _close_in(stage: Stage, thing: NDArray[np.float64], over: float) -> Skill:
+def close_in(stage: Stage, thing: NDArray[np.float64], over: float) -> Skill:
     """Drive straight on, with the hand held out at the height `over` [m], as far as the arm is too short."""
     x, y, _ = stage.robot.base()
     farthest = stage.robot.build.span(float(thing[2]))[1]
@@ -149,25 +151,3 @@ def _shut(stage: Stage, index: int, posture: Posture) -> Skill:
         yield stage.act(arm=posture.arm, shut=True)
         used += 1
     return Result(stage.held == index, frames=used)
-
-
-def drop(stage: Stage, cart: int | None = None) -> Skill:
-    """Let go of what the hand holds: into the bag, or over the thing `cart`; CART_UNREACHABLE where that is out of reach."""
-    held = stage.held
-    if held < 0:
-        return Result(False, failures.NOT_HOLDING)
-    used, arm, over = 0, stage.robot.tucked, None
-    if cart is not None:
-        top = stage.position(cart) + np.array([0.0, 0.0, float(stage.world.extent[0, cart, 2]) / 2 + CLEAR])
-        best, over = way(stage, top), float(top[2]) + HOVER
-        if best.error > GRASP_REACH:
-            return Result(False, failures.CART_UNREACHABLE)
-        arm = best.arm
-        used += (yield from unfold(stage, over)).frames
-    used += (yield from go(stage, arm, REACH_FRAMES, close=NEARLY)).frames
-    for _ in range(SHUT_FRAMES):
-        yield stage.act(arm=arm, shut=False)
-        used += 1
-    used += (yield from retract(stage, over)).frames
-    safe = bool(stage.world.safe[0, held])
-    return Result(safe, "" if safe else failures.NOT_RESCUED, used)

@@ -18,7 +18,12 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-MAX_FRAMES = {"HazardFire-v1": 1500, "HazardFlood-v1": 1500, "HazardWind-v1": 3000}  # frames of an episode (benchmark.md 1)
+MAX_FRAMES = {  # frames of an episode (benchmark.md 1)
+    "HazardFire-v1": 1500,
+    "HazardFlood-v1": 1500,
+    "HazardWind-v1": 3000,
+    "HazardCompound-v1": 1500,
+}
 
 
 def register() -> None:

@@ -11,6 +11,7 @@ import tyro
 from hazard_ms.asset_commands import AssetCommand
 from hazard_ms.order import Order
 from hazard_ms.scene_commands import SceneCommand
+from hazard_ms.validation.command import validate
 
 
 def doctor(json: bool = False, draw: bool = True) -> int:
@@ -81,6 +82,7 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "version": version,
     "play": play,
     "bench": bench,
+    "validate": validate,
     "scenes": scenes,
     "assets": assets,
 }

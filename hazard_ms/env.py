@@ -19,11 +19,12 @@ from hazard_ms.episode import Episode
 from hazard_ms.hand import Hand
 from hazard_ms.hazards.base import nobody
 from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
+from hazard_ms.lighting import LIGHTINGS, Lighting
 from hazard_ms.rendering import backend
 from hazard_ms.robots import ROBOTS
 from hazard_ms.scenes.files import playing
 from hazard_ms.spec import SceneSpec
-from hazard_ms.tasks import TASKS
+from hazard_ms.tasks import TASKS, task_of
 from hazard_ms.world import World
 
 EFFECTS = ("full", "fast", "off")
@@ -49,10 +50,12 @@ class HazardEnv(BaseEnv):
         split: str = "train",
         scenes: Any = None,
         physics: str = "paper",
+        hazards: tuple[str, ...] | None = None,
         affects_agent: bool = False,
         robot_uids: str = "fetch",
         deterministic: bool = True,
         effects: str = "full",
+        lighting: str = "day",
         num_envs: int = 1,
         obs_mode: str | None = None,
         reward_mode: str | None = None,
@@ -72,10 +75,12 @@ class HazardEnv(BaseEnv):
             split: Which scenes the seeds choose from.
             scenes: JSON file of a scene, folder of them, or list of both: the seeds choose from these instead.
             physics: Preset of the hazards.
+            hazards: Of HazardCompound-v1: some of flood, wind, fire.
             affects_agent: Whether the hazards act on the robot.
             robot_uids: The rescuer.
             deterministic: Rebuild the scene for every episode, so that a seed gives the same bits (about 1 s a reset).
             effects: How hazards look: full, fast or off. Never changes physics or labels.
+            lighting: day, evening, night, failing (lamps go out during the episode), random (by the seed). Never changes physics or labels.
             num_envs: Scenes in one batch; more than one needs a GPU.
             obs_mode: As in ManiSkill; state modes need no renderer.
             render_backend: auto picks a GPU, else the CPU, else none.
@@ -87,12 +92,13 @@ class HazardEnv(BaseEnv):
             ValueError: For any name or number that is not allowed.
         """
         self.physics = checks.one_of(physics, PRESETS, "physics")
-        self.task = playing(TASKS[checks.one_of(task, TASKS, "task")](self.physics), scenes)
+        self.task = playing(task_of(checks.one_of(task, TASKS, "task"), self.physics, hazards), scenes)
         self.split = checks.one_of(split, self.task.splits, "split")
         self.scene_names = self.task.scenes(self.split)
         self.affects_agent = checks.flag(affects_agent, "affects_agent")
         self.deterministic = checks.flag(deterministic, "deterministic")
         self.effects_mode = checks.one_of(effects, EFFECTS, "effects")
+        self.lighting = checks.one_of(lighting, LIGHTINGS, "lighting")
         checks.one_of(robot_uids, ROBOTS, "robot_uids")
         checks.backends(checks.whole(num_envs, 1, 2**20, "num_envs"), sim_backend, render_backend)
         checks.one_of(reward_mode or "none", self.SUPPORTED_REWARD_MODES, "reward_mode")
@@ -175,7 +181,7 @@ class HazardEnv(BaseEnv):
         self.episode = Episode(self.world, self.task.hazards, self.task.safe_place)
 
     def _load_lighting(self, options: dict[str, Any]) -> None:
-        building.build_lights(self.scene, self.specs)
+        self.lights = Lighting(self.scene, self.specs, self.lighting)
 
     def _after_reconfigure(self, options: dict[str, Any]) -> None:
         self.world.handles = building.connect(self.scene, self.specs, self.actors, self.device)

@@ -6,6 +6,8 @@ The environment calls it in the order that its docstring publishes; a test witho
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import torch
@@ -36,6 +38,7 @@ class Episode:
         self.sim_error = torch.zeros(world.num_envs, dtype=torch.bool, device=world.device)
         self.limits, self.recorder = Limits(world), FlightRecorder()
         self._pushers = tuple(h for h in hazards if type(h).force is not Hazard.force)
+        world.fields = shared_fields(hazards, self.states, world)
         self._frozen = torch.zeros_like(world.safe)  # bodies that the simulator was last told to keep in place
         self._start = (world.position.clone(), world.rotation.clone())
 
@@ -134,3 +137,17 @@ class Episode:
             left = hazard.slow(self.states[hazard.name], self.world)
             velocity = left[:, :1] * velocity + left[:, 1:]
         return velocity
+
+
+def shared_fields(hazards: tuple[Hazard, ...], states: dict[str, Any], world: World) -> dict[str, Callable[[Tensor], Tensor]]:
+    """What `hazards` tell each other, by name. Raises ValueError for a field with two writers, or whose reader comes before its writer."""
+    fields: dict[str, Callable[[Tensor], Tensor]] = {}
+    for hazard in hazards:
+        for name, method in hazard.provides.items():
+            if name in fields:
+                raise ValueError(f"{name!r} is written by two hazards, the second is {hazard.name!r}; one is allowed")
+            early = [h.name for h in hazards[: hazards.index(hazard)] if name in h.uses]
+            if early:
+                raise ValueError(f"{early[0]!r} reads {name!r} and must come after {hazard.name!r}, which writes it")
+            fields[name] = partial(getattr(hazard, method), states[hazard.name], world)
+    return fields

@@ -95,6 +95,8 @@ class Observer:
             depth = extent_of_bag()[2]
             bag._objs[0].set_pose(pose_of((mouth[0], mouth[1], mouth[2] - depth), heading).sp)
         if self.effects is not None:
+            self.env.lights.show(self.env.world.chance.seed, self.env.world.frame)
+            self.effects.light(self.env.lights.air())
             self.effects.update(self.env.world, self.env.episode.states, self.env.world.frame)
 
     def extra(self) -> dict[str, Tensor]:

@@ -12,6 +12,7 @@ from mani_skill.envs.utils.system.backend import parse_sim_and_render_backend
 from mani_skill.utils.structs.types import SimConfig
 
 from hazard_ms import building
+from hazard_ms.lighting import Lighting
 from hazard_ms.rendering import backend
 from hazard_ms.spec import SceneSpec
 from hazard_ms.world import World
@@ -46,7 +47,7 @@ def build(spec: SceneSpec, draw: bool = False) -> Standalone:
     world = building.make_world((spec,), torch.device("cpu"))
     world.handles = building.connect(scene, (spec,), rows, torch.device("cpu"))
     if draw:
-        building.build_lights(scene, (spec,))
+        Lighting(scene, (spec,))
     return Standalone(scene, world)
 
 

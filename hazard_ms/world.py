@@ -6,6 +6,7 @@ only this class: they know nothing of SAPIEN, and a World without a simulator (`
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -60,6 +61,10 @@ class World:
     room              [E, 2]     inner size of the room along x and y [m]
     agent_position    [E, 3]     middle of the agent's base on the floor [m]
     agent_heading     [E]        anticlockwise from +x [rad]
+
+    `fields` are what hazards tell each other, as functions of points [m], [E, P, 3]. Each has one writer, which the episode sees to:
+    water  level of the water [m], [E, P]
+    air    velocity of the air x, y [m/s], [E, P, 2]
     """
 
     specs: tuple[SceneSpec, ...]
@@ -83,6 +88,7 @@ class World:
     agent_position: Tensor
     agent_heading: Tensor
     handles: Handles | None = field(default=None, repr=False)
+    fields: dict[str, Callable[[Tensor], Tensor]] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(

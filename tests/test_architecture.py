@@ -17,7 +17,7 @@ LAYERS = (  # a module may import only from layers to its left, or from its own
     ("assets", "scenes"),
     ("world",),
     ("hazards",),
-    ("hand", "guard", "episode", "simulator", "surfaces", "building", "standalone", "settling", "scene_picture", "contact_sheet", "intake", "providers"),
+    ("hand", "guard", "episode", "simulator", "surfaces", "building", "lighting", "standalone", "settling", "scene_picture", "contact_sheet", "intake", "providers"),
     ("tasks",),
     ("effects",),
     ("sensing",),
@@ -27,7 +27,7 @@ LAYERS = (  # a module may import only from layers to its left, or from its own
     ("skills",),
     ("agents",),
     ("evaluation",),
-    ("play", "bench", "bench_kernels", "importing"),
+    ("play", "bench", "bench_kernels", "importing", "validation"),
     ("scene_commands", "scene_checks", "cli", "asset_commands"),
 )
 

@@ -6,14 +6,14 @@ import math
 
 import pytest
 import torch
-from fire_worlds import begin, begin_without_spread, one_source, repeat, room_world, run, updates
+from fire_worlds import ORIGINAL, begin, begin_without_spread, one_source, repeat, room_world, run, updates
 
 from hazard_ms.hazards.fire import BURNING, BURNT, NORMAL, Fire
 from hazard_ms.hazards.heat import Mean, Sources, exchange
-from hazard_ms.hazards.presets import PRESETS, fire
+from hazard_ms.hazards.presets import fire
 
 
-@pytest.fixture(params=PRESETS)
+@pytest.fixture(params=ORIGINAL)
 def preset(request: pytest.FixtureRequest) -> Fire:
     return fire(request.param)
 

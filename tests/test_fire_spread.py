@@ -7,11 +7,11 @@ import math
 
 import pytest
 import torch
-from fire_worlds import FAR, begin, room_world, run
+from fire_worlds import FAR, ORIGINAL, begin, room_world, run
 
 from hazard_ms.hazards import floor, spread
 from hazard_ms.hazards.fire import Fire, body_flames, floor_flames
-from hazard_ms.hazards.presets import PRESETS, fire
+from hazard_ms.hazards.presets import fire
 from hazard_ms.world import rotate
 
 CELLS = 10_000  # independent ones
@@ -231,7 +231,7 @@ def test_rugs_and_hung_fixtures_do_not_keep_fire_out(base: tuple[float, float, f
 
 
 @pytest.mark.parametrize(("count", "ignites"), [(2, True), (3, False)])
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", ORIGINAL)
 def test_three_things_on_a_cell_keep_fire_out(name: str, count: int, ignites: bool) -> None:
     """All four neighbours hold `count` pans; the fire tries each of them within 1,100 frames."""
     around = [(0.22, 0.0), (-0.22, 0.0), (0.0, 0.22), (0.0, -0.22)]

@@ -161,8 +161,9 @@ def test_an_unknown_preset_is_refused_by_name(name: str, bad: str) -> None:
 
 
 def test_presets_differ_in_parameters_only() -> None:
+    """But for the realistic fire, which shares no law with the original's."""
     for make in presets.HAZARDS.values():
-        assert len({type(make(p)) for p in presets.PRESETS}) == 1
+        assert type(make("paper")) is type(make("shipped"))
         assert make("paper") != make("shipped")
 
 

@@ -13,7 +13,7 @@ import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.robots import ROBOTS
 from hazard_ms.scenes import splits
 from hazard_ms.scenes.floor import connected, free_floor
-from hazard_ms.skills.decision import PICK_UP, Action
+from hazard_ms.skills.decision import EXPLORE, PICK_UP, Action
 from hazard_ms.skills.executor import SkillEnv
 
 pytestmark = [pytest.mark.long, pytest.mark.render]
@@ -57,6 +57,8 @@ def test_four_of_five_targets_can_be_picked_from_next_to_them(env_id: str, place
             base.world.read()
             base._read_agent()
             env.look()
+            if base.world.index(0, body.name) not in env._seen.objects:
+                env.step(Action(EXPLORE))
             _, _, _, _, info = env.step(Action(PICK_UP, body.name))
             tried += 1
             if not info["result"].ok:

@@ -34,7 +34,7 @@ def test_four_regions_of_25_scenes_one_of_which_is_the_test_split() -> None:
 def test_a_street_is_as_the_rules_of_the_benchmark_say(name: str) -> None:
     """benchmark.md 1: 15 targets of the wind pool, three carts, 16 m x 16 m; wind of 2.5 to 5 m/s (physics.md 1.3)."""
     spec = splits.scene(name)
-    assert spec.room.open_air and spec.room.size == (16.0, 16.0) and not spec.fires
+    assert spec.room.open_air and spec.room.size == (16.0, 16.0) and 1 <= len(spec.fires) <= 3
     assert len(spec.targets) == len(spec.bodies) == 15 and {b.category for b in spec.bodies} <= set(WIND_POOL)
     assert len(spec.containers) == 3
     assert 2.5 <= math.hypot(*spec.wind) <= 5.0

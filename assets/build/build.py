@@ -1,6 +1,6 @@
 """Makes the assets: `python assets/build/build.py PACKAGE.deb [ID ...]`; with ids, makes these again and keeps the other rows.
 
-Needs trimesh, scipy, Pillow, coacd, manifold3d, OpenEXR, and gltfpack (npm) on the path or in the variable GLTFPACK.
+Needs trimesh, scipy, Pillow, coacd, manifold3d, sapien, and gltfpack (npm) on the path or in the variable GLTFPACK.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ def texture(name: str) -> dict[str, Any]:
 
 def sky(name: str) -> dict[str, Any]:
     """Write one sky; returns its row."""
-    file = f"skies/{name}.exr"
+    file = f"skies/{name}.ktx"
     skies.write(name, ASSETS / file)
     credit = {"licence": "own work", "author": US, "source": "assets/build/skies.py", "changes": ""}
     return {"id": name, "kind": "sky", "category": "", "visual": file, **credit, "sha256": {file: checksum(ASSETS / file)}}

@@ -1,17 +1,21 @@
-"""Skies of our own as panoramas of the whole sphere: day, storm, evening. Linear light in half floats (OpenEXR)."""
+"""Skies of our own around the whole sphere: day, storm, evening, night, as cubes with all their blurred levels (KTX).
+
+SAPIEN would blur a panorama anew in every process, for a minute without a graphics card; from these files it reads what it needs.
+"""
 
 from __future__ import annotations
 
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 
 from patterns import noise
 
-WIDTH, HEIGHT = 1024, 512  # [pixels] of the panorama
+SIDE = 256  # [pixels] of a face of the cube
 CLOUDS = 1024  # [pixels] of the square of cloud overhead
-STEPS = 2**5  # steps of brightness between powers of two: what the eye cannot tell apart is not stored
 
 Rgb = tuple[float, float, float]
 
@@ -46,16 +50,21 @@ SKIES = {
         (0.09, 0.13, 0.30), (0.86, 0.46, 0.24), (0.95, 0.52, 0.34), (0.22, 0.19, 0.26), 0.42, 0.22, (170, 7), (0.9, 0.42, 0.12), 16.0,
         (0.10, 0.08, 0.07), 7,
     ),
+    "sky_night": Sky(
+        (0.006, 0.010, 0.022), (0.026, 0.030, 0.042), (0.050, 0.056, 0.072), (0.010, 0.012, 0.018), 0.40, 0.30, (130, 44),
+        (0.02, 0.02, 0.025), 0.9, (0.006, 0.006, 0.007), 5,
+    ),
 }  # fmt: skip
 
 
 def _directions() -> np.ndarray:
-    """Where SAPIEN 3.0.3 shows each pixel: unit vectors, world frame, [HEIGHT, WIDTH, 3]; columns run clockwise from -y."""
-    polar = (np.arange(HEIGHT) + 0.5) / HEIGHT * np.pi
-    around = 1.5 * np.pi - (np.arange(WIDTH) + 0.5) / WIDTH * 2 * np.pi
-    flat = np.stack([np.cos(around), np.sin(around)], axis=1)
-    up = np.broadcast_to(np.cos(polar)[:, None, None], (HEIGHT, WIDTH, 1))
-    return np.concatenate([np.sin(polar)[:, None, None] * flat[None], up], axis=2)
+    """Where SAPIEN 3.0.3 shows each pixel of the faces +x, -x, +y, -y, +z, -z of a cube whose y is up: [6, SIDE, SIDE, 3], world frame."""
+    steps = (np.arange(SIDE) + 0.5) / SIDE * 2 - 1
+    u, v = np.meshgrid(steps, steps)
+    one = np.ones_like(u)
+    faces = [(one, -v, -u), (-one, -v, u), (u, one, v), (u, -one, -v), (u, -v, one), (-u, -v, -one)]
+    way = np.stack([np.stack([x, z, y], -1) for x, y, z in faces])
+    return way / np.linalg.norm(way, axis=-1, keepdims=True)
 
 
 def _overhead(field: np.ndarray, way: np.ndarray, scale: float) -> np.ndarray:
@@ -69,8 +78,8 @@ def _overhead(field: np.ndarray, way: np.ndarray, scale: float) -> np.ndarray:
     return (a * (1 - s) + b * s) * (1 - t) + (c * (1 - s) + d * s) * t
 
 
-def panorama(sky: Sky) -> np.ndarray:
-    """Linear light, [HEIGHT, WIDTH, 3], float16."""
+def cube(sky: Sky) -> np.ndarray:
+    """Linear light on the faces of a cube, [6, SIDE, SIDE, 3]."""
     way = _directions()
     up = np.clip(way[..., 2], 0.0, 1.0)[..., None]
     azimuth, height = np.radians(sky.sun)
@@ -94,18 +103,16 @@ def panorama(sky: Sky) -> np.ndarray:
     shown = thick * np.clip(up * 9 - 0.15, 0, 1)
     light = light * (1 - shown) + cloud * shown
     below = np.clip(-way[..., 2] * 14, 0, 1)[..., None]
-    return _coarse(light * (1 - below) + np.array(sky.ground) * below)
-
-
-def _coarse(light: np.ndarray) -> np.ndarray:
-    """Rounded to STEPS per power of two, so that it compresses."""
-    mantissa, exponent = np.frexp(np.maximum(light, 1e-3))
-    return np.ldexp(np.round(mantissa * 2 * STEPS) / (2 * STEPS), exponent).astype(np.float16)
+    return light * (1 - below) + np.array(sky.ground) * below
 
 
 def write(name: str, path: Path) -> None:
-    """Write the sky `name` as OpenEXR."""
-    import OpenEXR
+    """Write the sky `name` as KTX; SAPIEN blurs it."""
+    import sapien
 
-    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
-    OpenEXR.File(header, {"RGB": panorama(SKIES[name])}).write(str(path))
+    with tempfile.TemporaryDirectory() as folder:
+        files = [f"{folder}/{face}.png" for face in range(6)]
+        for file, light in zip(files, cube(SKIES[name]), strict=True):
+            shown = (np.clip(light, 0.0, 1.0) ** (1 / 2.2) * 255 + 0.5).astype(np.uint8)
+            Image.fromarray(shown).convert("RGBA").save(file)
+        sapien.render.RenderCubemap(*files).export(str(path))

@@ -9,7 +9,7 @@ import sapien
 from torch import Tensor
 
 from hazard_ms.effects import shader_pack
-from hazard_ms.effects.entities import draws
+from hazard_ms.effects.entities import PREFIX, draws, materials
 from hazard_ms.effects.fire_effects import FireEffects
 from hazard_ms.effects.flood_effects import FloodEffects
 from hazard_ms.effects.shader_pack import shader_config
@@ -49,6 +49,19 @@ class Looks:
         self._parts: dict[str, Effects] = {
             name: maker.build(scenes, specs, world, mode, self._around) for name, maker in MAKERS.items() if name in present
         }
+        self._lit = [[m for e in s.entities if e.name.startswith(PREFIX) for m in materials(e)] for s in scenes if draws(s)]
+        self._air: list[tuple[float, float, float]] = []
+
+    def light(self, air: list[tuple[float, float, float]]) -> None:
+        """Let light fall on smoke, water, haze and what flies: linear red, green, blue, 1 by day, per scene; flames shine by themselves."""
+        if air == self._air:
+            return
+        self._air = list(air)
+        for row, colour in zip(self._lit, air, strict=True):
+            for material in row:
+                material.base_color = [*colour, 1.0]
+        for around, colour in zip(self._around, air, strict=False):
+            around.light(colour)
 
     def update(self, world: World, states: dict[str, Any], frame: Tensor) -> None:
         """Show the hazards' `states` at `frame` [E]; to be called before a picture is taken."""

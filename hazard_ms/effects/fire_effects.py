@@ -21,6 +21,7 @@ from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, draws, entitie
 from hazard_ms.effects.glsl import SMOKE_PERIOD
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.textures import noise_texture
+from hazard_ms.hazards.base import State
 from hazard_ms.hazards.fire import FireState, body_flames, floor_flames
 from hazard_ms.hazards.spread import SCALE_LAST, roster_length
 from hazard_ms.spec import SceneSpec
@@ -154,6 +155,15 @@ class FireEffects:
             sources, strength = np.concatenate([centre[e], place[e]]), np.concatenate([on_things[e], on_floor[e]])
             scene.show_smoke(sources, strength, time)
             scene.show_light(sources, strength, time)
+        self._fill(fire)
+
+    def _fill(self, fire: State) -> None:
+        """The layer of smoke under the ceiling, of fires that have one: those of the preset `realistic`."""
+        density, height = (getattr(fire, name, None) for name in ("smoke_density", "smoke_height"))  # absent from FireState
+        if density is None or height is None:
+            return
+        for around, low, thick in zip(self._around, height.cpu().tolist(), density.cpu().tolist(), strict=True):
+            around.smoke(low, thick)
 
 
 def _lamp(scene: sapien.Scene) -> RenderPointLightComponent:

@@ -102,8 +102,11 @@ class FloodEffects:
             scene.wet(wet[e])
 
 
-def surface_mesh(spec: SceneSpec, material: RenderMaterial) -> RenderShapeTriangleMesh | None:
-    """The surface of the water over the floor of `spec`'s room; None where no part of it can be reached. Corners: see glsl.py."""
+def surface_corners(spec: SceneSpec) -> tuple[np.ndarray, np.ndarray]:
+    """The surface of the water over the floor of `spec`'s room as Q quads, as far as water can get.
+
+    Places of their corners [m], [Q, 4, 2], and what these carry: way of the water [m], its direction [rad], kind, [Q, 4, 3].
+    """
     ways, room = _ways(spec), spec.room
     low, high = -room.beyond, (room.size[0] + room.beyond, room.size[1] + room.beyond)
     cuts = [sorted([low, high[k], *(p.at for p in room.partitions if p.axis == "yx"[k])]) for k in (0, 1)]
@@ -116,14 +119,17 @@ def surface_mesh(spec: SceneSpec, material: RenderMaterial) -> RenderShapeTriang
     place = np.concatenate(corners)
     way, turn = _way(ways, place)
     reached = way.max(axis=1) < surface.NEVER / 2
-    if not reached.any():
+    return place[reached], np.stack([way, turn, np.full_like(way, WATER)], -1)[reached]
+
+
+def surface_mesh(spec: SceneSpec, material: RenderMaterial) -> RenderShapeTriangleMesh | None:
+    """A mesh of `surface_corners`, whose vertices coincide; None where water gets nowhere."""
+    place, data = (c.reshape(-1, c.shape[-1]).astype(np.float32) for c in surface_corners(spec))
+    if len(place) == 0:
         return None
-    place, data = place[reached].reshape(-1, 2), np.stack([way, turn, np.full_like(way, WATER)], -1)[reached].reshape(-1, 3)
     first = 4 * np.arange(len(place) // 4)[:, None]
     faces = (first + np.array([[0, 1, 2, 0, 2, 3, 2, 1, 0, 3, 2, 0]])).reshape(-1, 3)  # both sides
-    return RenderShapeTriangleMesh(
-        np.zeros((len(place), 3), np.float32), faces.astype(np.uint32), data.astype(np.float32), place.astype(np.float32), material
-    )
+    return RenderShapeTriangleMesh(np.zeros((len(place), 3), np.float32), faces.astype(np.uint32), data, place, material)
 
 
 def _ways(spec: SceneSpec) -> surface.Ways:

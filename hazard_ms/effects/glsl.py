@@ -100,21 +100,7 @@ void main() {
 """
 )
 
-EFFECT_FRAG = (
-    """#version 450
-#define SET_NUM 0
-#include "./camera_set.glsl"
-#undef SET_NUM
-#define SET_NUM 2
-#include "./material_set.glsl"
-#undef SET_NUM
-layout(location = 0) in vec2 corner;
-layout(location = 1) in vec4 life;
-layout(location = 2) in vec3 place;
-layout(location = 0) out vec4 outLighting;  // the only target: labels, depth and normals stay those of the solid scene
-
-float noise(vec2 p) { return texture(colorTexture, p).r; }
-
+FIRE_FRAG = """
 vec4 flame(vec2 p, float seed, float time, float strength) {
   p /= vec2(mix(0.5, 1.0, strength), max(strength, 0.02));
   if (p.y > 1.0) return vec4(0);
@@ -150,11 +136,9 @@ vec4 smoke(vec2 p, float seed, float age, float strength) {
 }
 
 """
-    + WATER_FRAG
-    + WIND_FRAG
-    + """
-void main() {
-  float time = materialBuffer.transmissionRoughness, strength = materialBuffer.transmission;
+
+SHOWN = """
+vec4 shown(vec2 corner, vec4 life, vec3 place, float time, float strength, vec3 air) {
   vec4 colour;
   if (life.x < 0.5) colour = flame(corner, life.y, time, strength);
   else if (life.x < 1.5) colour = scorch(corner, life.y, time, strength);
@@ -165,7 +149,35 @@ void main() {
   else if (life.x < 6.5) colour = paper(corner, life.y, life.z);
   else colour = streak(corner, strength);
   if (life.x > 4.5) colour.a *= step(life.y, strength);  // a weak wind carries less
+  if (life.x > 1.5 && (life.x < 2.5 || life.x > 3.5)) colour.rgb *= air;  // light falls on what does not glow
   colour.a *= life.w;
+  return colour;
+}
+"""
+
+EFFECT_FRAG = (
+    """#version 450
+#define SET_NUM 0
+#include "./camera_set.glsl"
+#undef SET_NUM
+#define SET_NUM 2
+#include "./material_set.glsl"
+#undef SET_NUM
+layout(location = 0) in vec2 corner;
+layout(location = 1) in vec4 life;
+layout(location = 2) in vec3 place;
+layout(location = 0) out vec4 outLighting;  // the only target: labels, depth and normals stay those of the solid scene
+
+float noise(vec2 p) { return texture(colorTexture, p).r; }
+"""
+    + FIRE_FRAG
+    + WATER_FRAG
+    + WIND_FRAG
+    + SHOWN
+    + """
+void main() {
+  vec3 air = materialBuffer.baseColor.rgb;
+  vec4 colour = shown(corner, life, place, materialBuffer.transmissionRoughness, materialBuffer.transmission, air);
   if (colour.a < (life.x < 0.5 ? 0.10 : 0.02)) discard;  // what is drawn hides flames behind it: do not draw faint rims
   outLighting = colour;
 }

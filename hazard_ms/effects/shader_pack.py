@@ -135,10 +135,9 @@ def _fast(files: dict[str, str]) -> dict[str, str]:
     forward = _insert(files, "gbuffer.frag", "  vec3 diffuseAlbedo", _fast_char() + IMMERSE_FORWARD)
     _known_words(forward, "outColorRaw", "outPositionSegmentation", "objectCoord", "transmissionRoughness")
     files["gbuffer.frag"] = forward.replace("outPositionSegmentation", f"out{LABELS}")
-    sky = "mix(bg, color.rgb, "  # by the pixel's alpha, which a flame's rim lowers: there the room shines through, not the sky
-    files["composite0.frag"] = _insert(files, "composite0.frag", f"{sky}color.a)", "").replace(
-        f"{sky}color.a)", f"{sky}depth < 1.0 ? 1.0 : color.a)"
-    )
+    # Blending leaves alpha 1 - a + a^2 over something solid, never below 0.75, and a^2 over the sky: there the sky shines through.
+    seen, mended = "mix(bg, color.rgb, color.a)", "depth < 1.0 && color.a > 0.745 ? color.rgb : color.rgb + (1.0 - sqrt(color.a)) * bg"
+    files["composite0.frag"] = _insert(files, "composite0.frag", seen, "").replace(seen, mended)
     files |= {"gbuffer1.vert": files["gbuffer.vert"], "gbuffer1.frag": files["gbuffer.frag"]}
     shown = EFFECT_FRAG.replace("outLighting = colour", "outLighting = vec4(pow(min(colour.rgb, 1.0), vec3(1.0 / 2.2)), colour.a)")
     return files | {"gbuffer2.vert": EFFECT_VERT, "gbuffer2.frag": shown.replace("outLighting", "outColorRaw")}

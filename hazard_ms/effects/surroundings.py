@@ -71,6 +71,10 @@ class Surroundings:
         """Let there be smoke of `density` [1/m] above `height` [m]."""
         self._data[0, 3, 1:3] = height, density
 
+    def light(self, air: tuple[float, float, float]) -> None:
+        """Let light fall on haze, water and what is in the water: linear red, green, blue, 1 by day."""
+        self._data[0, 4, 1:] = np.multiply(HAZE_COLOUR, air)
+
     def show(self) -> None:
         """Send what has changed to the renderer."""
         if not np.array_equal(self._sent, self._data):

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 BOX = 18.0  # [m]
 
-WIND_VERT = f"""
+WIND_VERT = (
+    f"""
 const float box = {BOX};
-""" + """
+"""
+    + """
 vec3 tumbling(float seed, float time, vec3 axis, out vec3 along) {  // an edge that turns about a turning axis
   vec3 side = normalize(cross(axis, vec3(0.3, 0.5, 0.81)));
   float angle = time * (2.0 + 4.0 * fract(seed * 53.0)) + 6.28 * fract(seed * 31.0);
@@ -43,6 +45,7 @@ void carry(float kind, float seed, vec3 home, mat4 model, vec3 eye, vec2 size, o
   shade = 0.45 + 0.55 * abs(dot(normal, vec3(-0.32, -0.49, 0.81)));
 }
 """
+)
 
 WIND_FRAG = """
 vec4 leaf(vec2 p, float seed, float shade) {

@@ -77,6 +77,8 @@ class Hazard(abc.ABC):
 
     name: ClassVar[str]
     state_type: ClassVar[type[State]]
+    provides: ClassVar[dict[str, str]] = {}  # fields of the world that it writes: name -> its method (state, world, points)
+    uses: ClassVar[tuple[str, ...]] = ()  # fields of the world that it reads, where another hazard provides them
 
     def sizes(self, world: World) -> dict[str, int]:
         """Lengths of the axes of its quantities beyond E and B."""

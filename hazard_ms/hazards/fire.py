@@ -13,29 +13,10 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards import floor, heat, spread
-from hazard_ms.hazards.base import Hazard, State, nobody, quantity
+from hazard_ms.hazards import floor, heat, spread, together
+from hazard_ms.hazards.base import Hazard, State, nobody
+from hazard_ms.hazards.fire_state import BURNING, BURNT, NORMAL, FireState
 from hazard_ms.world import World
-
-NORMAL, BURNING, BURNT = 0, 1, 2
-
-
-@dataclass
-class FireState(State):
-    """S lattices of K x K floor cells; F flames on the floor, in the order of ignition."""
-
-    temperature: Tensor = quantity("E B", "C", "temperature of every thing", fill=20.0)
-    status: Tensor = quantity("E B", "", "0 normal, 1 burning, 2 burnt", dtype="int")
-    burn_updates: Tensor = quantity("E B", "", "heat updates since ignition", dtype="int")
-    threshold: Tensor = quantity("E B", "C", "ignition temperature; infinite for what cannot burn", fill=torch.inf)
-    agent_temperature: Tensor = quantity("E", "C", "temperature of the agent", fill=20.0)
-    anchor: Tensor = quantity("E S 2", "m", "where the first flame of each lattice is")
-    free: Tensor = quantity("E S K K", "", "floor cells that can burn", dtype="bool")
-    flame_cell: Tensor = quantity("E F", "", "number of the burning cell; -1 where there is no flame yet", dtype="int", fill=-1)
-    flame_place: Tensor = quantity("E F 3", "m", "where the flame is")
-    flame_birth: Tensor = quantity("E F", "frame", "when the flame appears", dtype="int", fill=-1)
-    flame_last: Tensor = quantity("E F", "frame", "the flame's last success in spreading, or its birth", dtype="int", fill=-1)
-    flame_used: Tensor = quantity("E F", "", "directions used up, one bit each", dtype="int")
 
 
 @dataclass(frozen=True)
@@ -44,6 +25,7 @@ class Fire(Hazard):
 
     name: ClassVar[str] = "fire"
     state_type: ClassVar[type[State]] = FireState
+    uses: ClassVar[tuple[str, ...]] = ("water", "air")
 
     room_temperature: float = 20.0  # [C] [C fire_utils.py:16]
     flame_temperature: float = 600.0  # of flames and of burning things [C] [C fire_utils.py:17]
@@ -84,6 +66,7 @@ class Fire(Hazard):
         begin_flames(state, world, rows, self.fixtures_block)
 
     def advance(self, state: FireState, world: World, dt: float) -> None:
+        together.drench(state, world)
         due = world.frame % self.heat_every == 0
         if nobody(due):
             return  # nor is anything to spread, see __post_init__
@@ -99,7 +82,8 @@ class Fire(Hazard):
         nodes = state.temperature.shape[1] + 1  # things and the agent; after them come the flames
         mean = heat.Mean(self.room_temperature, 1.0, self.reach, self.nearest)
         around = mean.at(sources.place[:, :nodes], sources, apart=True)
-        fixed = state.status >= BURNING if self.embers else state.status == BURNING
+        embers = (state.status == BURNT) & state.threshold.isfinite() & self.embers  # what went out under water has none
+        fixed = (state.status == BURNING) | embers
         passive = sources.active[:, : nodes - 1] & ~fixed & due[:, None]
         state.temperature.copy_(heat.exchange(state.temperature, around[:, :-1], passive, self.decay))
         state.agent_temperature.copy_(heat.exchange(state.agent_temperature, around[:, -1], due, self.decay))
@@ -130,13 +114,16 @@ class Fire(Hazard):
         slots, frame = state.flame_cell.shape[1], world.frame
         draw = world.chance.uniform("fire.spread", slots, 2)
         roster = (state.flame_cell, state.flame_birth, state.flame_last, state.flame_used)
-        success = spread.succeeds(*roster, frame, draw[..., 0]) & due[:, None]
+        blown = together.drift(world, state.flame_place)
+        fed = draw[..., 0] if blown is None else draw[..., 0] / blown.mean(-1)
+        success = spread.succeeds(*roster, frame, fed) & due[:, None]
         if nobody(success):
             return
         parent = spread.compact(success, spread.AT_ONCE)  # [E, C]
         some = parent >= 0
         chosen = parent.clamp(min=0)
-        direction = spread.pick(state.flame_used.gather(1, chosen), draw[..., 1].gather(1, chosen))
+        weight = None if blown is None else blown.gather(1, chosen[..., None].expand(-1, -1, spread.DIRECTIONS))
+        direction = spread.pick(state.flame_used.gather(1, chosen), draw[..., 1].gather(1, chosen), weight)
         state.flame_used.scatter_add_(1, chosen, some.long() << direction)
         state.flame_last.copy_(torch.where(success, frame[:, None], state.flame_last))
         aim = spread.neighbour(torch.where(some, state.flame_cell.gather(1, chosen), -1), direction, state.free.shape[-1])

@@ -68,6 +68,7 @@ class Flood(Hazard):
 
     name: ClassVar[str] = "flood"
     state_type: ClassVar[type[State]] = FloodState
+    provides: ClassVar[dict[str, str]] = {"water": "image"}
 
     rise: float = 0.01  # of the level at the source per update [m] [C utils.py:19-21]
     every: int = 10  # frames from update to update [C utils.py:19-21]

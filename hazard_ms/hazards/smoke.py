@@ -77,35 +77,30 @@ def leak(vents: Tensor, lower: Tensor, hot: Tensor, room: float) -> Tensor:
     return 2.0 / 3.0 * VENT * (2.0 * GRAVITY * density * lightness).sqrt() * (width * weir).sum(1)
 
 
-def fill(
-    layer: Layer,
-    walls: Walls,
-    vents: Tensor,
-    power: Tensor,
-    heat: Tensor,
-    base: Tensor,
-    soot: Tensor,
-    room: float,
-    hottest: float,
-    dt: float,
-) -> Layer:
-    """The layer after `dt` seconds. All [E] but `vents`.
+class Source(NamedTuple):
+    """What all fires of each room give off, [E]."""
 
-    `power` of the fire and convected `heat` [kW]; `base` of the plume [m]; `soot` given off [kg/s]; `room` and `hottest` temperature [C].
-    """
+    power: Tensor  # heat release [kW]
+    heat: Tensor  # the part of it that is convected [kW]
+    base: Tensor  # where the plume begins, above the floor [m]
+    soot: Tensor  # [kg/s]
+
+
+def fill(layer: Layer, walls: Walls, vents: Tensor, source: Source, room: float, hottest: float, dt: float) -> Layer:
+    """The layer after `dt` seconds; `vents` as in `leak`; `room` and `hottest` temperature [C]."""
     lower, hot = interface(layer.volume, walls), temperature(layer, room)
     faces = walls.area + walls.edge * (walls.height - lower)
-    net = heat - WALLS * faces * (hot - room) * (layer.volume > THIN)
+    net = source.heat - WALLS * faces * (hot - room) * (layer.volume > THIN)
     density = AIR / (hot + KELVIN)
     drained = (leak(vents, lower, hot, room) / density * dt).clamp(max=layer.volume)
     left = 1.0 - drained / layer.volume.clamp(min=THIN)
-    grown = layer.volume - drained + dt * (entrained(power, lower - base) + net / AIR)
+    grown = layer.volume - drained + dt * (entrained(source.power, lower - source.base) + net / AIR)
     whole = walls.area * walls.height
     kept = whole / torch.maximum(grown, whole)  # what the room cannot hold is pressed out with what it carries
     volume = (grown * kept).clamp(min=0.0)
     most = AIR * volume * (1.0 - (room + KELVIN) / (hottest + KELVIN))
     energy = torch.minimum(((layer.energy * left + dt * net) * kept).clamp(min=0.0), most)
-    return Layer(volume, energy, (layer.soot * left + dt * soot) * kept)
+    return Layer(volume, energy, (layer.soot * left + dt * source.soot) * kept)
 
 
 def extinction(layer: Layer) -> Tensor:

@@ -72,9 +72,15 @@ def compact(mask: Tensor, length: int) -> Tensor:
     return torch.full((len(mask), length + 1), -1, device=mask.device).scatter_(1, slot, index)[:, :length]
 
 
-def pick(used: Tensor, draw: Tensor) -> Tensor:
-    """One of the directions not yet `used` (bits, [E, C]), each as likely; `draw` uniform in (0, 1), [E, C]: [E, C], int64."""
+def pick(used: Tensor, draw: Tensor, weight: Tensor | None = None) -> Tensor:
+    """One of the directions not yet `used` (bits, [E, C]); `draw` uniform in (0, 1), [E, C]: [E, C], int64.
+
+    Each is as likely, or in proportion to `weight`, [E, C, 4].
+    """
     left = (used[..., None] >> torch.arange(DIRECTIONS, device=used.device)) & 1 == 0
+    if weight is not None:
+        chance = (weight * left).cumsum(-1)
+        return ((chance > draw[..., None] * chance[..., -1:]) & left).long().argmax(-1)
     order = left.cumsum(-1)
     wanted = (draw * order[..., -1]).long() + 1
     return (left & (order == wanted[..., None])).long().argmax(-1)

@@ -55,6 +55,7 @@ class Wind(Hazard):
 
     name: ClassVar[str] = "wind"
     state_type: ClassVar[type[State]] = WindState
+    provides: ClassVar[dict[str, str]] = {"air": "velocity_at"}
 
     # A frame lasts 10/3 of the original's, and walking speeds are given per frame, so the wind's is, too: the agent must not meet things
     # that are three times as fast for it. Weight does not slow down with the frames, so the gain grows. With it the models of the wind
@@ -162,6 +163,10 @@ class Wind(Hazard):
         if self.sheltered:
             speed = speed * shelter.share(state.loss, state.cause, state.corner, points)
         return speed
+
+    def velocity_at(self, state: WindState, world: World, points: Tensor) -> Tensor:
+        """Velocity of the air x, y [m/s] at `points` [m], [E, P, 3], world frame: [E, P, 2]."""
+        return self.speed_at(state, world, points)[..., None] * state.heading[:, None]
 
     def damaged(self, state: WindState, world: World) -> Tensor:
         """Nothing: wind carries things off."""

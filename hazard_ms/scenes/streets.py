@@ -1,4 +1,4 @@
-"""Outdoor scenes: a region, three shopping carts, fifteen things that the wind may take, and a wind."""
+"""Outdoor scenes: a region, three shopping carts, fifteen things that the wind may take, a wind; and fires, should it burn."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hazard_ms.catalogue import CATEGORIES, HIGH_VALUE, WIND_POOL
 from hazard_ms.scenes import boxes
 from hazard_ms.scenes.arrangement import Arrangement, NoPlaceError, models_of
 from hazard_ms.scenes.draw import GENERATOR, Draw
-from hazard_ms.scenes.endangering import START, start
+from hazard_ms.scenes.endangering import FLAME, START, fires, start
 from hazard_ms.scenes.floor import centre_of, free_for
 from hazard_ms.scenes.regions import REGIONS, SIDE, Region
 from hazard_ms.scenes.scatter import ROBOT, Scatter
@@ -20,6 +20,7 @@ CARTS = 3  # (benchmark rules 1)
 TARGETS = 15  # (benchmark rules 1)
 BETWEEN_CARTS = 4.0  # at least [m] [ours]
 CART_SPACE = 0.5  # from a cart's box to anything else [m] [ours]: a robot must get to it
+FIRES = (1, 2, 3)  # numbers of fires, for tasks in which it burns outdoors, equally likely
 WIND = (2.5, 5.0)  # speed [m/s] physics.md 1.3: the shipped scenes
 TRIES = 400  # draws for the carts
 ATTEMPTS = 60  # at one scene
@@ -44,9 +45,11 @@ def _compose(region: Region, name: str, split: str, draw: Draw) -> SceneSpec:
         if not scatter.place(category, on_floor=draw.uniform() < 0.9):
             raise NoPlaceError(f"a {category} finds no place in {region.name}")
     agent = start(free_for(made.room, made.boxes, scatter.boxes, START) & scatter.free, draw)
+    targets = scatter.boxes
+    burning = fires(draw.one(FIRES), scatter.free, free_for(made.room, made.boxes, targets, FLAME), agent, targets, made.room.size, draw)
     bodies = tuple(sorted(scatter.bodies, key=lambda b: b.name))
     kinds = tuple(sorted({b.category for b in bodies}))
-    return SceneSpec(name, made.room, tuple(made.fixtures), bodies, kinds, (), agent, split, wind=_wind(draw))
+    return SceneSpec(name, made.room, tuple(made.fixtures), bodies, kinds, burning, agent, split, wind=_wind(draw))
 
 
 def _wanted(draw: Draw) -> list[str]:

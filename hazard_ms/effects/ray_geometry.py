@@ -1,0 +1,193 @@
+"""Effects as real geometry, for a ray-traced picture: what the effect pass's vertex shader spreads out (glsl.py), spread out here.
+
+It reads the effect entities of a scene as they are shown, whatever hazard they belong to, and adds one mesh of quads that face the camera
+and one of the water's surface with its waves. Take the picture, then `undress` the scene.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import sapien
+from sapien.render import RenderBodyComponent, RenderMaterial, RenderShapeTriangleMesh
+
+from hazard_ms.effects import meshes, ray_pack
+from hazard_ms.effects.entities import PREFIX
+from hazard_ms.effects.glsl import EMBER, FLAME, LEAF, SCORCH, SMOKE, STREAK, WATER
+from hazard_ms.effects.textures import noise_texture
+from hazard_ms.effects.wind_spread import carried
+
+NEAR = 0.15  # quads nearer to the camera than this are left out [m] [ours]
+TRANSPARENT, REFRACTION, SMOOTH = 0.97, 1.33, 0.02  # water's transmission, index of refraction, roughness
+TINT = (0.86, 0.94, 0.93)  # linear, of water at its surface [ours]
+WAVE_CELL = 0.06  # of the water's mesh [m] [ours]
+MOST_CELLS = 160  # of it along one side of a piece of water
+WAVES = 7  # sines that make up the surface [ours]
+STEEPNESS = 0.022  # slope of each [ours]
+
+Array = np.ndarray
+
+
+@dataclass
+class Quads:
+    """Quads as they are to be drawn: corners [m], [Q, 4, 3]; (x, y) of the corners in the quad, [Q, 4, 2]; kind + seed, light, strength, [Q, 3]."""
+
+    corners: Array
+    places: Array
+    lives: Array
+
+
+def dress(scene: sapien.Scene, eye: sapien.Pose, time: float) -> list[sapien.Entity]:
+    """Add what the effects of `scene` look like from a camera at `eye` (x forward) at `time` [s]. Returns the entities that were added."""
+    view = eye.to_transformation_matrix()
+    found: list[Quads] = []
+    added: list[sapien.Entity] = []
+    air = np.ones(3)
+    for entity, shape in _shown(scene):
+        part, pose, air = shape.parts[0], entity.pose.to_transformation_matrix(), np.asarray(shape.parts[0].material.base_color)[:3]
+        if np.floor(part.normals[0, 2]) == WATER:
+            added.append(_entity(scene, _water(part.vertices, part.normals, part.uvs, pose, time)))
+        else:
+            found.append(_spread(part.vertices, part.normals, pose, view, part.material.transmission))
+    if found:
+        quads = Quads(*(np.concatenate([getattr(q, name) for q in found]) for name in ("corners", "places", "lives")))
+        near = np.linalg.norm(quads.corners.mean(1) - view[:3, 3], axis=-1) < NEAR
+        kept = Quads(quads.corners[~near], quads.places[~near], quads.lives[~near])
+        if len(kept.corners):
+            added.append(_entity(scene, _mesh(kept, time, air)))
+    return added
+
+
+def undress(scene: sapien.Scene, added: list[sapien.Entity]) -> None:
+    """Take away what `dress` has added."""
+    for entity in added:
+        scene.remove_entity(entity)
+
+
+def _shown(scene: sapien.Scene) -> list[tuple[sapien.Entity, RenderShapeTriangleMesh]]:
+    """Effect entities that are to be seen, with their meshes."""
+    shown = [e for e in scene.entities if e.name.startswith(PREFIX) and e.pose.p[2] > meshes.NOWHERE / 2]
+    return [(e, e.find_component_by_type(RenderBodyComponent).render_shapes[0]) for e in shown]
+
+
+def _entity(scene: sapien.Scene, shape: RenderShapeTriangleMesh) -> sapien.Entity:
+    body = RenderBodyComponent()
+    body.attach(shape)
+    body.disable_render_id()
+    entity = sapien.Entity()
+    entity.name = "picture"
+    entity.add_component(body)
+    scene.add_entity(entity)
+    return entity
+
+
+def _mesh(quads: Quads, time: float, air: Array) -> RenderShapeTriangleMesh:
+    """The quads as one mesh; both sides are seen, since its material lets light through."""
+    material = RenderMaterial(base_color=[*air, 1.0])
+    material.base_color_texture = noise_texture()
+    material.base_color = [*air, 1.0]  # a texture is only seen after a scalar has been set (SAPIEN 3.0.3)
+    material.transmission = 1.0
+    material.transmission_roughness = ray_pack.EFFECT + time
+    count = len(quads.corners)
+    faces = (meshes.FACES[None] + 4 * np.arange(count, dtype=np.uint32)[:, None, None]).reshape(-1, 3)
+    normals = np.repeat(quads.lives, 4, 0)
+    return RenderShapeTriangleMesh(
+        quads.corners.reshape(-1, 3).astype(np.float32),
+        faces,
+        normals.astype(np.float32),
+        quads.places.reshape(-1, 2).astype(np.float32),
+        material,
+    )
+
+
+def _spread(vertices: Array, data: Array, pose: Array, view: Array, strength: float) -> Quads:
+    """Quads of one entity; see EFFECT_VERT in glsl.py, which does the same per corner."""
+    home, size, code = vertices[::4], data[::4, :2].copy(), data[::4, 2]
+    kind, seed = np.floor(code), code % 1.0
+    eye, right, upward = view[:3, 3], -view[:3, 1], view[:3, 2]
+    anchor = home @ pose[:3, :3].T + pose[:3, 3]
+    age = np.zeros(len(home))
+    if kind[0] >= LEAF:
+        anchor, across, up, age = carried(kind, seed, home, pose, eye)
+    elif kind[0] >= SMOKE:
+        anchor, size, age = _risen(kind, seed, home, size, pose)
+        across, up = np.broadcast_to(right, anchor.shape), np.broadcast_to(upward, anchor.shape)
+    else:
+        across, up = _standing(kind, seed, anchor, size, eye, upward)
+    low = np.where(kind == FLAME, 0.0, -1.0)[:, None]
+    x, y = np.tile(meshes.CORNERS[:, 0], (len(home), 1)), np.where(meshes.CORNERS[:, 1] > 0, 1.0, low)
+    corners = anchor[:, None] + across[:, None] * (x * size[:, :1])[..., None] + up[:, None] * (y * size[:, 1:])[..., None]
+    return Quads(corners, np.stack([x, y], -1), np.stack([code, age, np.full(len(home), strength)], -1))
+
+
+def _standing(kind: Array, seed: Array, anchor: Array, size: Array, eye: Array, upward: Array) -> tuple[Array, Array]:
+    """Edges of flames, which stand upright, and of scorch marks, which lie on the floor; they move `anchor` and `size` in place."""
+    aloft = np.array([0.0, 0.0, 1.0])
+    toward = eye - anchor
+    far = np.linalg.norm(toward, axis=-1, keepdims=True)
+    lean = _unit(aloft + 0.45 * upward)
+    flame = (kind == FLAME)[:, None]
+    turned = np.stack([np.cos(6.28 * seed), np.sin(6.28 * seed), np.zeros_like(seed)], -1)
+    across = np.where(flame, _unit(np.cross(lean, toward)), turned)
+    up = np.where(flame, lean, np.cross(aloft, turned))
+    anchor += np.where(flame, toward / far * np.minimum(0.6 * size[:, :1], 0.3 * far), 0.0)  # not cut by the thing that burns
+    size[kind == SCORCH, 1] = size[kind == SCORCH, 0]
+    return across, up
+
+
+def _risen(kind: Array, seed: Array, home: Array, size: Array, pose: Array) -> tuple[Array, Array, Array]:
+    """Places [m], sizes [m] and ages of smoke and embers: the entity's turn tells the phase."""
+    ember = kind == EMBER
+    phase = np.arctan2(pose[1, 0], pose[0, 0]) / (2 * np.pi)
+    age = (phase * np.where(ember, 1.0 + np.floor(seed * 3.0), 1.0) + seed * 7.0) % 1.0
+    rise = np.maximum(size[:, 1] - pose[2, 3], 0.3)
+    sway = 2 * np.pi * (seed * 5.0 + age)
+    drift = 0.10 * age[:, None] * np.stack([np.cos(sway), np.sin(sway)], -1)
+    spread = np.where(ember, 0.35 * age, 0.0)[:, None] * np.stack([np.cos(seed * 40.0), np.sin(seed * 57.0)], -1)
+    height = rise * np.where(ember, 0.8 * age, np.sqrt(age))
+    anchor = pose[:3, 3] + home + np.column_stack([drift + spread, height])
+    half = size[:, 0] * np.where(ember, 1.0 - 0.6 * age, 0.35 + 1.3 * age)
+    return anchor, np.stack([half, half], -1), age
+
+
+def _water(vertices: Array, data: Array, place: Array, pose: Array, time: float) -> RenderShapeTriangleMesh:
+    """The surface: the hazard's level at its corners, then finer cells with waves."""
+    level = pose[2, 3] - pose[0, 1] / max(pose[0, 0], 1e-3) * data[:, 0]
+    corners = np.column_stack([place, level]).reshape(-1, 4, 3)
+    points, faces, first = [], [], 0
+    for a, b, c, d in corners:
+        if max(a[2], b[2], c[2], d[2]) <= 0.0:
+            continue
+        wide, deep = (int(np.clip(np.ceil(np.linalg.norm(e[:2] - a[:2]) / WAVE_CELL), 1, MOST_CELLS)) for e in (b, d))
+        u, v = np.meshgrid(np.linspace(0, 1, wide + 1), np.linspace(0, 1, deep + 1))
+        weights = np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v], -1).reshape(-1, 4)
+        points.append(weights @ np.stack([a, b, c, d]))
+        corner = (np.arange(deep)[:, None] * (wide + 1) + np.arange(wide)[None]).reshape(-1, 1)
+        faces.append(first + (corner + np.array([[0, 1, wide + 2, 0, wide + 2, wide + 1]])).reshape(-1, 3))
+        first += len(points[-1])
+    grid = np.concatenate(points)
+    normal = _waves(grid, time)
+    material = RenderMaterial(base_color=[*TINT, 1.0], roughness=SMOOTH, specular=0.5)
+    material.transmission, material.ior, material.transmission_roughness = TRANSPARENT, REFRACTION, ray_pack.WATER
+    flat = np.zeros((len(grid), 2), np.float32)
+    return RenderShapeTriangleMesh(grid.astype(np.float32), np.concatenate(faces).astype(np.uint32), normal, flat, material)
+
+
+def _waves(grid: Array, time: float) -> Array:
+    """Normals of waves on the surface at the points `grid` [m], [P, 3]; the heights are moved in place."""
+    slope = np.zeros((len(grid), 2))
+    for k in range(WAVES):
+        turn, number = 1.3 * k + 0.4, 5.0 * 1.5**k  # direction [rad], waves per 2 pi metres
+        way = np.array([np.cos(turn), np.sin(turn)])
+        phase = grid[:, :2] @ way * number + time * np.sqrt(9.81 * number) * 0.5 + 2.0 * np.sin(0.7 * grid[:, (k + 1) % 2] * (k + 1))
+        grid[:, 2] += STEEPNESS / number * np.sin(phase)
+        slope += STEEPNESS * way * np.cos(phase)[:, None]
+    return _unit(np.column_stack([-slope, np.ones(len(grid))])).astype(np.float32)
+
+
+def _unit(vectors: Array) -> Array:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)
+
+
+__all__ = ["STREAK", "dress", "undress"]

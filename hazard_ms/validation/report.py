@@ -1,0 +1,105 @@
+"""Runs the cases, prints them as a table, and writes a page with the important curves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+import cv2
+
+from hazard_ms.checks import one_of
+from hazard_ms.validation import blaze_cases, fire_cases, flood_cases, wind_cases
+from hazard_ms.validation.cases import Case, Result, check
+from hazard_ms.validation.charts import Chart, draw
+from hazard_ms.validation.curves import CHARTS
+
+CASES: dict[str, tuple[Callable[[], Iterator[Case]], ...]] = {
+    "fire": (fire_cases.cases, blaze_cases.cases),
+    "flood": (flood_cases.cases,),
+    "wind": (wind_cases.cases,),
+}
+PAGE = "validation.md"
+PICTURES = "validation"  # the folder of pictures beside the page
+ABOUT = """\
+# Validation of the physics
+
+Written by `hazard-ms validate -o docs`; do not edit. Expected numbers are exact solutions, tables of the original benchmark's code, or
+publications (NIST FDS Correlation Guide, CFAST, NFPA, ISO 13571, Quintiere and Harkleroad): no number is computed by the code that it
+checks. Motion is that of the real simulator. Cases of unsteady water in several rooms (L-26 to L-29) are not covered: this
+code has no such model. Letters: I integrator, F fire of the original, N and 3.1 realistic fire, L flood, W wind.
+"""
+
+
+def chosen(hazard: str | None, quick: bool = False) -> list[tuple[str, Case]]:
+    """The cases of `hazard`, or of all; `quick`: without those that take more than a second or two. With the hazard's name."""
+    names = list(CASES) if hazard is None else [one_of(hazard, CASES, "hazard")]
+    return [(name, case) for name in names for part in CASES[name] for case in part() if not (quick and case.slow)]
+
+
+def number(value: float) -> str:
+    """Six significant digits."""
+    return f"{value:.6g}"
+
+
+def tolerance(case: Case) -> str:
+    """As people read it."""
+    if not case.tolerance:
+        return "exact"
+    return f"± {case.tolerance:.3g}" if case.absolute else f"± {100 * case.tolerance:.3g} %"
+
+
+def line(result: Result) -> str:
+    """One result as a line of text."""
+    case = result.case
+    verdict = "pass" if result.passed else "FAIL"
+    values = f"{number(case.expected):>10} {number(result.got):>10} {case.unit:6} {tolerance(case):>10}"
+    return f"{verdict}  {case.id:10} {case.what:64} {values}"
+
+
+def run(cases: Iterable[Case], say: Callable[[str], None] = print) -> list[Result]:
+    """Check all of `cases`, telling each as it ends."""
+    results = []
+    for case in cases:
+        results.append(check(case))
+        say(line(results[-1]))
+    return results
+
+
+def page(results: dict[str, list[Result]], charts: dict[str, list[Chart]]) -> str:
+    """The page, Markdown."""
+    parts = [ABOUT]
+    for name, found in results.items():
+        parts.append(f"\n## {name.capitalize()}: {sum(r.passed for r in found)} of {len(found)} cases pass\n")
+        parts += [f"![{c.title}]({PICTURES}/{c.file}.png)\n" for c in charts[name]]
+        parts.append("| case | what | expected | got | unit | tolerance | |\n| --- | --- | ---: | ---: | --- | ---: | --- |")
+        for r in found:
+            cells = (r.case.id, r.case.what, number(r.case.expected), number(r.got), r.case.unit, tolerance(r.case))
+            parts.append(f"| {' | '.join(cells)} | {'pass' if r.passed else '**FAIL**'} |")
+    return "\n".join(parts) + "\n"
+
+
+def write(folder: Path, results: dict[str, list[Result]]) -> Path:
+    """Write page and pictures into `folder`; returns the page."""
+    pictures = folder / PICTURES
+    pictures.mkdir(parents=True, exist_ok=True)
+    charts = {name: list(CHARTS[name]()) for name in results}
+    for chart in (c for some in charts.values() for c in some):
+        cv2.imwrite(str(pictures / f"{chart.file}.png"), cv2.cvtColor(draw(chart), cv2.COLOR_RGB2BGR))
+    target = folder / PAGE
+    target.write_text(page(results, charts), encoding="utf-8")
+    return target
+
+
+def validate(hazard: str | None, quick: bool, folder: Path | None) -> int:
+    """Run, print, write; 1 when a case fails, else 0."""
+    if folder is not None and folder.exists() and not folder.is_dir():
+        raise ValueError(f"the output is {str(folder)!r}, a file; a folder is allowed")
+    results: dict[str, list[Result]] = {}
+    for name, case in chosen(hazard, quick):
+        results.setdefault(name, []).extend(run([case]))
+    every = [r for found in results.values() for r in found]
+    failed = [r for r in every if not r.passed]
+    print(f"{len(every) - len(failed)} of {len(every)} cases pass in {sum(r.seconds for r in every):.0f} s")
+    if folder is not None:
+        print(f"written: {write(folder, results)}")
+    return 1 if failed else 0

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import tyro
 
 from hazard_ms.asset_commands import AssetCommand
+from hazard_ms.evaluation.plan import Evaluation
 from hazard_ms.order import Order
 from hazard_ms.scene_commands import SceneCommand
 from hazard_ms.validation.command import validate
@@ -77,10 +78,18 @@ def play(order: tyro.conf.OmitArgPrefixes[Order]) -> int:
     return play_order(order)
 
 
+def evaluate(evaluation: tyro.conf.OmitArgPrefixes[Evaluation]) -> int:
+    """Play agents on the scenes of a split; print the scores with 95 % intervals. Goes on where a broken run stopped."""
+    from hazard_ms.evaluation.runner import evaluate as run
+
+    return run(evaluation)
+
+
 COMMANDS: dict[str, Callable[..., Any]] = {
     "doctor": doctor,
     "version": version,
     "play": play,
+    "evaluate": evaluate,
     "bench": bench,
     "validate": validate,
     "scenes": scenes,

@@ -19,7 +19,6 @@ from hazard_ms.hazards.base import Hazard
 from hazard_ms.spec import SceneSpec
 from hazard_ms.world import World
 
-
 MAKERS: dict[str, Any] = {"fire": FireEffects, "wind": WindEffects, "flood": FloodEffects}  # by hazard; what is drawn later hides less
 
 

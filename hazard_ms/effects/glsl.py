@@ -60,7 +60,7 @@ void main() {
   vec2 size = normal.xy;
   if (kind > 4.5) {  // what the wind carries
     float shade;
-    carry(kind, seed, position, model, camera[3].xyz, size, anchor, across, up, shade);
+    carry(kind, seed, position, model, camera[3].xyz, anchor, across, up, shade);
     vec3 place = anchor + across * uv.x * size.x + up * (2.0 * uv.y - 1.0) * size.y;
     float seen = smoothstep(0.3, 0.9, distance(camera[3].xyz, anchor)) * step(0.0, model[3].z);
     show(place, vec2(uv.x, 2.0 * uv.y - 1.0), vec4(kind, seed, shade, seen));

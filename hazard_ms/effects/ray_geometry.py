@@ -14,7 +14,7 @@ from sapien.render import RenderBodyComponent, RenderMaterial, RenderShapeTriang
 
 from hazard_ms.effects import meshes, ray_pack
 from hazard_ms.effects.entities import PREFIX
-from hazard_ms.effects.glsl import EMBER, FLAME, LEAF, SCORCH, SMOKE, STREAK, WATER
+from hazard_ms.effects.glsl import EMBER, FLAME, LEAF, SCORCH, SMOKE, WATER
 from hazard_ms.effects.textures import noise_texture
 from hazard_ms.effects.wind_spread import carried
 
@@ -49,7 +49,11 @@ def dress(scene: sapien.Scene, eye: sapien.Pose, time: float) -> list[sapien.Ent
         if np.floor(part.normals[0, 2]) == WATER:
             added.append(_entity(scene, _water(part.vertices, part.normals, part.uvs, pose, time)))
         else:
-            found.append(_spread(part.vertices, part.normals, pose, view, part.material.transmission))
+            quads = _spread(part.vertices, part.normals, pose, view, part.material.transmission)
+            own = (part.material.transmission_roughness - time) / 10.0  # entities.py: each has a clock of its own, here a seed
+            code = quads.lives[:, 0]
+            quads.lives[:, 0] = np.where(code < SCORCH, (code + own) % 1.0 * 0.999, code)
+            found.append(quads)
     if found:
         quads = Quads(*(np.concatenate([getattr(q, name) for q in found]) for name in ("corners", "places", "lives")))
         near = np.linalg.norm(quads.corners.mean(1) - view[:3, 3], axis=-1) < NEAR
@@ -189,5 +193,3 @@ def _waves(grid: Array, time: float) -> Array:
 def _unit(vectors: Array) -> Array:
     return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)
 
-
-__all__ = ["STREAK", "dress", "undress"]

@@ -1,8 +1,9 @@
 """Shader packs with our effects, derived at run time from those of the installed SAPIEN: we ship no text of others.
 
-A pack is a folder of GLSL. Ours is SAPIEN's own, with charring, water and haze added to its opaque pass and a third pass that draws flames,
-smoke, the water's surface and what flies into the picture alone. It is kept in the user's cache under a hash of all that it is made of, so another SAPIEN makes another pack.
-If the installed files are not as expected, pictures are SAPIEN's own, without effects, and labels stay right.
+A pack is a folder of GLSL. Ours is SAPIEN's own, with charring, water and haze added to its opaque pass and a third pass that draws
+flames, smoke, the water's surface and what flies into the picture alone. It is kept in the user's cache under a hash of all that it is
+made of, so another SAPIEN makes another pack. If the installed files are not as expected, pictures are SAPIEN's own, without effects,
+and labels stay right.
 """
 
 from __future__ import annotations

@@ -51,7 +51,8 @@ void hazardDrown(inout vec3 albedo, inout vec3 emission, inout float specular, i
   roughness = mix(roughness, min(roughness, 0.22), wet);
   if (depth > 0.0) path = sunk > 0.0 ? far : far * min(depth / max(eye.z - place.z, 1e-3), 1.0);
   else if (sunk > 0.0) path = far * min(sunk / max(place.z - eye.z, 1e-3), 1.0);
-  if (depth > 0.0) albedo *= 1.0 + hazardCaustics(place.xy + 0.3 * place.z, time) * smoothstep(0.0, 0.12, depth) * (0.35 + 0.65 * max(up, 0.0));
+  float lit = smoothstep(0.0, 0.12, depth) * (0.35 + 0.65 * max(up, 0.0));
+  if (depth > 0.0) albedo *= 1.0 + lit * hazardCaustics(place.xy + 0.3 * place.z, time);
   vec3 rim = vec3(0.29, 0.35, 0.35) * hazardFact(4).y;  // of the water
   emission += rim * smoothstep(0.010, 0.0, abs(depth - 0.002)) * step(0.03, level);
   vec3 seen = exp(-hazardAbsorption * path);

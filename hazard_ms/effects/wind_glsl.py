@@ -21,7 +21,7 @@ vec3 tumbling(float seed, float time, vec3 axis, out vec3 along) {  // an edge t
   return side;
 }
 
-void carry(float kind, float seed, vec3 home, mat4 model, vec3 eye, vec2 size, out vec3 anchor, out vec3 across, out vec3 up, out float shade) {
+void carry(float kind, float seed, vec3 home, mat4 model, vec3 eye, out vec3 anchor, out vec3 across, out vec3 up, out float shade) {
   float time = model[3].z, one = fract(seed * 17.0), two = fract(seed * 43.0);
   vec2 heading = normalize(model[0].xy);
   float pace = kind > 6.5 ? 1.0 : 0.75 + 0.4 * one;
@@ -52,7 +52,8 @@ vec4 leaf(vec2 p, float seed, float shade) {
   float width = 0.55 * (1.0 - p.y * p.y) * (1.0 - 0.25 * p.y);
   float vein = 1.0 - 0.25 * smoothstep(0.07, 0.0, abs(p.x));
   float sort = fract(seed * 29.0);
-  vec3 colour = sort < 0.35 ? vec3(0.30, 0.13, 0.03) : sort < 0.6 ? vec3(0.42, 0.26, 0.04) : sort < 0.8 ? vec3(0.20, 0.24, 0.04) : vec3(0.33, 0.06, 0.03);
+  vec3 dead = sort < 0.35 ? vec3(0.30, 0.13, 0.03) : vec3(0.42, 0.26, 0.04);
+  vec3 colour = sort < 0.6 ? dead : sort < 0.8 ? vec3(0.20, 0.24, 0.04) : vec3(0.33, 0.06, 0.03);
   return vec4(colour * vein * shade * (0.8 + 0.5 * fract(seed * 71.0)), step(abs(p.x), width));
 }
 

@@ -194,7 +194,7 @@ class Blaze(Hazard):
     def _exposure(self, state: BlazeState, fires: radiation.Fires, points: Tensor) -> tuple[Tensor, Tensor]:
         """Flux [kW/m^2] on surfaces that face the heat, and gas temperature [C], at `points` [m], [E, P, 3]: each [E, P]."""
         kelvin = state.smoke_temperature + radiation.KELVIN
-        opaque = 1.0 - torch.exp(-state.smoke_density * (state.height - state.smoke_height))
+        opaque = 1.0 - radiation.exponential(-state.smoke_density * (state.height - state.smoke_height))
         layer = opaque * radiation.STEFAN * (kelvin**4 - (self.room_temperature + radiation.KELVIN) ** 4)
         flux = radiation.flux(fires, points, state.height) + layer[:, None]
         inside = points[..., 2] > state.smoke_height[:, None]
@@ -230,7 +230,7 @@ class Blaze(Hazard):
         slots = state.flame_cell.shape[1]
         blown = together.drift(world, state.flame_place)
         speed = state.floor_speed[:, None, None] * (1.0 if blown is None else blown)
-        chance = 1.0 - torch.exp(-FRONT * speed / spread.STEP * step)
+        chance = 1.0 - radiation.exponential(-FRONT * speed / spread.STEP * step)
         draw = world.chance.uniform("fire.spread", slots, spread.DIRECTIONS)
         direction = torch.arange(spread.DIRECTIONS, device=draw.device)
         unused = (state.flame_used[..., None] >> direction) & 1 == 0

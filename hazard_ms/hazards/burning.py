@@ -15,6 +15,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.fuels import CURVES
+from hazard_ms.hazards.radiation import to_power
 
 STEADY = 0.8  # share of the energy that is gone when a t^2 fire begins to decline [M: usual in design fires]
 _NOTHING = 1e-6  # keeps 0 / 0 away where nothing burns
@@ -34,7 +35,7 @@ def course(growth: Tensor, peak: Tensor, energy: Tensor) -> Course:
     """Of a t^2 fire that grows with `growth` [kW/s^2] to at most `peak` [kW] and has `energy` [kJ] to burn."""
     alpha = growth.clamp(min=_NOTHING)
     energy = energy.clamp(min=_NOTHING)
-    first = torch.minimum((peak / alpha).sqrt(), (3.0 * STEADY * energy / alpha) ** (1.0 / 3.0))  # until the plateau [s]
+    first = torch.minimum((peak / alpha).sqrt(), to_power(3.0 * STEADY * energy / alpha, 1.0 / 3.0))  # until the plateau [s]
     top = (alpha * first * first).clamp(min=_NOTHING)
     decline = first + (STEADY * energy - alpha * first**3 / 3.0).clamp(min=0.0) / top
     end = decline + 2.0 * (1.0 - STEADY) * energy / top

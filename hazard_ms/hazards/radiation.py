@@ -31,6 +31,16 @@ _NOTHING = 1e-9  # keeps 0 / 0 away [kW], [K], ...
 _BLOCK = 2**18  # pairs worked on at a time on a CPU, see hazard_ms.hazards.heat
 
 
+def to_power(base: Tensor, exponent: float) -> Tensor:
+    """`base` ** `exponent`, rounded from double precision: alone or in a batch, whatever instructions a CPU uses, the same bits."""
+    return (base.double() ** exponent).to(base.dtype)
+
+
+def exponential(exponent: Tensor) -> Tensor:
+    """e ** `exponent`, rounded from double precision, see `to_power`."""
+    return exponent.double().exp().to(exponent.dtype)
+
+
 class Fires(NamedTuple):
     """What burns: M fires of each environment."""
 
@@ -44,7 +54,7 @@ def flame_length(power: Tensor, diameter: Tensor, ambient: float = 20.0) -> Tens
     """Mean length of the flames [m] of fires of `power` [kW] and `diameter` [m], in air of `ambient` [C]; one shape."""
     density = AIR_DENSITY * (ambient + KELVIN) * math.sqrt(GRAVITY)
     wide = diameter.clamp(min=_NOTHING)
-    return (wide * (3.7 * (power / (density * wide**2.5)) ** 0.4 - 1.02)).clamp(min=0.0)
+    return (wide * (3.7 * to_power(power / (density * to_power(wide, 2.5)), 0.4) - 1.02)).clamp(min=0.0)
 
 
 def point_source(power: Tensor, radiant: Tensor | float, square: Tensor, cosine: Tensor | float = 1.0) -> Tensor:
@@ -87,7 +97,7 @@ def warm(temperature: Tensor, flux: Tensor, solid: Solid, room: float, dt: float
     inertia, sheet = solid.inertia.clamp(min=_NOTHING), solid.sheet.clamp(min=_NOTHING)
     grown = torch.where(thick, (rise.square() + 4.0 / math.pi * flux.square() * dt / inertia).sqrt(), rise + flux * dt / sheet)
     slowness = torch.where(thick, math.pi / 4.0 * inertia / loss.clamp(min=_NOTHING), sheet) / loss.clamp(min=_NOTHING)
-    cooled = most + (rise - most) * torch.exp(-dt / slowness)
+    cooled = most + (rise - most) * exponential(-dt / slowness)
     return room + torch.where((rise >= 0) & (rise < most), torch.minimum(grown, most), cooled)
 
 
@@ -98,7 +108,7 @@ def adiabatic(flux: Tensor, gas: Tensor, room: float) -> Tensor:
     """
     background = (room + KELVIN) ** 4
     hot = gas + KELVIN
-    surface = torch.maximum(hot, (flux / STEFAN + background) ** 0.25)
+    surface = torch.maximum(hot, to_power(flux / STEFAN + background, 0.25))
     for _ in range(4):
         gain = EMISSIVITY * (flux + STEFAN * (background - surface**4)) + CONVECTION * (hot - surface)
         surface = surface + gain / (4.0 * EMISSIVITY * STEFAN * surface**3 + CONVECTION)

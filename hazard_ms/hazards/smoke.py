@@ -17,7 +17,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.radiation import AIR, GRAVITY, KELVIN, Fires
+from hazard_ms.hazards.radiation import AIR, GRAVITY, KELVIN, Fires, to_power
 from hazard_ms.spec import Room
 
 ZUKOSKI = 0.21  # entrainment [-] [physics.md 3.1]
@@ -61,7 +61,7 @@ def temperature(layer: Layer, room: float) -> Tensor:
 
 def entrained(power: Tensor, height: Tensor) -> Tensor:
     """Air that a plume of `power` [kW] draws in up to `height` [m] above the fire [m^3/s], same shape."""
-    return ZUKOSKI * (GRAVITY / AIR) ** (1.0 / 3.0) * power ** (1.0 / 3.0) * height.clamp(min=0.0) ** (5.0 / 3.0)
+    return ZUKOSKI * (GRAVITY / AIR) ** (1.0 / 3.0) * to_power(power, 1.0 / 3.0) * to_power(height.clamp(min=0.0), 5.0 / 3.0)
 
 
 def leak(vents: Tensor, lower: Tensor, hot: Tensor, room: float) -> Tensor:
@@ -73,7 +73,7 @@ def leak(vents: Tensor, lower: Tensor, hot: Tensor, room: float) -> Tensor:
     density = AIR / (hot + KELVIN)
     lightness = (AIR / (room + KELVIN) - density).clamp(min=0.0)
     face = lower[:, None]
-    weir = (top - face).clamp(min=0.0) ** 1.5 - (sill - face).clamp(min=0.0) ** 1.5
+    weir = to_power((top - face).clamp(min=0.0), 1.5) - to_power((sill - face).clamp(min=0.0), 1.5)
     return 2.0 / 3.0 * VENT * (2.0 * GRAVITY * density * lightness).sqrt() * (width * weir).sum(1)
 
 
@@ -116,7 +116,7 @@ def plume_rise(power: Tensor, radiant: Tensor | float, diameter: Tensor, height:
     kelvin = room + KELVIN
     strength = 9.1 * (kelvin / (GRAVITY * (AIR / kelvin) ** 2)) ** (1.0 / 3.0)
     above = (height - virtual_origin(power, diameter)).clamp(min=1e-3)
-    return (strength * ((1.0 - radiant) * power) ** (2.0 / 3.0) / above ** (5.0 / 3.0)).clamp(max=PLUME_LIMIT)
+    return (strength * to_power((1.0 - radiant) * power, 2.0 / 3.0) / to_power(above, 5.0 / 3.0)).clamp(max=PLUME_LIMIT)
 
 
 def above(fires: Fires, points: Tensor, room: float) -> Tensor:
@@ -132,7 +132,7 @@ def above(fires: Fires, points: Tensor, room: float) -> Tensor:
 
 def virtual_origin(power: Tensor, diameter: Tensor) -> Tensor:
     """Height from which the plume of a fire of `power` [kW] and `diameter` [m] seems to come [m], same shape."""
-    return VIRTUAL[0] * diameter + VIRTUAL[1] * power**0.4
+    return VIRTUAL[0] * diameter + VIRTUAL[1] * to_power(power, 0.4)
 
 
 def gaps(room: Room) -> list[tuple[float, float, float]]:

@@ -9,6 +9,8 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
+from hazard_ms.hazards.radiation import to_power
+
 CLASSES = ((100.0, 1.0), (160.0, 2.0), (260.0, 10.0))  # I, II, III; IV above [physics.md 3.1; fluxes: NIST TN 1474]
 RADIANT_FROM = 2.5  # [kW/m^2] [physics.md 3.1, 4.4]
 UNBEARABLE = 1.0  # dose
@@ -17,8 +19,8 @@ CLASS_OF_WARMTH = 60.0  # cooler air, and less than RADIANT_FROM, is of no class
 
 def dose_rate(temperature: Tensor, flux: Tensor) -> Tensor:
     """Dose per second in air of `temperature` [C] under `flux` [kW/m^2], same shape."""
-    convected = temperature.clamp(min=0.0) ** 3.61 / 4.1e8
-    radiated = torch.where(flux >= RADIANT_FROM, flux.clamp(min=0.0) ** 1.9 / 4.2, 0.0)
+    convected = to_power(temperature.clamp(min=0.0), 3.61) / 4.1e8
+    radiated = torch.where(flux >= RADIANT_FROM, to_power(flux.clamp(min=0.0), 1.9) / 4.2, 0.0)
     return (convected + radiated) / 60.0
 
 

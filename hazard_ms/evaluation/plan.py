@@ -1,0 +1,50 @@
+"""What `hazard-ms evaluate` is asked to evaluate: plain data, so that the command's help loads nothing heavy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from hazard_ms.order import Order
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What is to be evaluated."""
+
+    env_id: Annotated[str, tyro.conf.arg(aliases=["-e"])] = "HazardFire-v1"
+    """Task."""
+    agents: tuple[str, ...] = ("greedy", "random")
+    """Names of agents, or package.module:Class."""
+    split: str = "test"
+    """Whose scenes are played, the first ones first."""
+    episodes: int = 25
+    """Of every agent: seeds 0, 1, ..."""
+    physics: str = "paper"
+    """Preset of the hazards."""
+    robot: str = "fetch"
+    """The rescuer."""
+    workers: int = 0
+    """Processes; 0: one for each core."""
+    out: Annotated[Path, tyro.conf.arg(aliases=["-o"])] = Path("evaluation")
+    """Folder for the results, one file for each episode."""
+
+    def orders(self) -> list[Order]:
+        """One for each episode. Raises ValueError for what cannot be played."""
+        from hazard_ms.checks import whole
+
+        whole(self.episodes, 1, 10**6, "episodes")
+        whole(self.workers, 0, 1024, "workers")
+        first = Order(env_id=self.env_id, split=self.split, physics=self.physics, robot=self.robot)
+        made = [replace(first, agent=a, seed=s) for s in range(self.episodes) for a in self.agents]
+        for order in made[: len(self.agents)]:
+            order.check()
+        return made
+
+    def place(self, order: Order) -> Path:
+        """The file of an episode."""
+        name = f"{order.env_id}-{order.split}-{order.physics}-{order.robot}-{order.agent.replace(':', '.')}-{order.seed:04d}.json"
+        return self.out / name

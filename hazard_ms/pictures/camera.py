@@ -1,0 +1,112 @@
+"""One picture of a scene through one of three shaders, from wherever one likes; ray-traced ones are denoised."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import logging
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+import sapien
+from mani_skill.render import PREBUILT_SHADER_CONFIGS
+from numpy.typing import NDArray
+
+from hazard_ms.effects import shader_config, shader_pack
+from hazard_ms.effects.ray_geometry import dress, undress
+from hazard_ms.effects.ray_pack import ray_pack
+
+BOUNCES = {"rt-fast": 2, "rt": 5}  # of a path [ours]
+NEAR, FAR = 0.05, 120.0  # of what is seen [m]
+KNEE = 0.75  # brightness from which highlights are compressed instead of cut off [ours]
+DENOISER = "pyoidn"  # Intel Open Image Denoise on the CPU; optional
+
+Image = NDArray[np.uint8]
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class View:
+    """From where a picture is taken: pose of the eye (x forward, z up), vertical angle [rad], size [pixels]."""
+
+    pose: sapien.Pose
+    angle: float
+    width: int
+    height: int
+
+
+def photograph(scene: sapien.Scene, view: View, shader: str = "default", samples: int = 4, time: float = 0.0) -> Image:
+    """A picture of `scene` as it is shown now, [H, W, 3], RGB.
+
+    `shader`: default (raster, with effects), rt-fast or rt; `samples` per pixel of the latter; `time` [s] of flames and waves.
+    """
+    if shader == "default":
+        return _raster(scene, view)
+    added = dress(scene, view.pose, time)
+    try:
+        return _traced(scene, view, BOUNCES[shader], samples)
+    finally:
+        undress(scene, added)
+
+
+def _raster(scene: sapien.Scene, view: View) -> Image:
+    pack = PREBUILT_SHADER_CONFIGS[shader_config("full")].shader_pack
+    camera = _camera(scene, view, str(shader_pack._stock() / pack))
+    camera.take_picture()
+    shown = camera.get_picture("Color")[..., :3]
+    scene.remove_entity(camera.entity)
+    return np.ascontiguousarray(shown) if shown.dtype == np.uint8 else (np.clip(shown, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+
+
+def _traced(scene: sapien.Scene, view: View, bounces: int, samples: int) -> Image:
+    sapien.render.set_ray_tracing_samples_per_pixel(samples)
+    sapien.render.set_ray_tracing_path_depth(bounces)
+    sapien.render.set_ray_tracing_denoiser("none")
+    camera = _camera(scene, view, ray_pack())
+    camera.take_picture()
+    light, albedo, normal = (camera.get_picture(name)[..., :3].astype(np.float32) for name in ("HdrColor", "Albedo", "Normal"))
+    scene.remove_entity(camera.entity)
+    return developed(denoised(np.nan_to_num(light, nan=0.0, posinf=0.0), albedo, normal))
+
+
+def _camera(scene: sapien.Scene, view: View, pack: str) -> Any:
+    """A camera at `view` in `scene`, which shows the present."""
+    camera = sapien.render.RenderCameraComponent(view.width, view.height, pack)
+    camera.set_fovy(view.angle, compute_x=True)
+    camera.near, camera.far = NEAR, FAR
+    entity = sapien.Entity()
+    entity.name = "picture"
+    entity.add_component(camera)
+    entity.set_pose(view.pose)
+    scene.add_entity(entity)
+    scene.update_render()
+    return camera
+
+
+def denoised(light: NDArray[np.float32], albedo: NDArray[np.float32], normal: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Linear light [H, W, 3] without the noise of few samples, guided by albedo and normals; as it is where no denoiser is installed."""
+    if not can_denoise():
+        return light
+    module = importlib.import_module(DENOISER)
+    guides = {"albedo": np.clip(albedo, 0.0, 1.0), "normal": np.clip(np.nan_to_num(normal), -1.0, 1.0)}
+    result: NDArray[np.float32] = module.denoise(np.ascontiguousarray(light), **guides, hdr=True)
+    return result
+
+
+@cache
+def can_denoise() -> bool:
+    """Whether a denoiser is installed; if not, says once how to get one."""
+    found = importlib.util.find_spec(DENOISER) is not None
+    if not found:
+        _log.warning("ray-traced pictures stay noisy: pip install %s denoises them", DENOISER)
+    return found
+
+
+def developed(light: NDArray[np.float32]) -> Image:
+    """Linear light as a picture: as raster pictures show it, but highlights keep their colour a while longer."""
+    shown = np.maximum(light, 0.0)
+    over = np.maximum(shown - KNEE, 0.0)
+    shown = np.minimum(shown, KNEE) + (1.0 - KNEE) * (1.0 - np.exp(-over / (2.0 * (1.0 - KNEE))))
+    return (np.power(shown, 1.0 / 2.2) * 255.0 + 0.5).astype(np.uint8)

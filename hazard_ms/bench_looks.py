@@ -49,7 +49,7 @@ def _advanced(env_id: str, mode: str, seed: int) -> gym.Env:
     env.reset(seed=seed)
     base = env.unwrapped
     for _ in range(ADVANCED):
-        base.world.chance.frame += 1
+        base.world.chance.tick()
         for hazard in base.task.hazards:
             hazard.advance(base.episode.states[hazard.name], base.world, 1.0 / base.control_freq)
     for _ in range(2):  # shaders are compiled at the first picture

@@ -46,6 +46,7 @@ def bench(
     frames: int = 600,
     seed: Annotated[int, tyro.conf.arg(aliases=["-s"])] = 0,
     episode: bool = True,
+    looks: bool = False,
 ) -> int:
     """Print where the time of a frame goes, phase by phase, and how long a greedy episode takes, with versions and machine.
 
@@ -54,7 +55,13 @@ def bench(
         frames: Frames to average over.
         seed: Seed of the episode.
         episode: Also play a whole greedy episode.
+        looks: Only print what the effects of each mode cost in a picture.
     """
+    if looks:
+        from hazard_ms.bench_looks import report as report_looks
+
+        print(report_looks(env_id, max(frames // 10, 3), seed))
+        return 0
     from hazard_ms.bench import report
 
     print(report(env_id, frames, seed, episode))

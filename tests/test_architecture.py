@@ -27,7 +27,7 @@ LAYERS = (  # a module may import only from layers to its left, or from its own
     ("skills",),
     ("agents",),
     ("evaluation",),
-    ("play", "bench", "bench_kernels", "importing", "validation"),
+    ("play", "bench", "bench_looks", "bench_kernels", "importing", "validation"),
     ("scene_commands", "scene_checks", "cli", "asset_commands"),
 )
 

@@ -190,7 +190,7 @@ things = st.lists(st.tuples(st.sampled_from(NAMES), st.tuples(coordinate, coordi
 fires = st.lists(st.tuples(coordinate, coordinate), min_size=0, max_size=3)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=5, deadline=None)
 @given(things=things, fires=fires, seed=st.integers(0, 2**31), floor=st.sampled_from(["carpet", "wood", "tile"]))
 def test_invariants_of_every_fire(things: list, fires: list, seed: int, floor: str) -> None:
     """Temperatures stay between the room's and the flames', the burning set of the floor only grows, nothing burnt burns again."""
@@ -293,11 +293,11 @@ def test_a_thing_burns_as_long_as_its_fuel_lasts_then_cools_and_warms_nothing() 
     assert bool(plain.damaged(state, world).all()) and float(body_flames(state)) > 0
     heat, seconds = 0.0, 0.1
     while state.status.item() == BURNING:
-        run(plain, state, world, 0.1, 0.1)
-        heat += float(state.heat_release) * 0.1
-        seconds += 0.1
+        run(plain, state, world, 0.3, 0.3)
+        heat += float(state.heat_release) * 0.3
+        seconds += 0.3
         assert seconds < 1000.0
-    assert heat == pytest.approx(4400.0, rel=0.01) and seconds == pytest.approx(float(state.burn_end), abs=0.3)
+    assert heat == pytest.approx(4400.0, rel=0.01) and seconds == pytest.approx(float(state.burn_end), abs=0.7)
     assert state.status.item() == BURNT
     run(plain, state, world, 400.0, 1.0)
     assert float(state.heat_release) == 0.0 and state.temperature.item() < 300.0 and state.status.item() == BURNT

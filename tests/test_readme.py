@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -16,6 +17,8 @@ ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```python\n(.*?)```", TEXT, re.S)
 COMMAND_LINES = [line for block in re.findall(r"```bash\n(.*?)```", TEXT, re.S) for line in block.splitlines() if line.strip()]
+
+WITH_COMMANDS = ("scenes", "assets")  # commands that have commands of their own
 
 
 def needs_pictures(block: str) -> bool:
@@ -38,13 +41,14 @@ def test_there_are_blocks_and_commands() -> None:
 
 @pytest.mark.parametrize("line", COMMAND_LINES)
 def test_commands_exist(line: str) -> None:
-    words = line.split()
+    words = shlex.split(line, comments=True)
     if words[0] == "./run":
         assert re.search(rf"^\s+{re.escape(words[1])}\)|\b{re.escape(words[1])}\b.*\)", (ROOT / "run").read_text(), re.M)
         return
     assert words[0] == "hazard-ms"
+    inner = words[2:3] if words[1] in WITH_COMMANDS else []
     help_text = subprocess.run(
-        [sys.executable, "-m", "hazard_ms.cli", words[1], "--help"], capture_output=True, text=True, timeout=100, cwd=ROOT
+        [sys.executable, "-m", "hazard_ms.cli", words[1], *inner, "--help"], capture_output=True, text=True, timeout=100, cwd=ROOT
     )
     assert words[1] in COMMANDS and help_text.returncode == 0
     for flag in (w for w in words[2:] if w.startswith("-")):

@@ -46,10 +46,10 @@ def dress(scene: sapien.Scene, eye: sapien.Pose, time: float) -> list[sapien.Ent
     air = np.ones(3)
     for entity, shape in _shown(scene):
         part, pose, air = shape.parts[0], entity.pose.to_transformation_matrix(), np.asarray(shape.parts[0].material.base_color)[:3]
-        if np.floor(part.normals[0, 2]) == WATER:
-            added.append(_entity(scene, _water(part.vertices, part.normals, part.uvs, pose, time)))
+        if np.floor(part.get_vertex_normal()[0, 2]) == WATER:
+            added.append(_entity(scene, _water(part.vertices, part.get_vertex_normal(), part.get_vertex_uv(), pose, time)))
         else:
-            quads = _spread(part.vertices, part.normals, pose, view, part.material.transmission)
+            quads = _spread(part.vertices, part.get_vertex_normal(), pose, view, part.material.transmission)
             own = (part.material.transmission_roughness - time) / 10.0  # entities.py: each has a clock of its own, here a seed
             code = quads.lives[:, 0]
             quads.lives[:, 0] = np.where(code < SCORCH, (code + own) % 1.0 * 0.999, code)

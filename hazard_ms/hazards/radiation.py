@@ -37,7 +37,7 @@ def to_power(base: Tensor, exponent: float) -> Tensor:
 
 
 def exponential(exponent: Tensor) -> Tensor:
-    """e ** `exponent`, rounded from double precision, see `to_power`."""
+    """Exponential of `exponent`, rounded from double precision, see `to_power`."""
     return exponent.double().exp().to(exponent.dtype)
 
 
@@ -104,12 +104,12 @@ def warm(temperature: Tensor, flux: Tensor, solid: Solid, room: float, dt: float
 def adiabatic(flux: Tensor, gas: Tensor, room: float) -> Tensor:
     """Temperature [C] at which a surface under `flux` [kW/m^2] in `gas` [C] gains no more: what a plate thermometer shows; one shape.
 
-    Newton's method from above the root of a concave function: it falls to the root, three digits in four steps.
+    Newton's method from above the root of a concave function: it falls to the root, five digits in six steps.
     """
     background = (room + KELVIN) ** 4
     hot = gas + KELVIN
     surface = torch.maximum(hot, to_power(flux / STEFAN + background, 0.25))
-    for _ in range(4):
+    for _ in range(6):
         gain = EMISSIVITY * (flux + STEFAN * (background - surface**4)) + CONVECTION * (hot - surface)
         surface = surface + gain / (4.0 * EMISSIVITY * STEFAN * surface**3 + CONVECTION)
     return surface - KELVIN

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import logging
 from dataclasses import dataclass
 from functools import cache
@@ -87,21 +86,22 @@ def _camera(scene: sapien.Scene, view: View, pack: str) -> Any:
 
 def denoised(light: NDArray[np.float32], albedo: NDArray[np.float32], normal: NDArray[np.float32]) -> NDArray[np.float32]:
     """Linear light [H, W, 3] without the noise of few samples, guided by albedo and normals; as it is where no denoiser is installed."""
-    if not can_denoise():
+    module = denoiser()
+    if module is None:
         return light
-    module = importlib.import_module(DENOISER)
     guides = {"albedo": np.clip(albedo, 0.0, 1.0), "normal": np.clip(np.nan_to_num(normal), -1.0, 1.0)}
     result: NDArray[np.float32] = module.denoise(np.ascontiguousarray(light), **guides, hdr=True)
     return result
 
 
 @cache
-def can_denoise() -> bool:
-    """Whether a denoiser is installed; if not, says once how to get one."""
-    found = importlib.util.find_spec(DENOISER) is not None
-    if not found:
-        _log.warning("ray-traced pictures stay noisy: pip install %s denoises them", DENOISER)
-    return found
+def denoiser() -> Any:
+    """The module that denoises, or None where it is not installed: then says once how to get it."""
+    try:
+        return importlib.import_module(DENOISER)
+    except (ImportError, OSError) as fault:  # OSError: its library is for another machine
+        _log.warning("ray-traced pictures stay noisy (%s): pip install %s cffi", fault, DENOISER)
+        return None
 
 
 def developed(light: NDArray[np.float32]) -> Image:

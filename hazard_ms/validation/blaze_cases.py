@@ -88,14 +88,14 @@ def time_to_megawatt(growth: float) -> float:
     return float(age[burning.t_squared(growth, age) >= 1055.0][0])
 
 
-def ignition_time(kpc: float, ignition: float, critical: float, flux: float, dt: float = 0.05, sheet: float = 0.0) -> float:
-    """Seconds to ignition of a surface at 20 C under a constant `flux`; infinite if not within 1000 s."""
+def ignition_time(kpc: float, ignition: float, critical: float, flux: float, dt: float = 0.1, sheet: float = 0.0) -> float:
+    """Seconds to ignition of a surface at 20 C under a constant `flux`; infinite if not within 500 s."""
     solid = radiation.Solid(number(ignition), number(critical), number(kpc), number(sheet))
     temperature, steps = number(20.0), 0
     while float(temperature) < ignition:
         temperature = radiation.warm(temperature, number(flux), solid, 20.0, dt)
         steps += 1
-        if steps * dt > 1000.0:
+        if steps * dt > 500.0:
             return math.inf
     return steps * dt
 

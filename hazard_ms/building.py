@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import zlib
 from collections.abc import Iterator
 from typing import Any
 
@@ -28,12 +27,6 @@ PARTING = 0.5  # at most, of things that start inside each other [m/s]: they par
 FLAT = 0.03  # a robot's base glides over what lies lower on the floor: rugs [m] [ours]
 SLAB = 1.0  # thickness of what encloses a room [m]: a robot that leans on a thing cannot squeeze it through
 BAG, BAG_SCALE = "basket_2", 0.8  # the model that shows the bag, and its size
-WINDOW_LIGHT = (0.4, 0.6, -1.0), (0.9, 0.87, 0.8)  # indoors: where daylight goes, linear RGB [ours]
-SUNS = {  # in the open, by sky: where light goes, from the sun that the sky shows, linear RGB [ours]
-    "sky_day": ((0.38, 0.55, -0.74), (2.9, 2.7, 2.3)),
-    "sky_storm": ((0.44, 0.63, -0.64), (0.75, 0.78, 0.80)),
-    "sky_evening": ((0.98, -0.17, -0.30), (2.6, 1.6, 0.85)),  # a little higher than it is seen: shadows end
-}
 TALL, BESIDE = 1.3, 0.4  # what is this high hides what lies behind it, and so much to its sides, from a camera [m] [ours]
 HIDING = 12.0  # for this much more distance the third person puts up with one thing in the view [m] [ours]
 EYES_OUTDOORS = 6.0  # height of the third person's eyes in the open [m] [ours]
@@ -206,27 +199,6 @@ def _friction(friction: float | None = None) -> sapien.physx.PhysxMaterial:
 def pose_of(position: tuple[float, float, float], heading: float) -> Pose:
     """A pose on the floor, turned about z by `heading` [rad]."""
     return Pose.create_from_pq([*position], [np.cos(heading / 2), 0.0, 0.0, np.sin(heading / 2)])
-
-
-def build_lights(scene: Any, specs: tuple[SceneSpec, ...]) -> None:
-    """Daylight from above with one shadow, and a lamp under each ceiling; in the open, the sky and its sun."""
-    outdoors = specs[0].room.open_air
-    scene.set_ambient_light([0.0, 0.0, 0.0] if outdoors else [0.45, 0.44, 0.42])  # in the open, light comes from the sky
-    wide = max(np.hypot(*s.room.size) for s in specs)  # a place outside of the shadows' reach would shine through the ceiling
-    for e, spec in enumerate(specs):
-        toward, colour = SUNS[sky_of(spec)] if outdoors else WINDOW_LIGHT
-        scene.add_directional_light(
-            list(toward), list(colour), shadow=True, shadow_scale=wide, shadow_map_size=2048 if outdoors else 1024, scene_idxs=[e]
-        )
-        if outdoors and scene.can_render():
-            scene.sub_scenes[e].set_environment_map(str(asset_path(asset(sky_of(spec)).visual)))
-        for x, y in lamp_places(spec.room) if not outdoors else ():
-            scene.add_point_light([x, y, spec.room.height - 0.4], [2.0, 1.9, 1.7], scene_idxs=[e])
-
-
-def sky_of(spec: SceneSpec) -> str:
-    """The sky of a scene, by its name: some are bright, some stormy, some in the evening."""
-    return list(SUNS)[zlib.crc32(spec.name.encode()) % len(SUNS)]
 
 
 def lamp_places(room: Room) -> list[tuple[float, float]]:

@@ -11,6 +11,7 @@ import tyro
 from hazard_ms.asset_commands import AssetCommand
 from hazard_ms.evaluation.plan import Evaluation
 from hazard_ms.order import Order
+from hazard_ms.pictures.commands import gallery, render
 from hazard_ms.scene_commands import SceneCommand
 from hazard_ms.validation.command import validate
 
@@ -96,6 +97,8 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "doctor": doctor,
     "version": version,
     "play": play,
+    "render": render,
+    "gallery": gallery,
     "evaluate": evaluate,
     "bench": bench,
     "validate": validate,

@@ -31,7 +31,7 @@ class Effects(Protocol):
 
 def fills(hazard: Hazard) -> bool:
     """Whether a hazard shows in the space between things: as water, haze or a layer of smoke."""
-    return hazard.name in ("flood", "wind") or "smoke_density" in {f.name for f in dataclasses.fields(hazard.state_type)}
+    return hazard.name in ("flood", "wind") or "smoke_density" in {f.name for f in dataclasses.fields(hazard.state_type)}  # type: ignore[arg-type]
 
 
 class Looks:

@@ -157,7 +157,7 @@ def _risen(kind: Array, seed: Array, home: Array, size: Array, pose: Array) -> t
 
 def _water(vertices: Array, data: Array, place: Array, pose: Array, time: float) -> RenderShapeTriangleMesh:
     """The surface: the hazard's level at its corners, then finer cells with waves."""
-    level = pose[2, 3] - pose[0, 1] / max(pose[0, 0], 1e-3) * data[:, 0]
+    level = pose[2, 3] - pose[1, 0] / max(pose[0, 0], 1e-3) * data[:, 0]
     corners = np.column_stack([place, level]).reshape(-1, 4, 3)
     points, faces, first = [], [], 0
     for a, b, c, d in corners:

@@ -24,6 +24,7 @@ from hazard_ms.effects.wind_glsl import WIND_FRAG
 NAME = "rt_hazard"
 EFFECT, WATER = 1000.0, 3000.0  # transmission_roughness: from here on quads of effects, water; charred things have up to 257
 GLOW = "1.6"  # brightness of flames in linear light, before tones are mapped [ours]
+PIXEL = 0.0015  # angle that a pixel sees, for the sharpness of textures [rad] [ours]
 MOST_VEILS = 48  # quads of effects that one ray passes
 
 _log = logging.getLogger(__name__)
@@ -61,6 +62,19 @@ _VEIL = f"""
     ray.origin = worldPosition;
     ray.segmentation = uvec4(0, 0, 0, 1);
     return;
+  }}
+"""
+
+_SHARPNESS = f"""
+  float sharpness = 0.0;  // level of the texture: as many metres as a pixel shows, else what is far sparkles
+  if (ti.diffuse >= 0) {{
+    mat3 model = mat3(gl_ObjectToWorldEXT);
+    float area = length(cross(model * (p1 - p0), model * (p2 - p0)));
+    vec2 a = (uv1 - uv0) * mat.textureTransforms[0].zw, b = (uv2 - uv0) * mat.textureTransforms[0].zw;
+    vec2 texels = vec2(textureSize(textures[nonuniformEXT(ti.diffuse)], 0));
+    float density = abs(a.x * b.y - a.y * b.x) * texels.x * texels.y / max(area, 1e-12);
+    float slant = max(abs(dot(worldGeometricNormal, gl_WorldRayDirectionEXT)), 0.05);
+    sharpness = max(0.5 * log2(max(density, 1e-12) / slant) + log2({PIXEL} * gl_HitTEXT), 0.0);
   }}
 """
 
@@ -118,8 +132,15 @@ def _derive(files: dict[str, str]) -> dict[str, str]:
     """SAPIEN's files with our text in them. Raises UnknownSapienError where they are not as expected."""
     shadow = "gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsOpaqueEXT |"
     files = _all(files, "shading.glsl", shadow, shadow.replace(" gl_RayFlagsOpaqueEXT |", ""))
+    dark = "    vec3 emission = light.rgb;\n"
+    files = _all(files, "shading.glsl", dark, dark + "    if (maxVec3(light.rgb) <= 0.0) continue;\n")
+    toward = "    vec3 V = normalize(-ray.direction);\n"
+    files = _all(files, "shading.glsl", toward, toward + "    if (dot(normal, L) <= 0.0 && transmissionWeight <= 1e-5) continue;\n")
     files = _before(files, "camera.rahit", "  bool isInside", _SHADOW)
     files = _before(files, "camera.rchit", "void main() {", _HIT)
+    files = _before(files, "camera.rchit", "  if (ti.diffuse >= 0) {", _SHARPNESS)
+    files = _all(files, "camera.rchit", "baseColorAlpha = texture(textures[nonuniformEXT(ti.diffuse)]", "baseColorAlpha = textureLod(textures[nonuniformEXT(ti.diffuse)]")
+    files = _all(files, "camera.rchit", "mat.textureTransforms[0].xy);\n    baseColor =", "mat.textureTransforms[0].xy, sharpness);\n    baseColor =")
     files = _before(files, "camera.rchit", "  float metallic = mat.metallic;", _VEIL)
     files = _before(files, "camera.rchit", "  transmission = clamp(transmission, 0.0, 1.0);", _SOLID)
     files = _before(files, "camera.rchit", "  ray.origin = worldPosition;\n  ray.direction = L;", _LAST)

@@ -152,8 +152,13 @@ def front(runs: int = 16, seconds: float = 800.0, dt: float = 4.0) -> float:
     return (seen[seconds] - seen[300.0]) / (seconds - 300.0)
 
 
-def cases() -> Iterator[Case]:
-    """All of them."""
+def dose(temperature: float, flux: float) -> float:
+    """Per second."""
+    return float(tenability.dose_rate(number(temperature), number(flux)))
+
+
+def of_guide() -> Iterator[Case]:
+    """The numbers of NIST's guide."""
     yield from table("N-1", "point-source flux at {} m", {0.5: 6.01, 0.75: 3.65, 1.0: 2.33}, 0.01, point_flux, unit="kW/m2")
     yield from table("N-2", "solid-flame flux at {} m (cross-check)", {0.5: 11.18, 0.75: 6.90, 1.0: 4.69}, 0.01, burner_flux, unit="kW/m2")
     yield Case("N-4", "Heskestad plume at 6 m", 133.78, 0.01, plume, "C")
@@ -167,6 +172,10 @@ def cases() -> Iterator[Case]:
     yield from table("N-8", "Yamana and Tanaka's layer after {} s (cross-check)", yamana, 0.01, depth, unit="m")
     yield Case("N-9", "dose of heat at 100 C", 0.00068, 0.01, lambda: float(tenability.dose_rate(number(100.0), number(0.0))), "1/s")
     yield from table("N-10", "time to 1055 kW of a {0[0]} t2 fire", T_SQUARED, 0.01, lambda key: time_to_megawatt(key[1]), unit="s")
+
+
+def of_data() -> Iterator[Case]:
+    """Tables of ignition, tenability and heat release; and the hazard in a hall."""
     yield from table("3.1", "thick ignition {0[0]} at {0[4]} kW/m2", THICK, 0.03, lambda c: ignition_time(*c[1:]), unit="s")
     yield Case("3.1", "thin ignition: curtain at 20 kW/m2", 6.4, 0.02, lambda: ignition_time(0.0, 348.0, 10.0, 20.0, sheet=0.39), "s")
     yield Case("3.1", "acrylic carpet 2 % below its critical flux", math.inf, 0, lambda: ignition_time(*CARPET_ACRYLIC, 9.8), "s")
@@ -185,6 +194,7 @@ def cases() -> Iterator[Case]:
     yield Case("4.3", "a book 0.60 m from it never does", math.inf, 0, lambda: neighbour(0.60), slow=True)
 
 
-def dose(temperature: float, flux: float) -> float:
-    """Per second."""
-    return float(tenability.dose_rate(number(temperature), number(flux)))
+def cases() -> Iterator[Case]:
+    """All of them."""
+    yield from of_guide()
+    yield from of_data()

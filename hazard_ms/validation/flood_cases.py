@@ -199,8 +199,8 @@ def fall() -> float:
     return 500.0 - float(tank.run(1.0)[-1][0, 2])
 
 
-def cases() -> Iterator[Case]:
-    """All of them."""
+def of_levels() -> Iterator[Case]:
+    """The integrator, and how the original's water rises and carries."""
     yield Case("I-1", "free fall of 1 s in SAPIEN", 4.95405, 1e-4, fall, "m")
     yield Case("L-1", "tangent of the slope", 0.0524078, 1e-5, lambda: math.tan(math.radians(SHIPPED.slope)))
     yield Case("L-1", "current", 0.9540568, 1e-5, lambda: SHIPPED.speed, "m/s")
@@ -210,6 +210,10 @@ def cases() -> Iterator[Case]:
     yield from table("L-4", "slope at update {} of the cap", slopes, 1e-5, slope_after, unit="deg")
     drifts = {(0.01, 1.0): 50, (0.06, 1.0): 8, (0.12, 1.0): 4, (0.06, 5.0): 42}
     yield from table("L-5", "frames to 63 % of the current, (m2, kg) {}", drifts, 0, shipped_frames)
+
+
+def of_motion() -> Iterator[Case]:
+    """How things float, heave, sink and drift."""
     boxes = {(shape, s): s for shape in (BOX, CYLINDER) for s in (0.2, 0.5, 0.9)}
     yield from table("L-10", "share under water of (0 box, 1 cylinder; density) {}", boxes, 0.01, lambda k: floating_depths()[k])
     balls = {0.2: 0.287141, 0.5: 0.5, 0.9: 0.8042}
@@ -220,6 +224,10 @@ def cases() -> Iterator[Case]:
     yield from table("L-15", "its way after {} s", SUNK, 0.01, lambda t: sinking()[t][1], unit="m")
     yield from table("L-16", "first acceleration of a ball, added mass {}", {0.0: 4.905, 0.5: 3.924}, 1e-3, first_acceleration, unit="m/s2")
     yield from table("L-17", "drift with the current (cube, s) {}", DRIFT, 0.01, lambda k: drifting()[k], unit="m/s", slow=True)
+
+
+def of_forces() -> Iterator[Case]:
+    """Drag and lift as functions, and the classes of danger."""
     yield Case("L-18", "drag at rest in the flow", 0.0, 0, lambda: dragged(0.0, 0.04), "N")
     yield Case("L-18", "drag is odd: sum of both ways", 0.0, 1e-4, lambda: dragged(0.7, 0.04) + dragged(-0.7, 0.04), "N", absolute=True)
     yield Case("L-19", "twice the slip: force times", 4.0, 1e-3, lambda: dragged(0.8, 0.04) / dragged(0.4, 0.04))
@@ -266,3 +274,10 @@ def cases() -> Iterator[Case]:
         return float(wading.hazard_class(torch.tensor([case[0]]), torch.tensor([case[1]])))
 
     yield from table("3.2", "hazard class at (m, m/s) {}", CLASSES, 0, danger)
+
+
+def cases() -> Iterator[Case]:
+    """All of them."""
+    yield from of_levels()
+    yield from of_motion()
+    yield from of_forces()

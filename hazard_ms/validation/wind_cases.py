@@ -165,8 +165,8 @@ def topples(share: float) -> float:
     return float(1 - 2 * float(yard.world.rotation[0, 0, 1:3].square().sum()) < 0.5)
 
 
-def cases() -> Iterator[Case]:
-    """All of them."""
+def of_motion() -> Iterator[Case]:
+    """How things move in the wind."""
     yield from table(
         "W-1", "speed of a free body after {} s", {t: v for t, (v, _) in W1.items()}, 0.01, lambda t: carried(LAW)[t][0], unit="m/s"
     )
@@ -184,6 +184,10 @@ def cases() -> Iterator[Case]:
     yield from table("W-9", "the original's speed (m2, resistance) {}", more, 0.05, lambda k: on_the_ground()[k], unit="m/s")
     rest = {k: v for k, v in ground.items() if not v}
     yield from table("W-9", "does not move (m2, resistance) {}", rest, 2e-3, lambda k: on_the_ground()[k], unit="m/s", absolute=True)
+
+
+def of_laws() -> Iterator[Case]:
+    """Scaling, turbulence, gusts, profile, thresholds."""
     yield Case("W-10", "twice the wind: force times", 4.0, 1e-5, lambda: force(LAW, (7.4, 0.0)) / force(LAW))
     yield Case("W-10", "no force at the wind's speed", 0.0, 1e-6, lambda: force(LAW, velocity=(3.7, 0.0, 0.0)), "N", absolute=True)
     yield Case("W-10", "moving across changes the force by", 1.0, 1e-6, lambda: force(LAW, velocity=(0.0, 2.0, 0.0)) / force(LAW))
@@ -202,3 +206,9 @@ def cases() -> Iterator[Case]:
     yield from profile
     yield from table("W-24", "cardboard slides at {} of its threshold", {0.95: 0.0, 1.05: 1.0}, 0, slides, slow=True)
     yield from table("W-24", "a carton topples at {} of its threshold", {0.97: 0.0, 1.03: 1.0}, 0, topples, slow=True)
+
+
+def cases() -> Iterator[Case]:
+    """All of them."""
+    yield from of_motion()
+    yield from of_laws()

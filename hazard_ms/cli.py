@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import tyro
 
 from hazard_ms.asset_commands import AssetCommand
-from hazard_ms.evaluation.plan import Evaluation
+from hazard_ms.evaluating_order import Evaluation
 from hazard_ms.order import Order
 from hazard_ms.pictures.commands import gallery, render
 from hazard_ms.scene_commands import SceneCommand
@@ -88,7 +88,7 @@ def play(order: tyro.conf.OmitArgPrefixes[Order]) -> int:
 
 def evaluate(evaluation: tyro.conf.OmitArgPrefixes[Evaluation]) -> int:
     """Play agents on the scenes of a split; print the scores with 95 % intervals. Goes on where a broken run stopped."""
-    from hazard_ms.evaluation.runner import evaluate as run
+    from hazard_ms.evaluating import evaluate as run
 
     return run(evaluation)
 

@@ -14,7 +14,7 @@ from PIL import Image
 
 from patterns import noise
 
-SIDE = 256  # [pixels] of a face of the cube
+SIDE = 192  # [pixels] of a face of the cube
 CLOUDS = 1024  # [pixels] of the square of cloud overhead
 
 Rgb = tuple[float, float, float]

@@ -22,7 +22,9 @@ class Evaluation:
     split: str = "test"
     """Whose scenes are played, the first ones first."""
     episodes: int = 25
-    """Of every agent: seeds 0, 1, ..."""
+    """Of every agent, one for each seed."""
+    first: int = 0
+    """The first seed. Seed s plays the split's scene s, and begins again after the last one."""
     physics: str = "paper"
     """Preset of the hazards."""
     robot: str = "fetch"
@@ -37,9 +39,10 @@ class Evaluation:
         from hazard_ms.checks import whole
 
         whole(self.episodes, 1, 10**6, "episodes")
+        whole(self.first, 0, 10**6, "first")
         whole(self.workers, 0, 1024, "workers")
         first = Order(env_id=self.env_id, split=self.split, physics=self.physics, robot=self.robot)
-        made = [replace(first, agent=a, seed=s) for s in range(self.episodes) for a in self.agents]
+        made = [replace(first, agent=a, seed=s) for s in range(self.first, self.first + self.episodes) for a in self.agents]
         for order in made[: len(self.agents)]:
             order.check()
         return made

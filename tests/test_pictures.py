@@ -1,0 +1,187 @@
+"""Pictures and light: packs derive and compile, light and effects never touch an episode, the command writes files or refuses."""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import re
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import cv2
+import gymnasium as gym
+import numpy as np
+import pytest
+import sapien
+import torch
+
+import hazard_ms  # noqa: F401 registers the environments
+from hazard_ms.cli import main
+from hazard_ms.effects import ray_pack
+from hazard_ms.effects.shader_pack import UnknownSapienError
+from hazard_ms.lighting import DRAWN, FIRST_FAILURE, LAST_FAILURE, LIGHTINGS, Lighting
+from hazard_ms.pictures.camera import denoised, developed
+from hazard_ms.pictures.order import RenderOrder
+from hazard_ms.pictures.stage import Stage
+from hazard_ms.tasks import TASKS
+
+FRAMES = 40  # of an episode: the fire has spread by then
+
+
+def bare(mode: str, count: int = 1) -> Lighting:
+    """Light without a renderer, in `count` scenes."""
+    task = TASKS["HazardFire-v1"]("paper")
+    spec = task.build(task.scenes("train")[0])
+    return Lighting(SimpleNamespace(can_render=lambda: False), (spec,) * count, mode)
+
+
+def test_random_light_is_drawn_by_the_seed_alone() -> None:
+    seeds = torch.arange(400)
+    drawn = bare("random", 400).chosen(seeds)
+    assert drawn == bare("random", 400).chosen(seeds)
+    assert set(drawn) == set(DRAWN)
+    assert all(60 < drawn.count(name) < 140 for name in DRAWN)  # 100 expected of each
+    assert bare("random").chosen(seeds[7:8]) == drawn[7:8]  # alone as among others
+
+
+def test_failing_lamps_shine_then_flicker_then_stay_dark() -> None:
+    light, seed = bare("failing"), torch.tensor([5])
+    course = torch.stack([light._failing(seed, torch.tensor([f]))[0] for f in range(LAST_FAILURE + 1)])
+    for lamp in course.T:
+        dark = int((lamp == 0.0).nonzero()[0])
+        assert FIRST_FAILURE <= dark <= LAST_FAILURE
+        assert (lamp[dark:] == 0.0).all()
+        assert (lamp[: max(0, dark - 151)] == 1.0).all()
+    assert ((course > 0.0) & (course < 1.0)).any()
+
+
+def test_unknown_light_is_refused() -> None:
+    with pytest.raises(ValueError, match="lighting 'dusk' is unknown.*day, evening, night, failing, random"):
+        gym.make("HazardFire-v1", lighting="dusk")
+
+
+def episode(lighting: str, effects: str, draw: bool) -> tuple[str, np.ndarray]:
+    """Hash of all state after some frames, and the labels of the head camera."""
+    made = gym.make("HazardFire-v1", obs_mode="none", render_mode="rgb_array", lighting=lighting, effects=effects)
+    env: Any = made.unwrapped
+    env.reset(seed=3)
+    still = np.zeros(env.single_action_space.shape, np.float32)
+    for frame in range(FRAMES):
+        env.advance(still)
+        if draw and frame == FRAMES // 2:
+            env.render()
+    digest = hashlib.sha256()
+    _feed(digest, env.get_state_dict())
+    camera = env._sensors[env.agent.head_camera]
+    env.observer.show()
+    env.scene.update_render(update_sensors=True, update_human_render_cameras=False)
+    camera.capture()
+    labels = camera.get_obs(rgb=False, depth=False, position=False, segmentation=True)["segmentation"]
+    made.close()
+    return digest.hexdigest(), labels.cpu().numpy()
+
+
+def _feed(digest: Any, state: Any) -> None:
+    if isinstance(state, dict):
+        for key in sorted(state):
+            digest.update(str(key).encode())
+            _feed(digest, state[key])
+    else:
+        digest.update(np.ascontiguousarray(torch.as_tensor(state).cpu().numpy()).tobytes())
+
+
+@pytest.mark.render
+def test_light_and_effects_change_neither_episode_nor_labels() -> None:
+    plain = episode("day", "full", draw=False)
+    for lighting, effects in (("night", "full"), ("random", "off")):
+        digest, labels = episode(lighting, effects, draw=True)
+        assert digest == plain[0], lighting
+        np.testing.assert_array_equal(labels, plain[1], err_msg=lighting)
+
+
+@pytest.mark.render
+@pytest.mark.long
+@pytest.mark.parametrize("lighting", LIGHTINGS)
+@pytest.mark.parametrize("effects", ["full", "fast", "off"])
+def test_every_light_and_every_look_leaves_the_episode_alone(lighting: str, effects: str) -> None:
+    assert episode(lighting, effects, draw=True)[0] == episode("day", "full", draw=False)[0]
+
+
+@pytest.mark.render
+def test_pictures_of_both_kinds(tmp_path: Path) -> None:
+    """Ray-traced and raster pictures show the same room; where it burns, both are fiery; the scene is left as it was."""
+    order = RenderOrder(output=tmp_path / "x.png", seed=3, frame=500)
+    with Stage(order) as stage:
+        count = len(stage._scene.entities)
+        view = stage.view("third", 48, 32)
+        raster, traced = stage.picture(view, "default", 1), stage.picture(view, "rt-fast", 1)
+        assert len(stage._scene.entities) == count
+    assert raster.shape == traced.shape == (32, 48, 3)
+    small = [cv2.resize(p, (6, 4), interpolation=cv2.INTER_AREA).astype(float).ravel() for p in (raster, traced)]
+    assert np.corrcoef(*small)[0, 1] > 0.7
+    for picture in (raster, traced):
+        red, _, blue = picture.astype(int).transpose(2, 0, 1)
+        assert ((red > 180) & (blue < 0.7 * red)).any()
+
+
+@pytest.mark.render
+def test_the_command_writes_the_picture(tmp_path: Path) -> None:
+    path = tmp_path / "out.png"
+    assert main(["render", "-s", "3", "--frame", "5", "--size", "48x32", "--light", "evening", "--camera", "head", "-o", str(path)]) == 0
+    assert cv2.imread(str(path)).shape == (32, 48, 3)
+    assert [p.name for p in tmp_path.iterdir()] == ["out.png"]
+
+
+@pytest.mark.parametrize(
+    ("words", "fault"),
+    [
+        ([], "no file to write"),
+        (["-o", "x.gif"], "x.gif"),
+        (["-o", "no/such/folder/x.png"], "no folder"),
+        (["-o", "x.png", "--shader", "pretty"], "'pretty'.*default, rt-fast, rt"),
+        (["-o", "x.png", "--frame", "-1"], "frame is -1"),
+        (["-o", "x.png", "--frame", "1501"], "frame is 1501"),
+        (["-o", "x.png", "--size", "big"], "size is 'big'"),
+        (["-o", "x.png", "--size", "8"], "width is 8"),
+        (["-o", "x.png", "--spp", "0"], "spp is 0"),
+        (["-o", "x.png", "--camera", "foot"], "camera 'foot'"),
+        (["-o", "x.png", "--light", "noon"], "light 'noon'"),
+        (["-o", "x.png", "-e", "HazardQuake-v1"], "'HazardQuake-v1'"),
+        (["--turntable", "x.avi"], "x.avi"),
+    ],
+)
+def test_bad_input_is_refused(words: list[str], fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: Any) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["render", *words]) == 2
+    assert re.search(fault, capfd.readouterr().err)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unknown_sapien_gives_its_own_pack(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    def fail(_: Any) -> Any:
+        raise UnknownSapienError("other files")
+
+    monkeypatch.setattr(ray_pack, "_derive", fail)
+    with caplog.at_level(logging.WARNING):
+        assert Path(ray_pack.ray_pack.__wrapped__()) == Path(sapien.__file__).parent / "vulkan_shader" / "rt"
+    assert "no effects in ray-traced pictures" in caplog.text
+    with pytest.raises(UnknownSapienError):
+        ray_pack._before({"a": "x x"}, "a", "x", "y")
+
+
+def test_developing_keeps_black_and_order() -> None:
+    light = np.linspace(0.0, 20.0, 200, dtype=np.float32)[None, :, None].repeat(3, -1)
+    shown = developed(light).astype(int)[0, :, 0]
+    assert shown[0] == 0 and shown[-1] == 255 and (np.diff(shown) >= 0).all()
+    half = developed(np.full((1, 1, 3), 0.5, np.float32))[0, 0, 0]
+    assert half == round(255 * 0.5 ** (1 / 2.2))
+
+
+def test_denoising_smooths_noise() -> None:
+    pytest.importorskip("pyoidn")
+    draw = np.random.default_rng(0)
+    flat = np.full((64, 64, 3), 0.5, np.float32)
+    noisy = flat + draw.normal(0.0, 0.2, flat.shape).astype(np.float32)
+    calm = denoised(noisy, flat, np.zeros_like(flat) + np.float32([0.0, 0.0, 1.0]))
+    assert np.abs(calm - flat).mean() < 0.2 * np.abs(noisy - flat).mean()

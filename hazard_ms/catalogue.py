@@ -27,6 +27,16 @@ SOURCES = {
 }
 NUMBERED = ("value", "flammable", "waterproof", "ignition_temperature", "density", "drag_coefficient", "wind_resistance")
 
+GRASPS = {  # where a hand takes a thing best: which objects; all others by the body, fixtures not at all [ours]
+    "handle": "basket coffee_maker fire_extinguisher flashlight hairbrush hammer jug knife mug pan pliers pot scissors suitcase "
+    "teakettle toothbrush vacuum_cleaner carving_fork fork spoon kitchen_utensil",
+    "strap": "bag backpack headphone camera rescue_bag",
+    "rim": "bowl plate coaster",
+    "neck": "bottle vase wine_glass trophy",
+    "edge": "book laptop money phone chocolate key coin shirt_button",
+    "body": "",
+}
+
 LIMITS = {  # what a row may hold, in its units
     "ignition_temperature": (40, 4000),
     "density": (10, 12000),
@@ -50,6 +60,7 @@ class Category:
     drag_coefficient: float  # [-]
     wind_resistance: float  # [-] felt wind = wind / (1 + resistance), none above 10
     sources: str  # one letter per entry of NUMBERED
+    grasp: str = ""  # where a hand takes one best, one of GRASPS; empty for what is not taken [ours]
 
     def source(self, attribute: str) -> str:
         """Where the number `attribute` comes from."""
@@ -171,7 +182,8 @@ def _read(rows: Iterable[_Row], kind: str) -> Iterable[Category]:
     for name, published, high, flammable, waterproof, ignition, density, drag, resistance, sources in rows:
         value = HIGH_VALUE if high else LOW_VALUE
         flags = bool(flammable), bool(waterproof)
-        yield Category(name, published, kind, value, *flags, float(ignition), float(density), drag, float(resistance), sources)
+        grasp = next((part for part, names in GRASPS.items() if name in names.split()), "body") if kind == "object" else ""
+        yield Category(name, published, kind, value, *flags, float(ignition), float(density), drag, float(resistance), sources, grasp)
 
 
 def check(rows: Iterable[Category]) -> dict[str, Category]:
@@ -183,6 +195,8 @@ def check(rows: Iterable[Category]) -> dict[str, Category]:
                 raise ValueError(f"{attribute} {getattr(c, attribute)} of {c.name!r} is not between {low} and {high}")
         if c.value not in (LOW_VALUE, HIGH_VALUE):
             raise ValueError(f"value {c.value} of {c.name!r} is neither {LOW_VALUE} nor {HIGH_VALUE}")
+        if (c.grasp not in GRASPS) if c.kind == "object" else c.grasp:
+            raise ValueError(f"grasp {c.grasp!r} of {c.name!r}, a {c.kind}: objects need one of {', '.join(GRASPS)}, fixtures none")
         if c.kind not in ("object", "fixture"):
             raise ValueError(f"kind {c.kind!r} of {c.name!r} is neither object nor fixture")
         if not c.name.isidentifier() or c.name != c.name.lower():

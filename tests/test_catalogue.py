@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms.catalogue import CATEGORIES, FIRE_POOL, NEW_OBJECTS, SOURCES, TEST_EXTRAS, WIND_POOL, category, check
+from hazard_ms.catalogue import CATEGORIES, FIRE_POOL, GRASPS, NEW_OBJECTS, SOURCES, TEST_EXTRAS, WIND_POOL, category, check
 
 ORIGINAL = Path(__file__).parents[2] / "shared" / "hazard_original"
 published = pytest.mark.skipif(not ORIGINAL.exists(), reason="the original benchmark's files are not here")
@@ -100,3 +100,12 @@ def test_names_differ_and_unknown_ones_are_refused() -> None:
     with pytest.raises(ValueError, match="no category is called 'aple'.*apple"):
         category("aple")
     assert category("coffee_grinder").label == "coffee grinder"
+
+
+def test_every_object_tells_where_to_take_it_and_no_hint_is_lost() -> None:
+    named = {name for names in GRASPS.values() for name in names.split()}
+    assert named <= {c.name for c in CATEGORIES.values() if c.kind == "object"}
+    assert all((c.grasp in GRASPS) == (c.kind == "object") for c in CATEGORIES.values())
+    assert category("mug").grasp == "handle" and category("apple").grasp == "body" and category("sofa").grasp == ""
+    with pytest.raises(ValueError, match="grasp 'tail' of 'mug'"):
+        check([dataclasses.replace(category("mug"), grasp="tail")])

@@ -195,10 +195,10 @@ def check(rows: Iterable[Category]) -> dict[str, Category]:
                 raise ValueError(f"{attribute} {getattr(c, attribute)} of {c.name!r} is not between {low} and {high}")
         if c.value not in (LOW_VALUE, HIGH_VALUE):
             raise ValueError(f"value {c.value} of {c.name!r} is neither {LOW_VALUE} nor {HIGH_VALUE}")
-        if (c.grasp not in GRASPS) if c.kind == "object" else c.grasp:
-            raise ValueError(f"grasp {c.grasp!r} of {c.name!r}, a {c.kind}: objects need one of {', '.join(GRASPS)}, fixtures none")
         if c.kind not in ("object", "fixture"):
             raise ValueError(f"kind {c.kind!r} of {c.name!r} is neither object nor fixture")
+        if (c.grasp not in GRASPS) if c.kind == "object" else c.grasp:
+            raise ValueError(f"grasp {c.grasp!r} of {c.name!r}, a {c.kind}: objects need one of {', '.join(GRASPS)}, fixtures none")
         if not c.name.isidentifier() or c.name != c.name.lower():
             raise ValueError(f"name {c.name!r} is not of lower-case words joined by underscores")
         if len(c.sources) != len(NUMBERED) or set(c.sources) - set(SOURCES):

@@ -11,8 +11,8 @@ import os
 from collections import Counter
 from pathlib import Path
 
-from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluating_order import Evaluation
+from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.result import EpisodeResult, machine, versions
 from hazard_ms.order import Order
 

@@ -26,7 +26,7 @@ from hazard_ms.spec import SceneSpec, Vec3
 DRAWN = ("day", "evening", "night", "failing")  # what "random" chooses from
 LIGHTINGS = (*DRAWN, "random")
 UNDER_CEILING = 0.4  # of lamps [m] [ours]
-STREET_LAMP, HEAD = "street_lamp", 0.35  # category of fixtures that shine, and their lamp below their upper end [m] [ours]
+STREET_LAMP, HEAD = "street_lamp", 0.60  # category of fixtures that shine, and their lamp below their upper end [m] [ours]
 MOST_LAMPS = 8  # of a scene: SAPIEN's packs take 10 point lights, and one is the fire's
 FIRST_FAILURE, LAST_FAILURE = 60, 900  # frames between which a failing lamp goes out [ours]
 UNSTEADY = 150  # frames before that for which it flickers [ours]
@@ -65,12 +65,12 @@ DAYS = {  # in the open, by sky
     "sky_storm": Mood((0.44, 0.63, -0.64), (0.75, 0.78, 0.80), (0.0, 0.0, 0.0), 0.0, sky="sky_storm"),
 }
 EVENING = Mood(
-    (0.98, -0.17, -0.30), (2.6, 1.6, 0.85), (5.0, 3.2, 1.5), 1.0, air=(0.95, 0.66, 0.48), sky="sky_evening"
+    (0.98, -0.17, -0.30), (2.6, 1.6, 0.85), (8.0, 5.1, 2.4), 1.0, air=(0.95, 0.66, 0.48), sky="sky_evening"
 )  # a little higher than seen: shadows end
 MOONLIGHT = (0.41, -0.58, -0.70), (0.045, 0.060, 0.100)
 NIGHTS = {
-    "night": Mood(*MOONLIGHT, (9.0, 5.8, 2.9), 1.0, air=(0.060, 0.066, 0.090), sky="sky_night"),
-    "failing": Mood(*MOONLIGHT, (9.0, 7.6, 5.6), 1.0, air=(0.060, 0.066, 0.090), sky="sky_night"),
+    "night": Mood(*MOONLIGHT, (20.0, 12.8, 6.4), 1.0, air=(0.060, 0.066, 0.090), sky="sky_night"),
+    "failing": Mood(*MOONLIGHT, (20.0, 16.8, 12.4), 1.0, air=(0.060, 0.066, 0.090), sky="sky_night"),
 }
 
 

@@ -31,7 +31,7 @@ Array = np.ndarray
 
 @dataclass
 class Quads:
-    """Quads as they are to be drawn: corners [m], [Q, 4, 3]; (x, y) of the corners in the quad, [Q, 4, 2]; kind + seed, light, strength, [Q, 3]."""
+    """Quads: corners [m], [Q, 4, 3]; (x, y) of the corners in the quad, [Q, 4, 2]; and (kind + seed, light, strength), [Q, 3]."""
 
     corners: Array
     places: Array
@@ -121,6 +121,9 @@ def _spread(vertices: Array, data: Array, pose: Array, view: Array, strength: fl
         across, up = _standing(kind, seed, anchor, size, eye, upward)
     low = np.where(kind == FLAME, 0.0, -1.0)[:, None]
     x, y = np.tile(meshes.CORNERS[:, 0], (len(home), 1)), np.where(meshes.CORNERS[:, 1] > 0, 1.0, low)
+    weak = (kind == FLAME)[:, None]  # a weak flame fills only a part of its quad: nothing needs to be traced through the rest
+    x = x * np.where(weak, 0.5 + 0.5 * strength, 1.0)
+    y = y * np.where(weak, max(strength, 0.02), 1.0)
     corners = anchor[:, None] + across[:, None] * (x * size[:, :1])[..., None] + up[:, None] * (y * size[:, 1:])[..., None]
     return Quads(corners, np.stack([x, y], -1), np.stack([code, age, np.full(len(home), strength)], -1))
 
@@ -192,4 +195,3 @@ def _waves(grid: Array, time: float) -> Array:
 
 def _unit(vectors: Array) -> Array:
     return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)
-

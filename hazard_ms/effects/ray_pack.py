@@ -1,4 +1,4 @@
-"""The ray-tracing shader pack with our effects, derived at run time from that of the installed SAPIEN, as shader_pack.py derives the others.
+"""The ray-tracing shader pack with our effects, derived at run time from that of the installed SAPIEN, like those of shader_pack.py.
 
 What changes: shadow rays pass flames, smoke and water; quads of effects show what they show in raster pictures, let through the rest, and
 use up no bounce; opaque things char, get wet and are dimmed by water, haze and smoke, piece by piece of each path; the last bounce sees
@@ -25,6 +25,7 @@ NAME = "rt_hazard"
 EFFECT, WATER = 1000.0, 3000.0  # transmission_roughness: from here on quads of effects, water; charred things have up to 257
 GLOW = "1.6"  # brightness of flames in linear light, before tones are mapped [ours]
 PIXEL = 0.0015  # angle that a pixel sees, for the sharpness of textures [rad] [ours]
+CAREFUL = 4  # bounces from which on effects are seen in mirrors, too, and their glow counts: half as quick
 MOST_VEILS = 48  # quads of effects that one ray passes
 
 _log = logging.getLogger(__name__)
@@ -101,6 +102,8 @@ _SHADOW = f"""  if ((gl_IncomingRayFlagsEXT & gl_RayFlagsTerminateOnFirstHitEXT)
     if (mat.transmissionRoughness >= {EFFECT}) ignoreIntersectionEXT;
     return;
   }}
+  bool veil = mat.transmissionRoughness >= {EFFECT} && mat.transmissionRoughness < {WATER};
+  if (veil && maxDepth < {CAREFUL} && ray.depth > 0) ignoreIntersectionEXT;  // the fire's own lamp lights things; mirrors can wait
 """
 
 _GUIDE = f"""      if (ray.segmentation.w == 1u) {{  // a quad of an effect
@@ -139,8 +142,15 @@ def _derive(files: dict[str, str]) -> dict[str, str]:
     files = _before(files, "camera.rahit", "  bool isInside", _SHADOW)
     files = _before(files, "camera.rchit", "void main() {", _HIT)
     files = _before(files, "camera.rchit", "  if (ti.diffuse >= 0) {", _SHARPNESS)
-    files = _all(files, "camera.rchit", "baseColorAlpha = texture(textures[nonuniformEXT(ti.diffuse)]", "baseColorAlpha = textureLod(textures[nonuniformEXT(ti.diffuse)]")
-    files = _all(files, "camera.rchit", "mat.textureTransforms[0].xy);\n    baseColor =", "mat.textureTransforms[0].xy, sharpness);\n    baseColor =")
+    files = _all(
+        files,
+        "camera.rchit",
+        "baseColorAlpha = texture(textures[nonuniformEXT(ti.diffuse)]",
+        "baseColorAlpha = textureLod(textures[nonuniformEXT(ti.diffuse)]",
+    )
+    files = _all(
+        files, "camera.rchit", "mat.textureTransforms[0].xy);\n    baseColor =", "mat.textureTransforms[0].xy, sharpness);\n    baseColor ="
+    )
     files = _before(files, "camera.rchit", "  float metallic = mat.metallic;", _VEIL)
     files = _before(files, "camera.rchit", "  transmission = clamp(transmission, 0.0, 1.0);", _SOLID)
     files = _before(files, "camera.rchit", "  ray.origin = worldPosition;\n  ray.direction = L;", _LAST)

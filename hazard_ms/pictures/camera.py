@@ -17,7 +17,7 @@ from hazard_ms.effects import shader_config, shader_pack
 from hazard_ms.effects.ray_geometry import dress, undress
 from hazard_ms.effects.ray_pack import ray_pack
 
-BOUNCES = {"rt-fast": 2, "rt": 5}  # of a path [ours]
+BOUNCES = {"rt-fast": 1, "rt": 5}  # of a path [ours]
 NEAR, FAR = 0.05, 120.0  # of what is seen [m]
 KNEE = 0.75  # brightness from which highlights are compressed instead of cut off [ours]
 DENOISER = "pyoidn"  # Intel Open Image Denoise on the CPU; optional

@@ -39,7 +39,7 @@ class Stage:
         if backend() == "none":
             raise ValueError("nothing can draw on this machine: hazard-ms doctor says why")
         player = None if order.agent == "idle" else agent(order.agent)
-        settings = {"split": order.split, "physics": order.physics, "robot_uids": order.robot, "lighting": order.light}
+        settings: dict[str, Any] = {"split": order.split, "physics": order.physics, "robot_uids": order.robot, "lighting": order.light}
         made = gym.make(order.env_id, obs_mode="none", render_mode="rgb_array", **settings)
         self.env: HazardEnv = made.unwrapped  # type: ignore[assignment]
         options = {} if order.scene is None else {"scene": order.scene}

@@ -1,0 +1,74 @@
+"""The gallery: every task at four moments, rasterised and ray-traced, from the corner and through the robot's eyes, in three lights."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from hazard_ms.pictures.camera import Image
+from hazard_ms.pictures.files import save
+from hazard_ms.pictures.order import RenderOrder
+from hazard_ms.pictures.stage import Stage
+
+SIZE, HEAD_SIZE = (480, 320), (320, 320)  # of pictures from the corner, and through the robot's eyes [pixels]
+QUALITY = 76  # of JPEG: all pictures together stay below 1.5 MB
+PAGE = "README.md"
+
+
+class Show(NamedTuple):
+    """An episode, the frames at which pictures are taken, and the light."""
+
+    env_id: str
+    seed: int
+    light: str
+    frames: tuple[int, ...]
+    camera: str
+    about: str
+
+
+SHOWS = (
+    Show("HazardFire-v1", 3, "day", (150, 400, 700, 1100), "third", "Fire spreads over floor and furniture, and chars what it burns."),
+    Show("HazardFire-v1", 3, "night", (700,), "third", "The same fire at night."),
+    Show("HazardFire-v1", 3, "evening", (700,), "head", "The same fire in the evening, as the robot sees it."),
+    Show("HazardFlood-v1", 5, "day", (120, 350, 700, 1200), "third", "Water comes in from one wall, rises, and lifts what floats."),
+    Show("HazardFlood-v1", 5, "evening", (350,), "third", "The same flood in the evening."),
+    Show("HazardFlood-v1", 5, "day", (350,), "head", "The same flood, as the robot sees it."),
+    Show("HazardWind-v1", 3, "day", (30, 150, 400, 900), "third", "Wind blows things over the street, with leaves, paper and dust."),
+    Show("HazardWind-v1", 3, "evening", (400,), "third", "The same street in the evening."),
+    Show("HazardWind-v1", 3, "night", (400,), "third", "The same street at night, by its lamps."),
+)
+
+
+def make(folder: Path, samples: int, shows: tuple[Show, ...] = SHOWS) -> Path:
+    """Make the pictures of `shows` and their page in `folder`, ray-traced with `samples` per pixel. Returns the page."""
+    folder.mkdir(parents=True, exist_ok=True)
+    lines = [
+        "# Gallery",
+        "",
+        "Made by `hazard-ms gallery`. Left: rasterised, as observations are. Right: ray-traced (`--shader rt-fast`).",
+        "",
+    ]
+    for show in shows:
+        lines += [f"## {show.env_id}, {show.light}", "", show.about, "", "| frame | rasterised | ray-traced |", "|---|---|---|"]
+        with Stage(RenderOrder(output=Path(PAGE).with_suffix(".jpg"), env_id=show.env_id, seed=show.seed, light=show.light)) as stage:
+            for frame in show.frames:
+                stage.play(frame)
+                names = [_keep(folder, show, frame, shader, _picture(stage, show, shader, samples)) for shader in ("default", "rt-fast")]
+                lines.append(f"| {frame} | " + " | ".join(f"![{show.about}]({name})" for name in names) + " |")
+        lines.append("")
+    page = folder / PAGE
+    page.write_text("\n".join(lines), encoding="utf-8")
+    return page
+
+
+def _picture(stage: Stage, show: Show, shader: str, samples: int) -> Image:
+    size = HEAD_SIZE if show.camera == "head" else SIZE
+    return stage.picture(stage.view(show.camera, *size), shader, samples)
+
+
+def _keep(folder: Path, show: Show, frame: int, shader: str, picture: Image) -> str:
+    """Write the picture; returns its name."""
+    task = show.env_id.removeprefix("Hazard").partition("-")[0].lower()
+    name = f"{task}_{show.light}_{show.camera}_{frame:04d}_{shader.replace('default', 'raster')}.jpg"
+    save(folder / name, picture, QUALITY)
+    return name

@@ -80,6 +80,26 @@ def phases(env_id: str, frames: int, seed: int, **keywords: Any) -> dict[str, An
     return {**made, "frames_per_second": frames / total, "median_us": float(np.median(spans)) * 1e6, "phases_us": rows}
 
 
+def resets(env_id: str, **keywords: Any) -> str:
+    """Time to build scenes that are new, and scenes that were built before, after a first one that loads the models' files."""
+    env = gym.make(env_id, **keywords)
+    env.reset(seed=0)
+
+    def seconds(seeds: range) -> list[float]:
+        made = []
+        for seed in seeds:
+            start = time.perf_counter()
+            env.reset(seed=seed)
+            made.append(time.perf_counter() - start)
+        return made
+
+    new, again = seconds(range(1, 9)), seconds(range(1, 9))
+    env.close()
+    return (
+        f"reset: a new scene {np.median(new):.2f} s (at most {max(new):.2f}), one built before {np.median(again):.2f} s ({max(again):.2f})"
+    )
+
+
 def greedy_episode(env_id: str, seed: int) -> str:
     """A whole episode with an observation of 256 pixels at every decision, after a first short one that compiles the shaders."""
     made = SkillEnv(gym.make(env_id, obs_mode="none"))
@@ -110,6 +130,7 @@ def report(env_id: str, frames: int, seed: int, episode: bool) -> str:
         total = sum(found["phases_us"].values())
         lines.append(f"{env_id}, {title}: {found['bodies']} things, {found['moving']} of them move")
         lines.append(f"  {found['frames_per_second']:.0f} frames/s, median {found['median_us']:.0f} us a frame")
+        lines.append("  " + resets(env_id, **keywords))
         lines += [f"  {name:10s} {us:9.1f} us  {100 * us / total:5.1f} %" for name, us in found["phases_us"].items()]
         lines.append("")
     return "\n".join([*lines, greedy_episode(env_id, seed)] if episode else lines)

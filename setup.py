@@ -35,7 +35,7 @@ setup(
     packages=[*find_packages(include=["hazard_ms", "hazard_ms.*"]), ASSETS],
     package_dir={ASSETS: "assets"},
     package_data={ASSETS: asset_files(), "hazard_ms": ["**/*"]},
-    exclude_package_data={"hazard_ms": ["_assets/*", "_assets/**/*"]},  # a checkout's own copy gives way to `assets/`
+    exclude_package_data={"hazard_ms": ["_assets/*", "_assets/**/*", "**/__pycache__/*"]},  # a checkout's own copy gives way to `assets/`
     include_package_data=False,
     entry_points={"console_scripts": ["hazard-ms = hazard_ms.cli:main"]},
     install_requires=[

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -50,7 +51,7 @@ class HazardEnv(BaseEnv):
         split: str = "train",
         scenes: Any = None,
         physics: str = "paper",
-        hazards: tuple[str, ...] | None = None,
+        hazards: Sequence[str] | None = None,
         affects_agent: bool = False,
         robot_uids: str = "fetch",
         deterministic: bool = True,

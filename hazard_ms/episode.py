@@ -107,7 +107,8 @@ class Episode:
             now = torch.arange(world.num_bodies, device=world.device) == torch.where(over_bag, dropped, -1)[:, None]
             world.away |= now & world.exists
         else:
-            now = in_containers(world, self.carts, self.rescue.safe) & world.target
+            inside = in_containers(world, self.carts, torch.zeros_like(world.safe))
+            now = in_containers(world, self.carts, inside) & world.target  # and what is piled on it
         self.rescue.mark(world, now, self.damage)
         self.freeze(gripper)
 

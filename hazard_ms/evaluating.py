@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import sys
 from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
+from hazard_ms import __version__
 from hazard_ms.evaluating_order import Evaluation
 from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.result import EpisodeResult, machine, versions
@@ -25,13 +28,19 @@ def evaluate(evaluation: Evaluation) -> int:
     evaluation.out.mkdir(parents=True, exist_ok=True)
     left = [(o, evaluation.place(o)) for o in orders if not evaluation.place(o).is_file()]
     workers = evaluation.workers or os.cpu_count() or 1
-    context = multiprocessing.get_context("spawn")
-    with context.Pool(min(workers, max(len(left), 1)), maxtasksperchild=EPISODES_PER_PROCESS) as pool:
-        for done, line in enumerate(pool.imap_unordered(_play, left), 1):
-            print(f"{done}/{len(left)} {line}", flush=True)
-    results = {o: EpisodeResult.read(evaluation.place(o)) for o in orders}
-    print(report(evaluation, list(results.values())))
-    return int(any(r.ended == "simulation error" for r in results.values()))
+    if os.getcwd() not in sys.path:
+        sys.path.insert(0, os.getcwd())  # where a user's own agent is; worker processes inherit it
+    batch = workers * EPISODES_PER_PROCESS
+    for start in range(0, len(left), batch):
+        with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:  # raises BrokenProcessPool if one dies
+            for done, line in enumerate(pool.map(_play, left[start : start + batch]), start + 1):
+                print(f"{done}/{len(left)} {line}", flush=True)
+    results = [EpisodeResult.read(evaluation.place(o)) for o in orders]
+    other = {str(r.versions["hazard-ms"]) for r in results} - {__version__}
+    if other:
+        raise ValueError(f"{evaluation.out} holds results of hazard-ms {', '.join(sorted(other))}; give another folder to {__version__}")
+    print(report(evaluation, results))
+    return int(any(r.ended == "simulation error" for r in results))
 
 
 def _play(job: tuple[Order, Path]) -> str:
@@ -49,7 +58,10 @@ def _play(job: tuple[Order, Path]) -> str:
 def report(evaluation: Evaluation, results: list[EpisodeResult]) -> str:
     """The table of scores, why episodes ended, and which actions failed why."""
     e = evaluation
-    lines = [f"{e.env_id}, split {e.split}, physics {e.physics}, robot {e.robot}, {e.episodes} episodes each"]
+    what = ", ".join(
+        [e.env_id, *e.hazards, f"split {e.split}", f"physics {e.physics}", f"robot {e.robot}"] + ["agent affected"] * e.affects_agent
+    )
+    lines = [f"{what}, {e.episodes} episodes each, seeds from {e.first}"]
     lines.append(f"{'agent':16s} {'Value':>22s} {'Step':>26s} {'Damage':>22s} {'rescued':>8s} {'s/episode':>10s}")
     for agent in e.agents:
         own = [r for r in results if r.agent == agent]

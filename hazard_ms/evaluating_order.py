@@ -29,6 +29,10 @@ class Evaluation:
     """Preset of the hazards."""
     robot: str = "fetch"
     """The rescuer."""
+    affects_agent: bool = False
+    """Whether the hazards act on the robot."""
+    hazards: tuple[str, ...] = ()
+    """Of HazardCompound-v1: some of flood, wind, fire."""
     workers: int = 0
     """Processes; 0: one for each core."""
     out: Annotated[Path, tyro.conf.arg(aliases=["-o"])] = Path("evaluation")
@@ -41,7 +45,8 @@ class Evaluation:
         whole(self.episodes, 1, 10**6, "episodes")
         whole(self.first, 0, 10**6, "first")
         whole(self.workers, 0, 1024, "workers")
-        first = Order(env_id=self.env_id, split=self.split, physics=self.physics, robot=self.robot)
+        first = Order(self.env_id, split=self.split, physics=self.physics, robot=self.robot)
+        first = replace(first, affects_agent=self.affects_agent, hazards=self.hazards)
         made = [replace(first, agent=a, seed=s) for s in range(self.first, self.first + self.episodes) for a in self.agents]
         for order in made[: len(self.agents)]:
             order.check()
@@ -49,5 +54,5 @@ class Evaluation:
 
     def place(self, order: Order) -> Path:
         """The file of an episode."""
-        name = f"{order.env_id}-{order.split}-{order.physics}-{order.robot}-{order.agent.replace(':', '.')}-{order.seed:04d}.json"
-        return self.out / name
+        setting = [order.env_id, *order.hazards, order.split, order.physics, order.robot] + ["affected"] * order.affects_agent
+        return self.out / f"{'-'.join(setting)}-{order.agent.replace(':', '.')}-{order.seed:04d}.json"

@@ -32,6 +32,8 @@ class Order:
     """The rescuer: fetch or g1."""
     affects_agent: bool = False
     """Whether the hazards act on the robot."""
+    hazards: tuple[str, ...] = ()
+    """Of HazardCompound-v1: some of flood, wind, fire."""
     video: Path | None = None
     """Write the film there, and beside it the result (.json) and a page (.html)."""
     every: int = 6
@@ -49,7 +51,8 @@ class Order:
     @property
     def settings(self) -> dict[str, Any]:
         """Keywords of gym.make that change the episode."""
-        return {"split": self.split, "physics": self.physics, "robot_uids": self.robot, "affects_agent": self.affects_agent}
+        made = {"split": self.split, "physics": self.physics, "robot_uids": self.robot, "affects_agent": self.affects_agent}
+        return {**made, "hazards": list(self.hazards)} if self.hazards else made
 
     @property
     def command(self) -> str:
@@ -58,5 +61,6 @@ class Order:
         words += ["--split", self.split, "--physics", self.physics]
         words += ["--robot", self.robot] if self.robot != "fetch" else []
         words += ["--affects-agent"] if self.affects_agent else []
+        words += ["--hazards", *self.hazards] if self.hazards else []
         words += [] if self.scene is None else ["--scene", self.scene]
         return shlex.join(words)

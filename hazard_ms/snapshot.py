@@ -53,6 +53,7 @@ def restore(env: HazardEnv, saved: dict[str, Any] | None, rows: Tensor) -> None:
     chance.seed[rows] = (words[:, 0] + words[:, 1] * WORD).to(chance.seed)
     chance.frame[rows] = torch.as_tensor(saved["chance"]["frame"]).reshape(len(rows)).to(chance.frame)
     env._elapsed_steps[rows] = chance.frame[rows].to(env._elapsed_steps)
+    episode.sim_error[rows] = False  # what is restored was good
     env.world.safe[rows] = episode.rescue.safe[rows]
     env.world.away[rows] = episode.rescue.safe[rows] & (episode.carts is None)
     index = torch.arange(env.world.num_bodies, device=env.device)

@@ -22,13 +22,14 @@ class Random(Agent):
         return moves[int(self._lots.integers(len(moves)))]
 
     def _moves(self, decision: Decision) -> list[Action]:
-        moves = [Action(DROP), Action(EXPLORE)]
+        carts = list(known(decision, decision.containers))
+        moves = [Action(DROP, carts[0] if carts else None), Action(EXPLORE)]
         targets = known(decision, open_targets(decision))
         if targets:
             nearest = next(iter(targets))
             moves += [Action(WALK_ONE_STEP, nearest), Action(PICK_UP, nearest)]
-        if containers := known(decision, decision.containers):
-            moves.append(Action(WALK_ONE_STEP, next(iter(containers))))
+        if carts:
+            moves.append(Action(WALK_ONE_STEP, carts[0]))
         in_sight = [i for i in decision.map.in_view if decision.names[i] != decision.held]
         if in_sight:
             moves.append(Action(WALK_TO, decision.names[in_sight[int(self._lots.integers(len(in_sight)))]]))

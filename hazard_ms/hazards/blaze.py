@@ -59,6 +59,7 @@ class BlazeState(FireState):
     floor_speed: Tensor = quantity("E", "m/s", "at which fire spreads over the floor")
     height: Tensor = quantity("E", "m", "of the room", fill=2.6)
     vents: Tensor = quantity("E O 3", "m", "gaps: width, lower and upper end")
+    roofed: Tensor = quantity("E", "", "1 under a ceiling, 0 in the open, where smoke does not gather", fill=1.0)
     heat_release: Tensor = quantity("E", "kW", "of all that burns")
     smoke_volume: Tensor = quantity("E", "m^3", "of the layer")
     smoke_energy: Tensor = quantity("E", "kJ", "excess heat of the layer")
@@ -106,7 +107,8 @@ class Blaze(Hazard):
 
     def sizes(self, world: World) -> dict[str, int]:
         lattices = max(1, *(len(s.fires) for s in world.specs))
-        cells = max(fuels.SPREAD.get(s.room.floor, 0.0) for s in world.specs) * self.lapse * self.horizon / spread.STEP
+        fastest = max(fuels.SPREAD.get(s.room.floor, 0.0) * together.fastest(s.wind) for s in world.specs)
+        cells = fastest * self.lapse * self.horizon / spread.STEP
         window = 2 * (math.ceil(1.25 * cells) + 3) + 1
         flames = min(window**2, math.ceil(1.3 * math.pi * cells**2) + 25)
         return {"S": lattices, "K": window, "F": lattices * flames, "O": max(1, *(len(smoke.gaps(s.room)) for s in world.specs))}
@@ -121,6 +123,7 @@ class Blaze(Hazard):
         state.floor_speed[rows] = torch.tensor([fuels.SPREAD.get(s.room.floor, 0.0) for s in specs], device=world.device)
         state.height[rows] = torch.tensor([s.room.height for s in specs], device=world.device)
         state.smoke_height[rows] = state.height[rows]
+        state.roofed[rows] = torch.tensor([float(not s.room.open_air) for s in specs], device=world.device)
         padded = [[*g, *[(0.0, 0.0, 0.0)] * (state.vents.shape[1] - len(g))] for g in (smoke.gaps(s.room) for s in specs)]
         state.vents[rows] = torch.tensor(padded, device=world.device)
         self._reset_fuels(state, world, rows)
@@ -184,6 +187,7 @@ class Blaze(Hazard):
         source = smoke.Source(power, convected, base, soot)
         layer = smoke.fill(before, walls, state.vents, source, self.room_temperature, self.flame_temperature, step)
         state.heat_release.copy_(power)
+        layer = smoke.Layer(layer.volume * state.roofed, layer.energy * state.roofed, layer.soot * state.roofed)
         state.smoke_volume.copy_(layer.volume)
         state.smoke_energy.copy_(layer.energy)
         state.smoke_mass.copy_(layer.soot)

@@ -9,12 +9,13 @@ Ellipsoids are exact: they are spheres in coordinates divided by their half edge
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import functools
 from typing import NamedTuple
 
 import torch
 from torch import Tensor
 
+from hazard_ms.hazards.base import nobody
 from hazard_ms.hazards.drag import to_world
 
 BOX, CYLINDER, BALL = 0, 1, 2  # shapes of bodies
@@ -45,105 +46,80 @@ def immersion(height: Tensor, slope: Tensor, axes: Tensor, half: Tensor, shape: 
         half: Half edges of the body's box [m], [3, ...].
         shape: BOX, CYLINDER or BALL, int64 [...].
     """
-    upward = (axes[2] - slope[0] * axes[0] - slope[1] * axes[1]) * half  # how far above the surface each axis' end leads [m]
-    reached, middle, waterline, steepest = _columns(height, upward, shape)
-    fraction, centre, rising, widest = _ball(height, upward)
+    (x, y, z), (east, north) = axes.unbind(), slope.unbind()
+    upward = (z - east * x).sub_(north * y).mul_(half)  # how far above the surface each axis' end leads [m]
+    fraction, middle, waterline, steepest = _columns(height, upward, shape == CYLINDER)
     ball = shape == BALL
-    arm = to_world(axes, torch.where(ball, centre, middle) * half)
-    return Immersion(torch.where(ball, fraction, reached), arm, torch.where(ball, rising, waterline), torch.where(ball, widest, steepest))
+    if not nobody(ball):
+        reached, centre, rising, widest = _ball(height, upward)
+        fraction, middle = torch.where(ball, reached, fraction), torch.where(ball, centre, middle)
+        waterline, steepest = torch.where(ball, rising, waterline), torch.where(ball, widest, steepest)
+    return Immersion(fraction, to_world(axes, middle * half), waterline, steepest)
 
 
-class _Grid(NamedTuple):
-    """Three rows of three columns: rows lie along the first axis after the long one, columns along the second. In half edges."""
+class _Tables(NamedTuple):
+    """What 3 x 3 columns are like, by the long axis of a body (0, 1, 2) and 3 more for cylinders; in half edges.
 
-    u: Tensor  # where the outer rows are, [...]
-    v: Tensor  # where the outer columns of each row are, [3, ...]
-    length: Tensor  # of the middle column of each row, [3, ...]
-    outer_length: Tensor  # of its outer columns, [3, ...]
-    rows: tuple[Tensor, Tensor, Tensor]  # share of the cross-section of each row, [...]
-    columns: tuple[Tensor, Tensor, Tensor]  # of each column of a row, [...]
+    Rows lie along the first axis after the long one, columns along the second.
+    """
 
-
-def _grid(cylinder: Tensor, first: Tensor, second: Tensor) -> _Grid:
-    """Of bodies of which axis 0 (`first`), 1 (`second`) or else 2 is the long one; all bool [...]."""
-    round_rows, round_columns = cylinder & ~second, cylinder & second
-    lying = cylinder & first
-    row, column = torch.where(round_rows, 0.25, 5 / 18), torch.where(round_columns, 0.25, 5 / 18)
-    length = _three(torch.ones_like(row), torch.where(lying, _ROUND, 1.0))
-    return _Grid(
-        torch.where(round_rows, _ROUND, _SQUARE),
-        _three(torch.where(round_columns, _ROUND, _SQUARE), torch.where(round_rows & ~lying, _ROUND, 1.0)),
-        length,
-        length * torch.where(round_columns, _ROUND, 1.0),
-        (row, 1 - 2 * row, row),
-        (column, 1 - 2 * column, column),
-    )
+    numbers: Tensor  # rows' place; columns' place in each row; columns' 1 / length, [9]; weights of the three amounts, [27]; [40, 6]
+    turn: Tensor  # the long axis and the two after it, int64, [3, 6]
 
 
-def _columns(height: Tensor, upward: Tensor, shape: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+@functools.lru_cache(maxsize=8)
+def _tables(device: torch.device) -> _Tables:
+    """The same at every call, so made once per device."""
+    made = [_numbers(long, cylinder) for cylinder in (False, True) for long in range(3)]
+    turn = [[(long + k) % 3 for _ in range(2) for long in range(3)] for k in range(3)]
+    return _Tables(torch.tensor(made, device=device).T.contiguous(), torch.tensor(turn, device=device))
+
+
+def _numbers(long: int, cylinder: bool) -> list[float]:
+    """A column of `_Tables.numbers`."""
+    round_rows, round_columns, lying = cylinder and long != 1, cylinder and long == 1, cylinder and long == 0
+    row, column = (1 / 4 if round_rows else 5 / 18), (1 / 4 if round_columns else 5 / 18)
+    outer_row, outer_column = (1.0, _ROUND if round_rows and not lying else 1.0), (1.0, _ROUND if round_columns else 1.0)
+    ends, sides = (1.0, _ROUND if lying else 1.0), (1, 0, 1)  # which are outer ones
+    length = [ends[r] * outer_column[c] for c in sides for r in sides]
+    share = [(row if r else 1 - 2 * row) * (column if c else 1 - 2 * column) for c in sides for r in sides]
+    place = [(_ROUND if round_columns else _SQUARE) * outer_row[r] for r in sides]
+    weights = [*share, *(w * s for w, s in zip(share, length, strict=True)), *(w / s for w, s in zip(share, length, strict=True))]
+    return [_ROUND if round_rows else _SQUARE, *place, *(1 / s for s in length), *weights]
+
+
+def _columns(height: Tensor, upward: Tensor, cylinder: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """Fraction, middle in units of the half edges [3, ...], waterline and its bound, from 3 x 3 columns."""
-    size = upward.abs()
-    first = (size[0] >= size[1]) & (size[0] >= size[2])
-    second = ~first & (size[1] >= size[2])
-    cylinder = shape == CYLINDER
-    grid = _grid(cylinder, first, second)
-    long, one, two = (_turned(upward, first, second, k) for k in range(3))
-    span = (2 * long.abs()).clamp(min=_THIN)
-    tilt, middle_row = one * grid.u / span, height / span
-    level = torch.stack([middle_row + tilt, middle_row, middle_row - tilt])
-    lean = two / span * grid.v
-    outer = grid.outer_length
-    parts = (_column(level + lean, outer), _column(level, grid.length), _column(level - lean, outer))
-    of_rows = [_mean(grid.columns, [part[k] for part in parts]) for k in range(3)]
-    fraction, along, cut = (_mean(grid.rows, amount) for amount in of_rows)
-    across = grid.rows[0] * grid.u * (of_rows[0][2] - of_rows[0][0])
-    other = _mean(grid.rows, grid.columns[0] * grid.v * (parts[2][0] - parts[0][0]))
-    ordered = torch.stack([torch.where(long < 0, -along, along), across, other]) / fraction.clamp(min=_THIN)
-    steepest = torch.where(cylinder & (first | second), _STEEPEST, 1.0) / span
-    return fraction, _in_place(ordered, first, second), cut / span, steepest
-
-
-def _in_place(ordered: Tensor, first: Tensor, second: Tensor) -> Tensor:
-    """What stands for the long axis and the two after it, as x, y and z of the body, [3, ...]."""
-    along, across, other = ordered
-    return torch.stack(
-        [_choose(first, second, *three) for three in ((along, other, across), (across, along, other), (other, across, along))]
-    )
-
-
-def _choose(first: Tensor, second: Tensor, a: Tensor, b: Tensor, c: Tensor) -> Tensor:
-    """`a` where axis 0 is the long one, `b` where axis 1 is, else `c`, [...]."""
-    return torch.where(first, a, torch.where(second, b, c))
-
-
-def _three(middle: Tensor, factor: Tensor) -> Tensor:
-    """What is `middle` in the middle row and `factor` times that in the outer ones, [3, ...]."""
-    outer = middle * factor
-    return torch.stack([outer, middle, outer])
-
-
-def _mean(weights: tuple[Tensor, Tensor, Tensor], amounts: Sequence[Tensor] | Tensor) -> Tensor:
-    """Of three amounts, each [...], by weight."""
-    return weights[0] * amounts[0] + weights[1] * amounts[1] + weights[2] * amounts[2]
-
-
-def _column(level: Tensor, length: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Of columns: the immersed share, that times how far its middle is down the column, and the share gained per rise of `level`."""
-    depth = level / length + 0.5
+    tables = _tables(height.device)
+    kind = upward.abs().argmax(0).add_(cylinder, alpha=3)
+    turn = tables.turn[:, kind]
+    long, one, two = upward.gather(0, turn).unbind()
+    numbers = tables.numbers[:, kind]
+    row, place = numbers[0], numbers[1:4]
+    span = long.abs().mul_(2).clamp_(min=_THIN)
+    tilt, lean = one * row, two * place
+    level = torch.stack([height + tilt, height, height - tilt])
+    depth = torch.stack([level + lean, level, level - lean]).div_(span).mul_(numbers[4:13].unflatten(0, (3, 3))).add_(0.5)
     immersed = depth.clamp(0, 1)
-    return immersed, immersed * (immersed - 1) * length, (immersed == depth) / length
-
-
-def _turned(three: Tensor, first: Tensor, second: Tensor, k: int) -> Tensor:
-    """The component `k` places after the long axis, cyclically, [...]."""
-    return _choose(first, second, three[k], three[(1 + k) % 3], three[(2 + k) % 3])
+    amounts = torch.stack([immersed, (immersed - 1).mul_(immersed), (immersed == depth).to(depth.dtype)])
+    first, middle, last = amounts.mul_(numbers[13:].unflatten(0, (3, 3, 3))).unbind(1)
+    of_rows = (first + middle).add_(last)
+    r0, r1, r2 = of_rows.unbind(1)
+    fraction, along, cut = (r0 + r1).add_(r2).unbind()
+    s0, s1, s2 = (last[0] - first[0]).mul_(place).unbind()
+    ordered = torch.stack([along * long.sign(), (r2[0] - r0[0]).mul_(row), (s0 + s1).add_(s2)]).div_(fraction.clamp(min=_THIN))
+    steepest = torch.where(cylinder & (kind < 5), _STEEPEST, 1.0) / span
+    return fraction, torch.empty_like(ordered).scatter_(0, turn, ordered), cut / span, steepest
 
 
 def _ball(height: Tensor, upward: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """As `_columns`, of ellipsoids."""
-    reach = (upward[0] * upward[0] + upward[1] * upward[1] + upward[2] * upward[2]).sqrt().clamp(min=_THIN)
-    t = (height / reach).clamp(-1, 1)
-    outside = 1 - t * t
-    cap = 2 + 3 * t - t * t * t  # 4 times the immersed fraction
-    centre = -0.75 * outside * outside / cap.clamp(min=_THIN) * (upward / reach)
-    return cap / 4, centre, 0.75 * outside / reach, 0.75 / reach
+    x, y, z = (upward * upward).unbind()
+    reach = (x + y).add_(z).sqrt_().clamp_(min=_THIN)
+    t = (height / reach).clamp_(-1, 1)
+    square = t * t
+    outside = 1 - square
+    cap = (3 - square).mul_(t).add_(2)  # 4 times the immersed fraction
+    widest = 0.75 / reach
+    rising = outside * widest
+    return cap / 4, upward * (rising * outside).div_(cap.clamp(min=_THIN)).neg_(), rising, widest

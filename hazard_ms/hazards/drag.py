@@ -13,6 +13,8 @@ Vectors come with their components first, [3, ...], as `planes` makes them of [.
 
 from __future__ import annotations
 
+import functools
+
 import torch
 from torch import Tensor
 
@@ -31,23 +33,36 @@ def rows(vector: Tensor) -> Tensor:
 
 def axes_of(rotation: Tensor) -> Tensor:
     """Rotation matrices [3, 3, ...] of unit quaternions [..., 4]; [:, i] is axis i of the body in the world frame."""
-    w, x, y, z = rotation.movedim(-1, 0).contiguous()
-    made = torch.empty(3, 3, *w.shape, dtype=w.dtype, device=w.device)
-    made[0, 0], made[1, 1], made[2, 2] = 1 - 2 * (y * y + z * z), 1 - 2 * (x * x + z * z), 1 - 2 * (x * x + y * y)
-    made[0, 1], made[1, 0] = 2 * (x * y - w * z), 2 * (x * y + w * z)
-    made[0, 2], made[2, 0] = 2 * (x * z + w * y), 2 * (x * z - w * y)
-    made[1, 2], made[2, 1] = 2 * (y * z - w * x), 2 * (y * z + w * x)
-    return made
+    first, second, twice = _products(rotation.device)
+    parts = rotation.movedim(-1, 0)
+    made = parts[first] * (parts * twice.view(2, *[1] * parts.dim())).flatten(0, 1)[second]
+    made = made[:9] + made[9:]
+    made[::4] += 1
+    return made.unflatten(0, (3, 3))
+
+
+@functools.lru_cache(maxsize=8)
+def _products(device: torch.device) -> tuple[Tensor, Tensor, Tensor]:
+    """Indices of 18 pairs of factors from a quaternion, and from it twice and minus twice; the same at every call."""
+    w, x, y, z = range(4)
+    pairs = (((y, -y), (x, y), (x, z)), ((x, y), (x, -x), (y, z)), ((x, z), (y, z), (x, -x)))
+    others = (((z, -z), (w, -z), (w, y)), ((w, z), (z, -z), (w, -x)), ((w, -y), (w, x), (y, -y)))
+    made = [pair for part in (pairs, others) for row in part for pair in row]
+    first = [a for a, _ in made]
+    second = [b if b > 0 else 4 - b for _, b in made]  # x, y, z are not 0, so the sign can stand for minus twice
+    return torch.tensor(first, device=device), torch.tensor(second, device=device), torch.tensor([2.0, -2.0], device=device)
 
 
 def to_body(axes: Tensor, vector: Tensor) -> Tensor:
     """World-frame vectors [3, ...] along the body's own axes; `axes` as `axes_of` gives them."""
-    return axes[0] * vector[0] + axes[1] * vector[1] + axes[2] * vector[2]
+    x, y, z = (axes * vector[:, None]).unbind()
+    return (x + y).add_(z)
 
 
 def to_world(axes: Tensor, vector: Tensor) -> Tensor:
     """Vectors along the body's own axes, [3, ...], in the world frame."""
-    return axes[:, 0] * vector[0] + axes[:, 1] * vector[1] + axes[:, 2] * vector[2]
+    x, y, z = (axes * vector).unbind(1)
+    return (x + y).add_(z)
 
 
 def face_areas(extent: Tensor) -> Tensor:
@@ -74,12 +89,12 @@ def drag(
     along = to_body(axes, slip)
     speed = along.abs()
     if ball is not None:
-        x, y, z = along
-        speed = torch.where(ball, (x * x + y * y + z * z).sqrt(), speed)
-    push = pull * speed
+        x, y, z = (along * along).unbind()
+        speed = torch.where(ball, (x + y).add_(z).sqrt_(), speed)
+    push = speed.mul_(pull)
     if change is not None:
         along = along + to_body(axes, change)
-    return to_world(axes, push * along / (1 + push * (dt / mass.clamp(min=_NOTHING))))
+    return to_world(axes, (push * along).div_((push * (dt / mass.clamp(min=_NOTHING))).add_(1)))
 
 
 def spin_drag(

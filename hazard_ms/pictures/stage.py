@@ -54,7 +54,7 @@ class Stage:
 
     def play(self, frame: int) -> None:
         """Let the robot stand still until `frame`, which must not have passed."""
-        still = np.zeros(self.env.single_action_space.shape, np.float32)
+        still = self.env.agent.action(0.0, 0.0, self.env.agent.tucked, True)
         while self.frame < frame:
             self.env.advance(still)
             self.frame += 1

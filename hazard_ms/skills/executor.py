@@ -175,10 +175,10 @@ class SkillEnv:
         world = self.base.world
         made = [Action(EXPLORE), Action(STOP)]
         if held is not None:
-            made += [Action(DROP), *(Action(DROP, c) for c in containers)]
+            made += [Action(DROP), *(Action(DROP, c) for c in containers if world.index(0, c) in self._seen.objects)]
         for index in sorted(self._seen.objects):
             name = world.names[0][index]
             made += [Action(WALK_TO, name), Action(WALK_ONE_STEP, name)]
-            if held is None and bool(world.target[0, index]):
+            if held is None and bool(world.target[0, index] & ~world.safe[0, index]):
                 made.append(Action(PICK_UP, name))
         return tuple(made)

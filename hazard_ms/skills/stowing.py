@@ -10,9 +10,10 @@ from hazard_ms.hazards.containers import BASKET_HIGH, BASKET_LOW
 from hazard_ms.skills import failures
 from hazard_ms.skills.arm import HOVER, NEARLY, REACH_FRAMES, THERE, go, retract, unfold, way
 from hazard_ms.skills.decision import Result
-from hazard_ms.skills.grasping import CLEAR, SHUT_FRAMES, close_in, come_near, lacking
+from hazard_ms.skills.grasping import CLEAR, LIMIT, SHUT_FRAMES, close_in, come_near, lacking
 from hazard_ms.skills.motion import turn_to
 from hazard_ms.skills.stage import Skill, Stage
+from hazard_ms.skills.walking import known
 from hazard_ms.world import rotate
 
 INSET = 0.14  # from the walls of a basket to where a thing is let go, at least [m] [ours]
@@ -38,6 +39,10 @@ def _into_bag(stage: Stage) -> Skill:
 
 def _into_cart(stage: Stage, cart: int, held: int) -> Skill:
     """Come near, hold the thing over the basket, open the hand, fold the arm back."""
+    if not known(stage, cart):
+        return Result(False, failures.UNKNOWN)
+    if float(np.linalg.norm(stage.position(cart) - stage.robot.shoulder())) > LIMIT:
+        return Result(False, failures.CART_UNREACHABLE)
     used = 0
     for attempt in range(APPROACHES):
         middle = stage.position(cart)

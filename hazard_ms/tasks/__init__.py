@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from hazard_ms.spec import Task
 from hazard_ms.tasks.compound import NAME, hazard_compound
@@ -18,10 +18,10 @@ TASKS: dict[str, Callable[[str], Task]] = {
 }
 
 
-def task_of(name: str, physics: str, hazards: tuple[str, ...] | None = None) -> Task:
+def task_of(name: str, physics: str, hazards: Sequence[str] | None = None) -> Task:
     """The task called `name`; `hazards` only for HazardCompound-v1."""
     if hazards is None:
         return TASKS[name](physics)
     if name != NAME:
         raise ValueError(f"hazards is {hazards!r} for {name}; it is allowed for {NAME} only")
-    return hazard_compound(physics, hazards)
+    return hazard_compound(physics, tuple(hazards) if isinstance(hazards, list) else hazards)

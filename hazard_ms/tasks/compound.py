@@ -5,6 +5,8 @@ Water puts fires out and keeps what it has wetted from burning; wind drives fire
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from hazard_ms import MAX_FRAMES
 from hazard_ms.hazards.presets import HAZARDS
 from hazard_ms.scenes import splits
@@ -15,7 +17,7 @@ ORDER = ("flood", "wind", "fire")  # those that tell others something come first
 USUAL = ("flood", "fire")
 
 
-def hazard_compound(physics: str = "paper", hazards: tuple[str, ...] = USUAL) -> Task:
+def hazard_compound(physics: str = "paper", hazards: Sequence[str] = USUAL) -> Task:
     """The task HazardCompound-v1 with these `hazards`, each with the physics of a preset.
 
     Raises ValueError for none, unknown ones, and the same one twice.

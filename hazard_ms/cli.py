@@ -48,6 +48,7 @@ def bench(
     seed: Annotated[int, tyro.conf.arg(aliases=["-s"])] = 0,
     episode: bool = True,
     looks: bool = False,
+    kernels: bool = False,
 ) -> int:
     """Print where the time of a frame goes, phase by phase, and how long a greedy episode takes, with versions and machine.
 
@@ -57,7 +58,13 @@ def bench(
         seed: Seed of the episode.
         episode: Also play a whole greedy episode.
         looks: Only print what the effects of each mode cost in a picture.
+        kernels: Only print what the kernels of flood and wind cost for 1,024 environments of 64 bodies on one thread.
     """
+    if kernels:
+        from hazard_ms.bench_kernels import report as report_kernels
+
+        print(report_kernels())
+        return 0
     if looks:
         from hazard_ms.bench_looks import report as report_looks
 

@@ -18,6 +18,7 @@ from hazard_ms.effects import FireEffects, meshes, shader_config, shader_pack
 from hazard_ms.effects.textures import noise
 from hazard_ms.hazards.fire import BURNT, Fire, FireState
 from hazard_ms.world import World
+from tests.alone import alone
 from tests.burning_room import BOX, EXTENTS, SPEC, TABLE, BurningRoom, picture_hash
 
 ROOT = Path(__file__).parents[1]
@@ -35,6 +36,7 @@ def burning(mode: str, pack: str | None = None) -> dict[str, np.ndarray]:
 
 @pytest.mark.render
 @pytest.mark.parametrize(("mode", "stock"), [("full", "default"), ("fast", "minimal")])
+@alone
 def test_labels_are_those_without_effects(mode: str, stock: str) -> None:
     with_effects, without = burning(mode), burning("off", stock)
     assert set(with_effects) == set(without)

@@ -22,6 +22,7 @@ from hazard_ms.effects.textures import ripples
 from hazard_ms.hazards.flood import Flood
 from hazard_ms.spec import Opening, Partition, Room
 from hazard_ms.world import World
+from tests.alone import alone
 from tests.looking import BOX, INSIDE, OVERHEAD, flooded, picture_hashes
 
 ROOT = Path(__file__).parents[1]
@@ -35,6 +36,7 @@ PARTED = replace(
 
 @pytest.mark.render
 @pytest.mark.parametrize(("mode", "stock"), MODES)
+@alone
 def test_labels_are_those_without_water(mode: str, stock: str) -> None:
     wet, dry = flooded(0.0, mode), flooded(0.0, "off", stock)
     without = dry.picture(0)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import torch
 
+from tests.alone import alone
 from tests.looking import OVERHEAD, windy
 
 LABELS = ("segmentation", "depth", "position", "normal")
@@ -14,6 +15,7 @@ SPEED, LATER, MOST = 4.5, 2, 10  # of the wind [m/s], between two pictures [fram
 
 @pytest.mark.render
 @pytest.mark.parametrize(("mode", "stock"), [("full", "default"), ("fast", "minimal")])
+@alone
 def test_labels_are_those_without_wind(mode: str, stock: str) -> None:
     blown, still = windy(mode=mode), windy(mode="off", pack=stock)
     for frame in (0, 1, 100, 101, 1400):

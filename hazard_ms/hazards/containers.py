@@ -12,8 +12,8 @@ from torch import Tensor
 
 from hazard_ms.hazards.air import spans
 from hazard_ms.hazards.base import nobody
-from hazard_ms.hazards.drag import axes_of, planes
-from hazard_ms.world import World, rotate
+from hazard_ms.hazards.drag import axes_of, planes, to_body
+from hazard_ms.world import World
 
 CATEGORY = "cart"
 # The basket in shares of the cart's extent from its centre: 0.46 to 0.885 m of a height of 1.025 m, the handle is at +y [ours].
@@ -35,30 +35,39 @@ def in_containers(world: World, containers: Tensor, settled: Tensor) -> Tensor:
     What is in a hand or has been put away lies nowhere; what had settled is only listed if it still lies there.
     """
     moving = max(len(s.bodies) for s in world.specs)  # bodies come before fixtures
+    found = torch.zeros_like(settled)
+    e, cart = torch.arange(len(settled), device=world.device)[:, None], containers.clamp(min=0)
+    carts = world.position[e, cart], world.rotation[e, cart], world.extent[e, cart]  # [E, C, 3], [E, C, 4], [E, C, 3]
+    if nobody(settled) and nobody(_near(world, carts, moving)):
+        return found
     centre = world.position[:, :moving]
     base = world.base_of(centre, world.rotation[:, :moving], world.extent[:, :moving])
-    inside = _in_baskets(world, containers, base) | _in_baskets(world, containers, centre)
+    inside = _in_baskets(carts, containers >= 0, base, centre)
     able = world.exists & world.movable & ~world.held & ~world.away
     below = (settled & able)[:, :moving]
     if not nobody(below):
         inside = inside | _on_piles(world, base, below)
-    found = torch.zeros_like(settled)
     found[:, :moving] = inside
     return found & able
 
 
-def _in_baskets(world: World, containers: Tensor, points: Tensor) -> Tensor:
-    """Which `points` [m], [E, M, 3], are in one of the baskets: [E, M], bool."""
-    e = torch.arange(len(points), device=points.device)[:, None]
-    cart = containers.clamp(min=0)
-    extent, turn = world.extent[e, cart], world.rotation[e, cart]  # [E, C, 3], [E, C, 4]
-    back = turn * turn.new_tensor([1.0, -1.0, -1.0, -1.0])
-    offset = points[:, None] - world.position[e, cart][:, :, None]  # [E, C, M, 3]
-    local = rotate(back[:, :, None].expand(*offset.shape[:3], 4), offset)
-    low = extent * extent.new_tensor(BASKET_LOW) - TOUCH
-    high = extent * extent.new_tensor(BASKET_HIGH) + TOUCH
-    within = ((local > low[:, :, None]) & (local < high[:, :, None])).all(-1)
-    return (within & (containers >= 0)[..., None]).any(1)
+def _near(world: World, carts: tuple[Tensor, Tensor, Tensor], moving: int) -> Tensor:
+    """Which of the first M = `moving` bodies may have a point in a cart: position, rotation, extent -> bool, [E, C, M]."""
+    place, _, extent = carts
+    reach = (extent.sum(-1, keepdim=True) + world.extent[:, None, :moving, 2]).mul_(0.5).add_(2 * TOUCH)
+    gap = (world.position[:, None, :moving, :2] - place[:, :, None, :2]).abs_()
+    return (gap < reach[..., None]).all(-1)
+
+
+def _in_baskets(carts: tuple[Tensor, Tensor, Tensor], real: Tensor, *points: Tensor) -> Tensor:
+    """Which bodies have one of their `points` [m], each [E, M, 3], in the basket of a cart that is `real`, [E, C]: [E, M], bool."""
+    place, turn, extent = (part.movedim(-1, 0) for part in carts)
+    offset = torch.stack([p.movedim(-1, 0)[:, :, None] for p in points], 2) - place[:, :, None, :, None]  # [3, E, points, C, M]
+    local = to_body(axes_of(turn.movedim(0, -1))[:, :, :, None, :, None], offset)
+    low = (extent * extent.new_tensor(BASKET_LOW)[:, None, None]).sub_(TOUCH)[:, :, None, :, None]
+    high = (extent * extent.new_tensor(BASKET_HIGH)[:, None, None]).add_(TOUCH)[:, :, None, :, None]
+    x, y, z = ((local > low) & (local < high)).unbind()
+    return (x & y & z & real[:, None, :, None]).any(2).any(1)
 
 
 def _on_piles(world: World, base: Tensor, below: Tensor) -> Tensor:

@@ -13,8 +13,6 @@ Vectors come with their components first, [3, ...], as `planes` makes them of [.
 
 from __future__ import annotations
 
-import functools
-
 import torch
 from torch import Tensor
 
@@ -33,24 +31,13 @@ def rows(vector: Tensor) -> Tensor:
 
 def axes_of(rotation: Tensor) -> Tensor:
     """Rotation matrices [3, 3, ...] of unit quaternions [..., 4]; [:, i] is axis i of the body in the world frame."""
-    first, second, twice = _products(rotation.device)
-    parts = rotation.movedim(-1, 0)
-    made = parts[first] * (parts * twice.view(2, *[1] * parts.dim())).flatten(0, 1)[second]
-    made = made[:9] + made[9:]
-    made[::4] += 1
-    return made.unflatten(0, (3, 3))
-
-
-@functools.lru_cache(maxsize=8)
-def _products(device: torch.device) -> tuple[Tensor, Tensor, Tensor]:
-    """Indices of 18 pairs of factors from a quaternion, and from it twice and minus twice; the same at every call."""
-    w, x, y, z = range(4)
-    pairs = (((y, -y), (x, y), (x, z)), ((x, y), (x, -x), (y, z)), ((x, z), (y, z), (x, -x)))
-    others = (((z, -z), (w, -z), (w, y)), ((w, z), (z, -z), (w, -x)), ((w, -y), (w, x), (y, -y)))
-    made = [pair for part in (pairs, others) for row in part for pair in row]
-    first = [a for a, _ in made]
-    second = [b if b > 0 else 4 - b for _, b in made]  # x, y, z are not 0, so the sign can stand for minus twice
-    return torch.tensor(first, device=device), torch.tensor(second, device=device), torch.tensor([2.0, -2.0], device=device)
+    parts = rotation.movedim(-1, 0).contiguous()
+    own = parts[1:]
+    w, x, y, z = (2 * parts).unbind()
+    (wx, wy, wz), (xx, xy, xz) = (w * own).unbind(), (x * own).unbind()
+    (_, yy, yz), zz = (y * own).unbind(), z * own[2]
+    entries = [1 - (yy + zz), xy - wz, xz + wy, xy + wz, 1 - (xx + zz), yz - wx, xz - wy, yz + wx, 1 - (xx + yy)]
+    return torch.stack(entries).unflatten(0, (3, 3))
 
 
 def to_body(axes: Tensor, vector: Tensor) -> Tensor:
@@ -67,7 +54,7 @@ def to_world(axes: Tensor, vector: Tensor) -> Tensor:
 
 def face_areas(extent: Tensor) -> Tensor:
     """Areas [m^2] of a box's faces across its axes, [3, ...], from its edges [m], [3, ...]."""
-    x, y, z = extent
+    x, y, z = extent.unbind()
     return torch.stack([y * z, x * z, x * y])
 
 
@@ -83,7 +70,7 @@ def drag(
         mass: [kg], [...]; zero where there is no body.
         dt: Length of the physics step [s].
         ball: Bodies, bool [...], that are dragged straight along the slip: the speed is that of the whole slip, not of one axis.
-        change: Of the slip by all other forces within the step [m/s], world frame, [3, ...]; where it is given, a body that falls
+        change: Of the slip by all other forces within the step [m/s], own axes, [3, ...]; where it is given, a body that falls
             through the fluid ends at its true terminal velocity, however long the step.
     """
     along = to_body(axes, slip)
@@ -93,7 +80,7 @@ def drag(
         speed = torch.where(ball, (x + y).add_(z).sqrt_(), speed)
     push = speed.mul_(pull)
     if change is not None:
-        along = along + to_body(axes, change)
+        along = along.add_(change)
     return to_world(axes, (push * along).div_((push * (dt / mass.clamp(min=_NOTHING))).add_(1)))
 
 
@@ -111,15 +98,26 @@ def spin_drag(
         dt: Length of the physics step [s].
         rate: Of linear damping besides [1/s], a number or [...].
     """
-    turn = to_body(axes, spin)
+    inertia, turning = turning_of(extent, mass)
+    return spin_drag_of(to_body(axes, spin), axes, inertia, turning, density, dt, rate)
+
+
+def turning_of(extent: Tensor, mass: Tensor) -> tuple[Tensor, Tensor]:
+    """Moments of inertia [kg m^2] of boxes, and their drag of turning over the fluid's density [m^5]; about their axes, [3, ...]."""
     squared = extent * extent
-    fourth = squared * squared
-    inertia = (mass / 12 * _of_others(squared)).clamp(min=_NOTHING)
-    slowing = density / 64 * extent * _of_others(fourth) * turn.abs() + rate * inertia
-    return to_world(axes, -slowing * turn / (1 + slowing * dt / inertia))
+    inertia = _of_others(squared).mul_(mass / 12).clamp_(min=_NOTHING)
+    return inertia, _of_others(squared * squared).mul_(extent).mul_(1 / 64)
+
+
+def spin_drag_of(
+    turn: Tensor, axes: Tensor, inertia: Tensor, turning: Tensor, density: Tensor | float, dt: float, rate: Tensor | float
+) -> Tensor:
+    """As `spin_drag`, from the angular velocity along the body's own axes [rad/s], [3, ...], and what `turning_of` gives."""
+    slowing = (turn.abs() * turning).mul_(density).div_(inertia).add_(rate)  # [1/s]
+    return to_world(axes, (turn * inertia).mul_(slowing).div_((slowing * -dt).sub_(1)))
 
 
 def _of_others(amount: Tensor) -> Tensor:
     """For each of three axes, the sum over the two others, [3, ...]."""
-    x, y, z = amount
+    x, y, z = amount.unbind()
     return torch.stack([y + z, x + z, x + y])

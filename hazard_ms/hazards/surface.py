@@ -104,10 +104,12 @@ def _gate_ways(gates: list[Gate], flow: Vec2, start: float, near: tuple[int, int
 
 def way(ways: Ways, x: Tensor, y: Tensor) -> tuple[Tensor, Tensor]:
     """How far water has come at `x`, `y` [m], [E, P]: [m], [E, P], NEVER where it cannot; and the flow's direction, [2, E, P]."""
-    toward_x, toward_y = ways.flow[:, :1].expand_as(x), ways.flow[:, 1:].expand_as(x)
-    far = ways.start[:, None] + toward_x * x + toward_y * y
+    toward = ways.flow.T[..., None]
+    toward_x, toward_y = toward.unbind()
+    far = (toward_x * x).add_(ways.start[:, None]).add_(toward_y * y)
     if ways.wall.shape[1] == 0:
-        return far, torch.stack([toward_x, toward_y])
+        return far, toward.expand(2, *x.shape)
+    toward_x, toward_y = toward_x.expand_as(x), toward_y.expand_as(x)
     part = torch.zeros_like(x, dtype=torch.int64)
     for k in range(ways.wall.shape[1]):
         axis, at = ways.wall[:, k, 0, None], ways.wall[:, k, 1, None]

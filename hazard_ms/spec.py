@@ -7,7 +7,7 @@ floor is z = 0, the room's south-west floor corner is the origin. Quaternions ar
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 Vec2 = tuple[float, float]
@@ -139,7 +139,6 @@ class Task:
     max_frames: int
     splits: tuple[str, ...] = ("train", "test")
     safe_place: str = "bag"  # bag: carried by the agent | cart: containers in the scene
-    extra: dict[str, Any] = field(default_factory=dict)
 
     @property
     def all_scenes(self) -> tuple[str, ...]:

@@ -69,6 +69,14 @@ def draws(scene: sapien.Scene) -> bool:
         return False
 
 
+def canvas(scenes: list[sapien.Scene], mode: str) -> tuple[sapien.Device | None, bool]:
+    """What draws `scenes`, None where nothing does, and whether effects of `mode` (full, fast, off) can be shown there."""
+    shader_pack.shader_config(mode)
+    if not all(draws(s) for s in scenes):
+        return None, False
+    return scenes[0].render_system.device, shader_pack.available(mode)
+
+
 def entities_of(scene: sapien.Scene, names: tuple[str, ...]) -> list[sapien.Entity]:
     """The entities of things: called by the thing's name, after whatever prefix the builder of the scene gives."""
     found = {e.name.rsplit("/", 1)[-1]: e for e in scene.entities}

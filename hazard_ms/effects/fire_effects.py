@@ -17,7 +17,7 @@ from torch import Tensor
 
 from hazard_ms.effects import meshes, shader_pack
 from hazard_ms.effects.charring import char_codes
-from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, draws, entities_of, make_effect, materials, seed
+from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, canvas, entities_of, make_effect, materials, seed
 from hazard_ms.effects.glsl import SMOKE_PERIOD
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.textures import noise_texture
@@ -123,11 +123,8 @@ class FireEffects:
 
         Without a renderer, or with a SAPIEN whose shaders are unknown, nothing is shown.
         """
-        shader_pack.shader_config(mode)
-        if not all(draws(s) for s in scenes):
-            return cls([], mode, None)
-        device = scenes[0].render_system.device
-        if not shader_pack.available(mode):
+        device, shown = canvas(scenes, mode)
+        if not shown:
             return cls([], mode, device)
         lattices = max(1, *(len(spec.fires) for spec in specs))
         patches = min(roster_length(LONGEST, lattices), MOST_PATCHES)

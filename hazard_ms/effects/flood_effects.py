@@ -16,7 +16,7 @@ from sapien.render import RenderMaterial, RenderShapeTriangleMesh
 from torch import Tensor
 
 from hazard_ms.effects import shader_pack
-from hazard_ms.effects.entities import FRAMES_PER_SECOND, draws, entities_of, make_effect, materials
+from hazard_ms.effects.entities import FRAMES_PER_SECOND, canvas, entities_of, make_effect, materials
 from hazard_ms.effects.glsl import WATER
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.textures import ripple_texture
@@ -80,11 +80,8 @@ class FloodEffects:
 
         Without a renderer, or with a SAPIEN whose shaders are unknown, nothing is shown.
         """
-        shader_pack.shader_config(mode)
-        if not all(draws(s) for s in scenes):
-            return cls([], mode, None)
-        device = scenes[0].render_system.device
-        if not shader_pack.available(mode):
+        device, shown = canvas(scenes, mode)
+        if not shown:
             return cls([], mode, device)
         rows = zip(scenes, specs, world.names, around, strict=True)
         return cls([_SceneFlood(*row) for row in rows], mode, device)

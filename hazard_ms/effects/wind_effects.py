@@ -15,7 +15,7 @@ from sapien.render import RenderMaterial, RenderShapeTriangleMesh
 from torch import Tensor
 
 from hazard_ms.effects import meshes, shader_pack
-from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, draws, make_effect
+from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, canvas, make_effect
 from hazard_ms.effects.glsl import LEAF, PAPER, STREAK
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.textures import noise_texture
@@ -69,11 +69,8 @@ class WindEffects:
 
         Without a renderer, or with a SAPIEN whose shaders are unknown, nothing is shown.
         """
-        shader_pack.shader_config(mode)
-        if not all(draws(s) for s in scenes):
-            return cls([], mode, None)
-        device = scenes[0].render_system.device
-        if not shader_pack.available(mode):
+        device, shown = canvas(scenes, mode)
+        if not shown:
             return cls([], mode, device)
         return cls([_SceneWind(scene, air, mode == "full") for scene, air in zip(scenes, around, strict=True)], mode, device)
 

@@ -13,10 +13,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
+from hazard_ms.scenes.schema import unique_keys, whole_number
+
 LARGEST_FILE = 8_000_000  # [bytes]; the largest published log has 200,000
 FARTHEST = 10_000.0  # any number's absolute value, in its unit; ids are larger
 LONGEST_TEXT = 200  # of a name [characters]
-LONGEST_NUMBER = 30  # of a whole number [characters]
 SPACE = re.compile(r"[ \t\r\n]*")
 
 
@@ -114,7 +115,7 @@ def read_commands(path: Path) -> Iterator[Record]:
 def _values(path: Path) -> Iterator[tuple[int, Any]]:
     """The JSON values of a file one after the other, each with the line on which it starts."""
     text = _text(path)
-    decoder = json.JSONDecoder(parse_constant=_not_finite, parse_int=_whole, parse_float=_finite, object_pairs_hook=_once)
+    decoder = json.JSONDecoder(parse_constant=_not_finite, parse_int=whole_number, parse_float=_finite, object_pairs_hook=unique_keys)
     at, line, counted = 0, 1, 0
     while (at := SPACE.match(text, at).end()) < len(text):  # type: ignore[union-attr]
         line, counted = line + text.count("\n", counted, at), at
@@ -153,17 +154,3 @@ def _finite(digits: str) -> float:
     if not math.isfinite(number):
         raise ValueError(f"{digits:.40} is no finite number")
     return number
-
-
-def _whole(digits: str) -> int:
-    if len(digits) > LONGEST_NUMBER:
-        raise ValueError(f"a whole number of {len(digits)} digits; at most {LONGEST_NUMBER} are allowed")
-    return int(digits)
-
-
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    made = dict(pairs)
-    if len(made) != len(pairs):
-        twice = next(k for k, _ in pairs if sum(k == other for other, _ in pairs) > 1)
-        raise ValueError(f"the key {twice!r:.100} stands twice in one object")
-    return made

@@ -40,7 +40,7 @@ def from_json(text: str | bytes) -> SceneSpec:
     if len(text) > LARGEST_FILE:
         raise ValueError(f"a scene of {len(text)} characters; at most {LARGEST_FILE} are allowed")
     try:
-        data = json.loads(text, parse_constant=_not_finite, parse_int=_whole, object_pairs_hook=_once)
+        data = json.loads(text, parse_constant=_not_finite, parse_int=whole_number, object_pairs_hook=unique_keys)
     except (RecursionError, UnicodeDecodeError, json.JSONDecodeError) as error:
         raise ValueError(f"a scene that is no JSON: {error}") from None
     if not isinstance(data, dict) or data.get("format") != FORMAT:
@@ -159,13 +159,14 @@ def _not_finite(word: str) -> NoReturn:
     raise ValueError(f"{word} is no number that a scene may hold")
 
 
-def _whole(digits: str) -> int:
+def whole_number(digits: str) -> int:
+    """A whole number as JSON has it; one that is absurdly long is refused."""
     if len(digits) > LONGEST_NUMBER:
         raise ValueError(f"a whole number of {len(digits)} digits; at most {LONGEST_NUMBER} are allowed")
     return int(digits)
 
 
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """An object; a key that stands in it twice is refused."""
     made = dict(pairs)
     if len(made) != len(pairs):

@@ -16,7 +16,6 @@ PASSED = 0.10  # a point of a path is passed within this distance [m]
 WATCH = 12  # frames over which progress is judged
 STUCK = 0.25  # share of the commanded way below which it counts as stuck
 BACK_OFF = 0.15  # how far it backs off from what it ran into [m]
-SETTLE = 3  # frames in which the base comes to rest
 
 
 def wrap(angle: float) -> float:
@@ -116,10 +115,3 @@ def drive(stage: Stage, points: NDArray[np.float64], frames: int) -> Skill:
             yield stage.act(forward, off)
             used += 1
     return Result(True, frames=used)
-
-
-def settle(stage: Stage, frames: int = SETTLE) -> Skill:
-    """Wait until the base rests."""
-    for _ in range(frames):
-        yield stage.act()
-    return Result(True, frames=frames)

@@ -8,10 +8,11 @@ from functools import partial
 
 import torch
 
-from hazard_ms.hazards import floating, presets
-from hazard_ms.hazards.buoyancy import immersion
-from hazard_ms.hazards.drag import axes_of, drag, face_areas, planes, spin_drag
-from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec
+from hazard_ms.hazards import presets
+from hazard_ms.hazards.presets import PRESETS
+from hazard_ms.kernels.buoyancy import BALL
+from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition, Room, SceneSpec
+from hazard_ms.validation import probes
 from hazard_ms.world import World
 
 ENVIRONMENTS, BODIES = 1024, 64
@@ -21,29 +22,44 @@ STEP = 0.01  # [s]
 Kernel = Callable[[], object]
 
 
-def flood_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
-    """Those of water, on bodies of all shapes in all attitudes near the surface."""
-    shape = (environments, bodies)
+def law_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
+    """Single laws, on bodies of all shapes in all attitudes near the surface."""
+    count = environments * bodies
     chance = torch.Generator().manual_seed(0)
 
     def random(*more: int) -> torch.Tensor:
-        return torch.rand(*shape, *more, generator=chance)
+        return torch.rand(count, *more, generator=chance)
 
     rotation = torch.nn.functional.normalize(random(4) - 0.5, dim=-1)
-    extent, velocity, spin = 0.1 + 0.2 * random(3), random(3) - 0.5, random(3) - 0.5
-    kind = (3 * random()).long()
-    things = dict(mass=0.1 + random(), volume=extent.prod(-1), shape=kind, drag_coefficient=torch.ones(shape))
-    body = floating.Bodies.of(velocity, spin, rotation, extent, **things)
-    height, slope = 0.2 * (random() - 0.5), 0.05 * planes(random(2))
-    flow, pull, water = planes(velocity), face_areas(body.extent), floating.Water()
-    wet = immersion(height, slope, body.axes, body.extent / 2, kind)
+    extent, velocity, mass = 0.1 + 0.2 * random(3), random(3) - 0.5, 0.1 + random()
+    kind, height, slope = (3 * random()).long(), 0.2 * (random() - 0.5), 0.05 * random(2)
     return {
-        "axes of quaternions": lambda: axes_of(rotation),
-        "flood: 3x3 columns": lambda: immersion(height, slope, body.axes, body.extent / 2, kind),
-        "flood, wind: drag per face": lambda: drag(flow, body.axes, pull, body.mass, STEP),
-        "flood, wind: drag of turning": lambda: spin_drag(flow, body.axes, body.extent, body.mass, 1000.0, STEP),
-        "flood: the whole push of water": lambda: floating.push(water, body, wet, flow, height, STEP),
+        "flood: 3x3 columns": lambda: probes.immersion(height, slope, rotation, extent, kind),
+        "flood, wind: drag per face": lambda: probes.drag(velocity, rotation, extent, mass, kind == BALL, STEP),
+        "flood, wind: drag of turning": lambda: probes.spin_drag(velocity, rotation, extent, mass, 1000.0, STEP),
     }
+
+
+def flood_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
+    """A whole step of each preset, and a frame, on bodies in all attitudes at the surface of a room of two parts."""
+    room = Room((8.0, 8.0), partitions=(Partition("wall", "x", 4.0),), openings=(Opening("doorway", "wall", 4.0, 1.0, 2.0),))
+    things = tuple(Body(f"box_{k}", "box", "", (0.1 * k, 1.0 + 0.1 * k, 0.0)) for k in range(bodies))
+    spec = SceneSpec("bench/room", room, (), things, ("box",), (), AgentStart((1.0, 1.0)))
+    world = World.of((spec,) * environments, [[(0.3, 0.2, 0.25)] * bodies] * environments, [[1.0] * bodies] * environments)
+    chance = torch.Generator().manual_seed(0)
+    world.rotation[:] = torch.nn.functional.normalize(torch.rand(world.rotation.shape, generator=chance) - 0.5, dim=-1)
+    world.velocity[:] = torch.rand(world.velocity.shape, generator=chance) - 0.5
+    world.chance.frame[:] = 600
+    made: dict[str, Kernel] = {}
+    for name in PRESETS:
+        hazard = presets.flood(name)
+        state = hazard.state_type.allocate({"E": environments, "B": bodies, **hazard.sizes(world)}, "cpu")
+        hazard.reset(state, world, torch.arange(environments))
+        state.time[:] = 20.0
+        hazard.advance(state, world, STEP)
+        made[f"flood: force, {name}"] = partial(hazard.force, state, world, STEP)
+        made[f"flood: a frame, {name}"] = partial(hazard.advance, state, world, STEP)
+    return made
 
 
 def wind_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
@@ -59,7 +75,7 @@ def wind_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
     world.rotation[:] = torch.nn.functional.normalize(torch.rand(world.rotation.shape, generator=chance) - 0.5, dim=-1)
     world.velocity[:] = torch.rand(world.velocity.shape, generator=chance) - 0.5
     made: dict[str, Kernel] = {}
-    for name in ("paper", "shipped", "realistic"):
+    for name in PRESETS:
         hazard = presets.wind(name)
         state = hazard.state_type.allocate({"E": environments, "B": len(extents), **hazard.sizes(world)}, "cpu")
         hazard.reset(state, world, torch.arange(environments))
@@ -70,7 +86,7 @@ def wind_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
     return made
 
 
-KERNELS: tuple[Callable[[int, int], dict[str, Kernel]], ...] = (flood_kernels, wind_kernels)
+KERNELS: tuple[Callable[[int, int], dict[str, Kernel]], ...] = (law_kernels, flood_kernels, wind_kernels)
 
 
 def milliseconds(kernel: Kernel, repeats: int = REPEATS) -> float:

@@ -15,6 +15,7 @@ from torch import Tensor
 
 from hazard_ms.catalogue import CATEGORIES
 from hazard_ms.chance import Chance
+from hazard_ms.launching import Launches
 from hazard_ms.spec import Body, SceneSpec
 
 
@@ -89,6 +90,7 @@ class World:
     agent_heading: Tensor
     handles: Handles | None = field(default=None, repr=False)
     fields: dict[str, Callable[[Tensor], Tensor]] = field(default_factory=dict, repr=False)
+    launches: Launches = field(default_factory=Launches, repr=False)  # of the kernels of its hazards
 
     @classmethod
     def of(

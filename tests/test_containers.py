@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from wind_worlds import Block, Thing, begin, run, street
 
 from hazard_ms.assets import Asset, index
-from hazard_ms.hazards.containers import BASKET_HIGH, BASKET_LOW, container_index, in_containers
+from hazard_ms.hazards.containers import container_index, in_containers
 from hazard_ms.hazards.presets import wind
+from hazard_ms.kernels.containers import BASKET_HIGH, BASKET_LOW
 from hazard_ms.world import World
 
 SIZE = (0.54, 0.94, 1.03)  # of a cart [m]

@@ -10,10 +10,10 @@ import pytest
 import torch
 from flood_worlds import GRAVITY, Tank, Thing
 
-from hazard_ms.hazards.buoyancy import BALL, CYLINDER
-from hazard_ms.hazards.floating import Water
 from hazard_ms.hazards.flood import Flood
 from hazard_ms.hazards.presets import flood
+from hazard_ms.hazards.water import Water
+from hazard_ms.kernels.buoyancy import BALL, CYLINDER
 
 PAPER = flood("paper")
 STILL = dataclasses.replace(PAPER, gain=0.0)

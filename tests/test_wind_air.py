@@ -81,9 +81,12 @@ W22_ROUGH = {0.1: (0.239, 0.349, 0.500, 0.651)}
 def test_w22_logarithmic_profile(roughness: float) -> None:
     heights = (0.1, 0.3, 0.5, 1.0, 2.0)[-len({**W22, **W22_ROUGH}[roughness]) :]
     want = {**W22, **W22_ROUGH}[roughness]
-    assert gusts.profile(torch.tensor(heights), roughness).tolist() == pytest.approx(want, abs=1e-3)
-    assert gusts.profile(torch.tensor([-1.0, 0.0, roughness, 10.0]), roughness).tolist() == pytest.approx([0.0, 0.0, 0.0, 1.0], abs=1e-6)
     law = dataclasses.replace(REAL, roughness=roughness, gust_intensity=0.0, sheltered=False)
+    world = street([Thing()], (5.0, 0.0))
+    points = torch.tensor([[[8.0, 8.0, z] for z in (*heights, -1.0, 0.0, roughness, 10.0)]])
+    shares = (law.image(begin(law, world), world, points)[0] / (5.0 * law.scale)).tolist()
+    assert shares[: len(heights)] == pytest.approx(want, abs=1e-3)
+    assert shares[len(heights) :] == pytest.approx([0.0, 0.0, 0.0, 1.0], abs=1e-6)
     world = street([Thing((0.2, 0.2, 2 * z), 1e9) for z in heights], (5.0, 0.0))
     force = push(law, world).force[0, :, 0]
     drag = 0.5 * 1.225 * 1.05 * torch.tensor([0.4 * z for z in heights]) * (5.0 * law.scale * torch.tensor(want)) ** 2

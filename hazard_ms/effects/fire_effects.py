@@ -1,4 +1,4 @@
-"""Flames, scorch marks, smoke, charring and the light of a fire, driven by the state of `hazard_ms.hazards.fire.Fire`.
+"""Flames, scorch marks, smoke, hot air, charring and the light of a fire, driven by the state of `hazard_ms.hazards.fire.Fire`.
 
 Everything is made when a scene is built. A picture then only moves effect entities and writes scalars of materials, both functions of
 the world, the fire and the frame alone: the same state gives the same pixels, whatever was shown before.
@@ -19,6 +19,7 @@ from hazard_ms.effects import meshes, shader_pack
 from hazard_ms.effects.charring import char_codes
 from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, canvas, entities_of, make_effect, materials, seed
 from hazard_ms.effects.glsl import SMOKE_PERIOD
+from hazard_ms.effects.shimmer import hot_air
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.textures import noise_texture
 from hazard_ms.hazards.base import State
@@ -30,7 +31,9 @@ from hazard_ms.world import World
 LONGEST = 1500  # frames of a fire, for which patches are made (benchmark.md 1)
 PATCH = 0.34  # edge of a burning patch of floor, more than its cell so that neighbours merge [m] [ours]
 MOST_PATCHES = 160  # flames on the floor that are shown at once; the oldest ones
-COLUMNS = 8  # of smoke
+COLUMNS = 8  # of smoke and of hot air
+BROAD = 0.7  # edge of a thing above which the air is as hot as it gets [m] [ours]
+FLOOR_HEAT = 0.7  # of the air above a burning patch, whose neighbours burn as well, as a share of that [ours]
 UNDER_CEILING = 0.15  # where smoke has faded, below the ceiling [m] [ours]
 SMOKE_STRENGTH = 0.30  # opacity of a puff [ours]
 GLOW_COLOUR = np.array([1.0, 0.42, 0.10])  # linear RGB of firelight, about 1900 K
@@ -53,6 +56,7 @@ class _SceneFire:
         smoke = [self._effect(partial(meshes.smoke_column, ceiling, seed(k)), k) for k in range(COLUMNS if rich else 0)]
         self.patches = [e for e in patch if e is not None]
         self.columns = [e for e in smoke if e is not None]
+        self.air = [hot_air(scene, self.noise, k) for k in range(COLUMNS if rich else 0)]
         self.light = _lamp(scene) if rich else None
 
     def _effect(self, make: Callable[[RenderMaterial], RenderShapeTriangleMesh | None], number: int) -> Effect | None:
@@ -76,17 +80,19 @@ class _SceneFire:
             else:
                 effect.hide()
 
-    def show_smoke(self, place: np.ndarray, strength: np.ndarray, time: float) -> None:
-        """Smoke above the first places that burn. `place` [m], [N, 3]; `strength` 0..1, [N]."""
+    def show_smoke(self, place: np.ndarray, strength: np.ndarray, heat: np.ndarray, time: float) -> None:
+        """Smoke and hot air above some of the places that burn. `place` [m], [N, 3]; `strength` and `heat` of the air 0..1, [N]."""
         burning = np.flatnonzero(strength > 0.0)
         chosen = burning[np.linspace(0, len(burning) - 1, min(len(burning), len(self.columns))).astype(int)] if len(burning) else burning
-        for k, effect in enumerate(self.columns):
+        for k, (smoke, air) in enumerate(zip(self.columns, self.air, strict=True)):
             if k >= len(chosen):
-                effect.hide()
+                smoke.hide()
+                air.hide()
                 continue
-            half = math.pi * ((time / SMOKE_PERIOD + effect.seed) % 1.0)
+            half = math.pi * ((time / SMOKE_PERIOD + smoke.seed) % 1.0)
             turn = [math.cos(half), 0.0, 0.0, math.sin(half)]
-            effect.show(sapien.Pose(place[chosen[k]], turn), SMOKE_STRENGTH * float(strength[chosen[k]]), time)
+            smoke.show(sapien.Pose(place[chosen[k]], turn), SMOKE_STRENGTH * float(strength[chosen[k]]), time)
+            air.show(sapien.Pose(place[chosen[k]]), float(heat[chosen[k]]), time)
 
     def show_light(self, place: np.ndarray, strength: np.ndarray, time: float) -> None:
         """One flickering light in the middle of all that burns."""
@@ -119,7 +125,7 @@ class FireEffects:
     def build(
         cls, scenes: list[sapien.Scene], specs: tuple[SceneSpec, ...], world: World, mode: str = "full", around: Sequence[Surroundings] = ()
     ) -> FireEffects:
-        """Effects of `mode` (full; fast: without smoke and firelight; off) for `scenes` in which the things of `specs` stand.
+        """Effects of `mode` (full; fast: without smoke, hot air and firelight; off) for `scenes` in which the things of `specs` stand.
 
         Without a renderer, or with a SAPIEN whose shaders are unknown, nothing is shown.
         """
@@ -142,6 +148,8 @@ class FireEffects:
         on_things = (body_flames(fire) * (world.exists & ~world.away) / SCALE_LAST).cpu().numpy()
         place, scale = (t.cpu().numpy() for t in floor_flames(fire, frame))
         on_floor = scale / SCALE_LAST
+        broad = np.sqrt(world.extent[..., :2].prod(-1).cpu().numpy()) / BROAD
+        heat = np.concatenate([on_things * np.minimum(broad, 1.0), on_floor * FLOOR_HEAT], -1)
         times = frame.cpu().numpy() / FRAMES_PER_SECOND
         codes = char_codes(fire, times)
         for e, scene in enumerate(self._scenes):
@@ -150,7 +158,7 @@ class FireEffects:
             scene.show_things(np.concatenate([base[e], rotation[e]], -1), on_things[e], time)
             scene.show_floor(place[e], on_floor[e], time)
             sources, strength = np.concatenate([centre[e], place[e]]), np.concatenate([on_things[e], on_floor[e]])
-            scene.show_smoke(sources, strength, time)
+            scene.show_smoke(sources, strength, heat[e], time)
             scene.show_light(sources, strength, time)
         self._fill(fire)
 

@@ -148,6 +148,6 @@ def _ways(spec: SceneSpec) -> surface.Ways:
 def _way(ways: surface.Ways, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """How far water has come [m], and where it flows to [rad from +x], at `place` [m], [..., 2]: [...] each."""
     flat = torch.from_numpy(place.reshape(1, -1, 2)).float()
-    far, toward = surface.way(ways, flat[..., 0], flat[..., 1])
-    turn = torch.atan2(toward[1], toward[0])
+    far, toward = surface.ways_to(ways, torch.nn.functional.pad(flat, (0, 1)))
+    turn = torch.atan2(toward[..., 1], toward[..., 0])
     return far.numpy().reshape(place.shape[:-1]), turn.numpy().reshape(place.shape[:-1])

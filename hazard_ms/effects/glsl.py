@@ -29,7 +29,7 @@ _SETS = """
 #undef SET_NUM
 """
 
-EFFECT_VERT = (
+QUAD_VERT = (  # what each vertex shader for quads begins with
     "#version 450\n"
     + _SETS
     + """
@@ -38,6 +38,21 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
 layout(location = 3) in vec3 tangent;
 layout(location = 4) in vec3 bitangent;
+"""
+)
+
+FRAG_SETS = """#version 450
+#define SET_NUM 0
+#include "./camera_set.glsl"
+#undef SET_NUM
+#define SET_NUM 2
+#include "./material_set.glsl"
+#undef SET_NUM
+"""
+
+EFFECT_VERT = (
+    QUAD_VERT
+    + """
 layout(location = 0) out vec2 outCorner;
 layout(location = 1) out vec4 outLife;  // kind; seed; age 0..1, light 0..1 or way [m]; visible near the camera 0..1
 layout(location = 2) out vec3 outPlace;  // world frame [m]
@@ -156,13 +171,8 @@ vec4 shown(vec2 corner, vec4 life, vec3 place, float time, float strength, vec3 
 """
 
 EFFECT_FRAG = (
-    """#version 450
-#define SET_NUM 0
-#include "./camera_set.glsl"
-#undef SET_NUM
-#define SET_NUM 2
-#include "./material_set.glsl"
-#undef SET_NUM
+    FRAG_SETS
+    + """
 layout(location = 0) in vec2 corner;
 layout(location = 1) in vec4 life;
 layout(location = 2) in vec3 place;

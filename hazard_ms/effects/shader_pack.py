@@ -1,9 +1,9 @@
 """Shader packs with our effects, derived at run time from those of the installed SAPIEN: we ship no text of others.
 
 A pack is a folder of GLSL. Ours is SAPIEN's own, with charring, water and haze added to its opaque pass and a third pass that draws
-flames, smoke, the water's surface and what flies into the picture alone. It is kept in the user's cache under a hash of all that it is
-made of, so another SAPIEN makes another pack. If the installed files are not as expected, pictures are SAPIEN's own, without effects,
-and labels stay right.
+flames, smoke, the water's surface and what flies into the picture alone; the full one has a fourth for hot air, and bends what is seen
+through it when it puts the picture together. It is kept in the user's cache under a hash of all that it is made of, so another SAPIEN
+makes another pack. If the installed files are not as expected, pictures are SAPIEN's own, without effects, and labels stay right.
 """
 
 from __future__ import annotations
@@ -24,11 +24,13 @@ from mani_skill.render import PREBUILT_SHADER_CONFIGS, ShaderConfig
 from torch import Tensor
 
 from hazard_ms.effects.glsl import CHAR, CHAR_DEFERRED, CHAR_FORWARD, EFFECT_FRAG, EFFECT_VERT
+from hazard_ms.effects.shimmer_glsl import AIR_FRAG, AIR_VERT, BEND
 from hazard_ms.effects.water_glsl import IMMERSE, IMMERSE_DEFERRED, IMMERSE_FORWARD
 from hazard_ms.rendering import home
 
 NAMES = {"full": "hazard", "fast": "hazard-fast", "off": "default"}  # effects mode -> shader pack of the cameras
 EFFECT_PASS = 2  # shading mode of effect geometry: no stock pack has this pass, so none draws it
+AIR_PASS = 3  # that of hot air, in the full pack alone
 SETS = ("camera_set.glsl", "object_set.glsl", "material_set.glsl")
 LABELS = "PositionLabel"  # the fast pack's own name: ManiSkill changes the pixel format of "PositionSegmentation" for the whole process
 
@@ -125,7 +127,19 @@ def _full(files: dict[str, str]) -> dict[str, str]:
     if not end.search(opaque):
         raise UnknownSapienError("gbuffer.frag does not end with its main function")
     files["gbuffer.frag"] = end.sub(lambda _: CHAR_DEFERRED + IMMERSE_DEFERRED + "}\n", opaque)
-    return files | {"gbuffer2.vert": EFFECT_VERT, "gbuffer2.frag": EFFECT_FRAG}
+    files |= {"gbuffer2.vert": EFFECT_VERT, "gbuffer2.frag": EFFECT_FRAG, "gbuffer3.vert": AIR_VERT, "gbuffer3.frag": AIR_FRAG}
+    return files | {"composite0.frag": _bent(files)}
+
+
+def _bent(files: dict[str, str]) -> str:
+    """The full pack's last pass, which looks up the lit picture through hot air."""
+    name, straight = "composite0.frag", "texture(samplerLighting, inUV)"
+    _insert(files, name, straight, "")
+    text = files[name].replace(straight, "hazardBent(inUV)")
+    free = 1 + max(map(int, re.findall(r"set = 0, binding = (\d+)", text)), default=0)
+    air = "".join(f"layout(set = 0, binding = {free + k}) uniform sampler2D sampler{n};\n" for k, n in enumerate(("Bend", "Air")))
+    _known_words(text, "samplerPositionRaw", name=name)
+    return _insert({name: text}, name, "void main() {", air + BEND)
 
 
 def _fast(files: dict[str, str]) -> dict[str, str]:
@@ -165,10 +179,10 @@ def _known(files: dict[str, str], *names: str) -> None:
         raise UnknownSapienError(f"there is no {', '.join(missing)}")
 
 
-def _known_words(text: str, *words: str) -> None:
+def _known_words(text: str, *words: str, name: str = "gbuffer.frag") -> None:
     missing = [w for w in words if w not in text]
     if missing:
-        raise UnknownSapienError(f"gbuffer.frag does not mention {', '.join(missing)}")
+        raise UnknownSapienError(f"{name} does not mention {', '.join(missing)}")
 
 
 def _insert(files: dict[str, str], name: str, before: str, text: str) -> str:

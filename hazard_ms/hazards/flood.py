@@ -3,8 +3,8 @@
     level(p) = H(t) - tan(slope) way(p),   way: from the source wall to p, through doorways (hazard_ms.hazards.surface)
 
 H rises by 0.01 m every 10 frames, in `realistic` as fast by the second, to 1.5 m; from then on the slope lessens as the wetted
-length grows, so no level ever falls. The current runs away from the source along the way. Lift and drag: hazard_ms.hazards.floating;
-those of the original's code: hazard_ms.hazards.slab. Constants: physics.md 1.2 [C]; what the presets change: physics.md 1.5.
+length grows, so no level ever falls. The current runs away from the source along the way. Lift and drag: hazard_ms.kernels.floating;
+those of the original's code: hazard_ms.kernels.slab. Constants: physics.md 1.2 [C]; what the presets change: physics.md 1.5.
 
 `gain` is the one number tuned for difficulty. The original's frame lasts 0.01 s, ours 1/30 s: of its current, 0.3 carries things as
 far per frame as it did there, while the agent walks as far per frame as there. Measured in kitchen_a/00, mean way of its 60 bodies
@@ -22,11 +22,12 @@ import torch
 from torch import Tensor
 
 from hazard_ms.catalogue import CATEGORIES
-from hazard_ms.hazards import floating, slab, surface, wading
+from hazard_ms.hazards import surface, wading
 from hazard_ms.hazards.base import Hazard, Push, State, nobody, quantity
-from hazard_ms.hazards.buoyancy import FILLS, immersion
-from hazard_ms.hazards.drag import axes_of, planes, rows, turning_of
 from hazard_ms.hazards.materials import ELECTRONIC, SHAPES, SOAKING, porosity
+from hazard_ms.hazards.water import Water
+from hazard_ms.kernels import flood as kernels
+from hazard_ms.kernels.buoyancy import FILLS
 from hazard_ms.world import World
 
 ROUNDING = 1e-4  # of sums of the lengths of frames [s]
@@ -45,8 +46,6 @@ class FloodState(State):
     volume: Tensor = quantity("E B", "m^3", "of water that a dry, wholly immersed thing displaces")
     shape: Tensor = quantity("E B", "", "what stands for it in water: 0 box, 1 upright cylinder, 2 ellipsoid", dtype="int")
     drag_coefficient: Tensor = quantity("E B", "", "of its drag")
-    inertia: Tensor = quantity("E 3 B", "kg m^2", "moments of inertia about its axes", fill=1.0)
-    turning: Tensor = quantity("E 3 B", "m^5", "drag of turning about its axes over density and speed squared")
     pores: Tensor = quantity("E B", "", "share of its volume that water takes in the end")
     soaking_time: Tensor = quantity("E B", "s", "until 1 / e of its pores are left dry", fill=1.0)
     endures: Tensor = quantity("E B", "s", "how long it may be under water; infinite for what is waterproof", fill=torch.inf)
@@ -79,7 +78,7 @@ class Flood(Hazard):
     slope: float = 3.0  # of the surface [degrees] [C utils.py:25]
     current: float = 0.9540568  # speed of the water [m/s]: 50 times the front's metres per frame [C object.py:284]
     gain: float = 0.3  # of the current: 30 frames a second in place of 100 [ours]
-    water: floating.Water = floating.Water()
+    water: Water = Water()
     drag_coefficient: float = 0.47  # of everything; 0: the category's own [C object.py:90] [physics.md R6]
     slabs: bool = False  # the original's lift and drag [physics.md R5, R6]
     spares_waterproof: bool = True  # what is waterproof is not damaged [physics.md R8]
@@ -127,8 +126,6 @@ class Flood(Hazard):
         state.volume[rows] = torch.minimum(world.mass / density, box)[rows]  # cavities are not in the density: see catalogue
         own = world.lookup("drag_coefficient")
         state.drag_coefficient[rows] = (torch.full_like(own, self.drag_coefficient) if self.drag_coefficient else own)[rows]
-        inertia, turning = turning_of(planes(world.extent), world.mass)
-        state.inertia[rows], state.turning[rows] = inertia.movedim(0, 1)[rows], turning.movedim(0, 1)[rows]
         if self.soaks:
             state.pores[rows] = _by_category(world, {name: porosity(name) for name in SOAKING}, 0.0)[rows]
             state.soaking_time[rows] = _by_category(world, {name: s.time for name, s in SOAKING.items()}, 1.0)[rows]
@@ -136,16 +133,30 @@ class Flood(Hazard):
         spared = world.lookup("waterproof") > 0 if self.spares_waterproof else torch.zeros_like(world.exists)
         state.endures[rows] = torch.where(spared, torch.inf, endures)[rows]
 
-    @torch.inference_mode()
+    @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
     def advance(self, state: FloodState, world: World, dt: float) -> None:
         state.time.add_(dt)
         self._rise(state, world)
-        fraction = self._fraction(state, world)
-        state.fraction.copy_(fraction)
-        enough = (fraction >= self.damage_fraction) & (fraction > 0)
-        state.under.copy_(torch.where(enough, state.under + dt, 0.0))
-        if self.soaks:
-            state.soaked.add_((1 - state.soaked) * (1 - torch.exp(-dt * fraction / state.soaking_time)))
+        world.launches.run(
+            kernels.immerse,
+            tuple(world.exists.shape),
+            dt,
+            self.slabs,
+            self.damage_fraction,
+            state.level,
+            state.fall,
+            *state.ways,
+            world.exists,
+            world.position,
+            world.rotation,
+            world.extent,
+            state.shape,
+            state.pores,
+            state.soaking_time,
+            state.fraction,
+            state.under,
+            state.soaked,
+        )
 
     def _rise(self, state: FloodState, world: World) -> None:
         """The level at the source and the descent of the surface, by the frame or by the second."""
@@ -157,79 +168,55 @@ class Flood(Hazard):
         length = self.cap / steep + self.rise / steep * beyond
         state.fall.copy_(torch.where(beyond > 0, self.cap / length, steep))
 
-    def _surface(self, state: FloodState, x: Tensor, y: Tensor) -> tuple[Tensor, Tensor]:
-        """Level of the water at `x`, `y` [m], [E, P], below the floor where it is dry; and its direction there, [2, E, P]."""
-        far, toward = surface.way(state.ways, x, y)
+    def _surface(self, state: FloodState, world: World, points: Tensor) -> tuple[Tensor, Tensor]:
+        """Level of the water at `points` [m], [E, P, 3]: [E, P], below the floor where it is dry; and its direction there, [E, P, 2]."""
+        far, toward = surface.ways_to(state.ways, points, world.launches)
         return state.level[:, None] - state.fall[:, None] * far, toward
 
-    def _fraction(self, state: FloodState, world: World) -> Tensor:
-        """Share of every thing that is under water, [E, B]."""
-        if nobody(state.level > 0):
-            return torch.zeros_like(world.mass)
-        axes, extent = axes_of(world.rotation), planes(world.extent)
-        if self.slabs:
-            base = world.base_of(world.position, world.rotation, world.extent)
-            level, _ = self._surface(state, base[..., 0], base[..., 1])
-            share = slab.immersed_share(level, base[..., 2], slab.slab(axes, extent)[2])
-        else:
-            level, toward = self._surface(state, world.position[..., 0], world.position[..., 1])
-            share = immersion(level - world.position[..., 2], -state.fall[:, None] * toward, axes, extent / 2, state.shape).fraction
-        return torch.where(world.exists, share, 0.0)
-
-    @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
+    @torch.inference_mode()
     def force(self, state: FloodState, world: World, dt: float) -> Push | None:
         if nobody(state.level > 0):
             return None
-        m = max(len(spec.bodies) for spec in world.specs)  # fixtures, which come after the bodies, do not move
-        place = planes(world.position[:, :m])
-        level, toward = self._surface(state, place[0], place[1])
-        flow = torch.cat([self.speed * toward, torch.zeros_like(level)[None]])
-        made = self._slabs(state, world, m, flow, dt) if self.slabs else self._float(state, world, m, level, toward, flow, dt)
-
-        def padded(part: Tensor) -> Tensor:
-            return torch.nn.functional.pad(part, (0, 0, 0, world.num_bodies - m))
-
-        return Push(padded(made.force), None if made.torque is None else padded(made.torque))
-
-    def _float(self, state: FloodState, world: World, m: int, level: Tensor, toward: Tensor, flow: Tensor, dt: float) -> Push:
-        """Lift and drag of the first `m` bodies."""
-        bodies = floating.Bodies.of(
-            world.velocity[:, :m],
-            world.angular_velocity[:, :m],
-            world.rotation[:, :m],
-            world.extent[:, :m],
-            mass=world.mass[:, :m],
-            volume=(state.volume * (1 - state.pores * state.soaked) if self.soaks else state.volume)[:, :m],
-            shape=state.shape[:, :m],
-            drag_coefficient=state.drag_coefficient[:, :m],
-            fixed=floating.Fixed(*(values[..., :m].movedim(1, 0) for values in (state.inertia, state.turning))),
+        made = world.launches.results(kernels.push, world.position, world.position)
+        world.launches.run(
+            kernels.push,
+            tuple(world.exists.shape),
+            dt,
+            self.slabs,
+            *self.water.numbers,
+            self.speed,
+            state.level,
+            state.fall,
+            *state.ways,
+            world.exists,
+            world.movable,
+            world.position,
+            world.rotation,
+            world.velocity,
+            world.angular_velocity,
+            world.extent,
+            world.mass,
+            state.shape,
+            state.volume,
+            state.pores,
+            state.soaked,
+            state.drag_coefficient,
+            *made,
         )
-        height = level - world.position[:, :m, 2]
-        wet = immersion(height, -state.fall[:, None] * toward, bodies.axes, bodies.extent / 2, bodies.shape)
-        return floating.push(self.water, bodies, wet, flow, height, dt)
-
-    def _slabs(self, state: FloodState, world: World, m: int, flow: Tensor, dt: float) -> Push:
-        """The original's lift and drag of the first `m` bodies."""
-        position, rotation, extent = world.position[:, :m], world.rotation[:, :m], world.extent[:, :m]
-        box = slab.slab(axes_of(rotation), planes(extent))
-        base = world.base_of(position, rotation, extent)
-        level, toward = self._surface(state, base[..., 0], base[..., 1])
-        share = slab.immersed_share(level, base[..., 2], box[2])
-        slip = flow - planes(world.velocity[:, :m])
-        return Push(rows(slab.push(share, box, slip, toward, world.mass[:, :m], self.water.gravity, dt)))
+        return Push(*(part.clone() for part in made))
 
     def damaged(self, state: FloodState, world: World) -> Tensor:
         return (state.under > 0) & (state.under >= state.endures - ROUNDING) & world.exists & ~world.held
 
     def image(self, state: FloodState, world: World, points: Tensor) -> Tensor:
-        return self._surface(state, points[..., 0], points[..., 1])[0].clamp(min=0)
+        return self._surface(state, world, points)[0].clamp(min=0)
 
     def at_agent(self, state: FloodState, world: World) -> tuple[Tensor, Tensor, Tensor]:
         """Where the agent stands: depth [m], [E], velocity of the water [m/s], [E, 2], and the share of its own motion it keeps, [E]."""
         place = world.agent_position[:, None]
-        level, toward = self._surface(state, place[..., 0], place[..., 1])
+        level, toward = self._surface(state, world, place)
         depth = (level - place[..., 2]).clamp(min=0)
-        flow = torch.where(depth > 0, self.speed * toward[..., 0].T, 0.0)
+        flow = torch.where(depth > 0, self.speed * toward[:, 0], 0.0)
         grip = wading.grip(depth, self.speed, self.wader, self.water.density, self.water.gravity)
         return depth[:, 0], flow, grip[:, 0].clamp(min=self.least_grip)
 

@@ -11,13 +11,9 @@ from __future__ import annotations
 
 import math
 
-import torch
 from torch import Tensor
 
-from hazard_ms.chance import Chance
-
 ORIGINAL_FRAME = 0.01  # for which the strengths of turbulence are given [s] [physics.md 0.1]
-REFERENCE = 10.0  # height at which meteorologists measure wind [m]
 
 
 def gust(now: Tensor, dt: float, time: float, normal: Tensor) -> Tensor:
@@ -26,18 +22,6 @@ def gust(now: Tensor, dt: float, time: float, normal: Tensor) -> Tensor:
     return kept * now + math.sqrt(1.0 - kept**2) * normal
 
 
-def profile(height: Tensor, roughness: float) -> Tensor:
-    """Share of the wind at 10 m that blows at `height` [m] over ground of `roughness` [m]."""
-    return torch.log(height.clamp(min=roughness) / roughness) / math.log(REFERENCE / roughness)
-
-
 def per_frame(dt: float) -> float:
     """By how much a random force that is held for `dt` seconds must differ from one held for the original's frame."""
     return math.sqrt(ORIGINAL_FRAME / dt)
-
-
-def normal_pairs(chance: Chance, stream: str, *shape: int) -> tuple[Tensor, Tensor]:
-    """Two independent sets of standard normal numbers, each [E, *shape]: both halves of Box and Muller's transform."""
-    first, second = chance.uniform(stream, *shape, 2).unbind(-1)
-    length = torch.sqrt(-2.0 * torch.log(first))
-    return length * torch.cos(2.0 * math.pi * second), length * torch.sin(2.0 * math.pi * second)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from hazard_ms.catalogue import CATEGORIES
-from hazard_ms.hazards.buoyancy import BALL, BOX, CYLINDER
+from hazard_ms.kernels.buoyancy import BALL, BOX, CYLINDER
 
 _BALLS = ("apple", "orange", "pepper")
 _CYLINDERS = ("bottle", "soda_can", "candle", "coffee_grinder", "vase", "mug", "wine_glass", "trophy", "burger", "bottle_cork")  # upright

@@ -12,8 +12,8 @@ from collections.abc import Callable
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.hazards.blaze import Blaze
 from hazard_ms.hazards.fire import Fire
-from hazard_ms.hazards.floating import Water
 from hazard_ms.hazards.flood import Flood
+from hazard_ms.hazards.water import Water
 from hazard_ms.hazards.wind import Wind
 
 FREQUENCIES = {  # frames and physics steps per second: a frame is one env step

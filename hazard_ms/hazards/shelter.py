@@ -15,12 +15,11 @@ from torch import Tensor
 
 from hazard_ms.catalogue import CATEGORIES
 from hazard_ms.hazards.floor import half_spans
+from hazard_ms.kernels.air import CELL, LOWEST
 from hazard_ms.world import World
 
-CELL = 0.5  # edge [m] [ours]
 LEE = 10.0  # length of the lee in heights of the obstacle [ours]
 DEEPEST = 0.75  # share of the wind that a solid obstacle takes [ours]
-LOWEST = 0.5  # lower fixtures shelter nothing [m] [ours]
 SOLIDITY = {"cart": 0.0, "street_lamp": 0.0, "tree": 0.5, "hedge": 0.8, "fence": 0.8}  # 1 for all others [ours]
 _BLOCK = 2**20  # cells marched at a time
 
@@ -90,14 +89,3 @@ def _lee(height: Tensor, solidity: Tensor, heading: Tensor) -> tuple[Tensor, Ten
         cause = torch.where(new > loss, high, cause)
         loss = torch.maximum(loss, new)
     return loss, cause
-
-
-def share(loss: Tensor, cause: Tensor, corner: Tensor, points: Tensor) -> Tensor:
-    """Share of the wind that is left at `points` [m], [E, P, 3]: [E, P]. Maps as `lee` made them; `corner` as `south_west`."""
-    e = torch.arange(len(points), device=points.device)[:, None]
-    cell = ((points[..., :2] - corner[:, None]) / CELL).floor().long()
-    x, y = cell[..., 0], cell[..., 1]
-    there = (x >= 0) & (x < loss.shape[2]) & (y >= 0) & (y < loss.shape[1])
-    index = e, y.clamp(0, loss.shape[1] - 1), x.clamp(0, loss.shape[2] - 1)
-    below = (2.0 - 2.0 * points[..., 2] / cause[index].clamp(min=LOWEST)).clamp(0.0, 1.0)
-    return 1.0 - torch.where(there, loss[index], 0.0) * below

@@ -11,12 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import torch
 from torch import Tensor
 
+from hazard_ms.kernels import reach
+from hazard_ms.kernels.reach import NEVER
+from hazard_ms.launching import Launches
 from hazard_ms.spec import Room, SceneSpec, Vec2
 
-NEVER = 1e6  # way to where water cannot get [m]
 SIDES: dict[str, Vec2] = {"south": (0.0, 1.0), "east": (-1.0, 0.0), "north": (0.0, -1.0), "west": (1.0, 0.0)}  # which way it flows in
 
 
@@ -102,28 +103,9 @@ def _gate_ways(gates: list[Gate], flow: Vec2, start: float, near: tuple[int, int
     return ways
 
 
-def way(ways: Ways, x: Tensor, y: Tensor) -> tuple[Tensor, Tensor]:
-    """How far water has come at `x`, `y` [m], [E, P]: [m], [E, P], NEVER where it cannot; and the flow's direction, [2, E, P]."""
-    toward = ways.flow.T[..., None]
-    toward_x, toward_y = toward.unbind()
-    far = (toward_x * x).add_(ways.start[:, None]).add_(toward_y * y)
-    if ways.wall.shape[1] == 0:
-        return far, toward.expand(2, *x.shape)
-    toward_x, toward_y = toward_x.expand_as(x), toward_y.expand_as(x)
-    part = torch.zeros_like(x, dtype=torch.int64)
-    for k in range(ways.wall.shape[1]):
-        axis, at = ways.wall[:, k, 0, None], ways.wall[:, k, 1, None]
-        part |= (torch.where(axis > 0, y, x) > at).long() << k
-    far = torch.where((part & ways.near[:, :1]) == ways.near[:, 1:], far, NEVER)
-    for k in range(ways.gate.shape[1]):
-        beside = ((part ^ ways.gate_part[:, k, :1]) & ~ways.gate_part[:, k, 1:]) == 0
-        low_x, low_y, high_x, high_y = ways.gate[:, k].unsqueeze(-1).unbind(1)
-        dx, dy = x - torch.minimum(torch.maximum(x, low_x), high_x), y - torch.minimum(torch.maximum(y, low_y), high_y)
-        apart = (dx * dx + dy * dy).sqrt()
-        through = ways.gate_way[:, k, None] + apart
-        shorter = beside & (through < far)
-        far = torch.where(shorter, through, far)
-        turned = shorter & (apart > 0)
-        toward_x = torch.where(turned, dx / apart.clamp(min=1e-6), toward_x)
-        toward_y = torch.where(turned, dy / apart.clamp(min=1e-6), toward_y)
-    return far, torch.stack([toward_x, toward_y])
+def ways_to(ways: Ways, place: Tensor, launches: Launches | None = None) -> tuple[Tensor, Tensor]:
+    """How far water has come at `place` [m], [E, P, 3]: [m], [E, P], NEVER where it cannot; and the flow's direction, [E, P, 2]."""
+    place = place.contiguous()
+    way, toward = place.new_empty(place.shape[:2]), place.new_empty(*place.shape[:2], 2)
+    (launches or Launches()).run(reach.ways_to, tuple(way.shape), *ways, place, way, toward)
+    return way, toward

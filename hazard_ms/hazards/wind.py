@@ -3,7 +3,7 @@
     F = F1 + r x F1,   F1 = gain rho A |s| s,   s = felt wind - velocity along the wind,   torque = F1 x r' h / 2
 
 The felt wind is the scene's wind / (1 + resistance); r and r' are drawn anew in every frame (none in the first), h is the height of
-the thing's box. The step is exact for a free body (hazard_ms.hazards.air), so no thing outruns the wind. What lies in a cart has
+the thing's box. The step is exact for a free body (hazard_ms.kernels.air), so no thing outruns the wind. What lies in a cart has
 settled: it feels nothing, for ever. Constants: physics.md 1.3; what the presets change: physics.md 1.5, R9 to R13.
 
 `realistic` is the same with c = Cd / 2 for the gain, the whole relative velocity, gusts, the logarithmic profile, sheltered lees, and for
@@ -21,13 +21,16 @@ import torch
 from torch import Tensor
 
 from hazard_ms.catalogue import IMMOVABLE
-from hazard_ms.hazards import air, drag, gusts, shelter
+from hazard_ms.hazards import gusts, shelter
 from hazard_ms.hazards.base import Hazard, Push, State, quantity
 from hazard_ms.hazards.containers import container_index, in_containers
+from hazard_ms.kernels import wind as kernels
+from hazard_ms.kernels.air import REFERENCE
+from hazard_ms.kernels.draws import word
+from hazard_ms.launching import Argument
 from hazard_ms.world import World
 
 SLOWEST, FASTEST = 2.5, 5.0  # of a wind that the scene leaves open [m/s] [the original's shipped scenes, physics.md 1.3]
-CALM = 1e-3  # slower air does nothing [m/s] [C object.py:41]
 CHEST = 1.0  # height at which the wind acts on the agent [m] [ours]
 
 
@@ -40,8 +43,8 @@ class WindState(State):
     gust: Tensor = quantity("E", "", "excess over the mean wind in standard deviations")
     felt: Tensor = quantity("E B", "", "share of the wind that a thing feels")
     strength: Tensor = quantity("E B", "", "force over density, area and speed squared")
-    sway: Tensor = quantity("E 3 B", "", "sideways force over the force along the wind")
-    twist: Tensor = quantity("E 3 B", "m", "torque over the force along the wind")
+    sway: Tensor = quantity("E B 3", "", "sideways force over the force along the wind")
+    twist: Tensor = quantity("E B 3", "m", "torque over the force along the wind")
     carts: Tensor = quantity("E C", "", "index of a cart, -1 for none", dtype="int", fill=-1)
     settled: Tensor = quantity("E B", "", "lies in a cart: the wind does not touch it any more", dtype="bool")
     corner: Tensor = quantity("E 2", "m", "south-west corner of the shelter map")
@@ -85,8 +88,8 @@ class Wind(Hazard):
             if not 0 < getattr(self, name) < math.inf:
                 raise ValueError(f"{name} is {getattr(self, name)}; a positive number is allowed")
         for name in ("turbulence", "torque", "roughness", "gust_intensity"):
-            if not 0 <= getattr(self, name) < gusts.REFERENCE:
-                raise ValueError(f"{name} is {getattr(self, name)}; 0 or more, below {gusts.REFERENCE}, is allowed")
+            if not 0 <= getattr(self, name) < REFERENCE:
+                raise ValueError(f"{name} is {getattr(self, name)}; 0 or more, below {REFERENCE}, is allowed")
 
     def sizes(self, world: World) -> dict[str, int]:
         deep, wide = shelter.map_size(world) if self.sheltered else (1, 1)
@@ -120,50 +123,72 @@ class Wind(Hazard):
                     resistance[e, b] = body.wind_resistance
         return torch.where(resistance > IMMOVABLE - 1, 0.0, 1.0 / (1.0 + resistance))
 
-    def force(self, state: WindState, world: World, dt: float) -> Push:
-        felt = self.speed_at(state, world, world.position) * state.felt
-        free = world.exists & world.movable & ~(world.safe | world.held | state.settled) & (felt.abs() > CALM)
-        slip_of = air.slip_all if self.crossflow else air.slip_along
-        slip, direction = slip_of(felt, state.heading, drag.planes(world.velocity))
-        axes, extent = drag.axes_of(world.rotation), drag.planes(world.extent)
-        across = drag.to_body(axes, direction)
-        if self.projected:
-            area = air.projected_area(across, extent)
-        else:
-            wide, _, high = air.spans(axes, extent)
-            area = wide * high
-        main = air.drag(slip, state.strength * air.DENSITY * area, world.mass, dt, self.implicit).masked_fill_(~free, 0.0)
-        torque = main * state.twist.movedim(1, 0)
-        if self.pressure:
-            torque = torque + main * drag.to_world(axes, air.pressure_arm(across, extent))
-            spin = drag.spin_drag(drag.planes(world.angular_velocity), axes, extent, world.mass, air.DENSITY, dt)
-            torque = torque + spin.masked_fill_(~free, 0.0)
-        return Push(drag.rows(main * (direction + state.sway.movedim(1, 0))), drag.rows(torque))
-
     @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
+    def force(self, state: WindState, world: World, dt: float) -> Push:
+        made = world.launches.results(kernels.push, world.position, world.position)
+        world.launches.run(
+            kernels.push,
+            tuple(world.exists.shape),
+            dt,
+            self.implicit,
+            self.projected,
+            self.crossflow,
+            self.pressure,
+            *self._flow(state),
+            state.heading,
+            state.felt,
+            state.strength,
+            state.sway,
+            state.twist,
+            state.settled,
+            world.exists,
+            world.movable,
+            world.safe,
+            world.held,
+            world.position,
+            world.rotation,
+            world.velocity,
+            world.angular_velocity,
+            world.extent,
+            world.mass,
+            *made,
+        )
+        return Push(*(part.clone() for part in made))
+
+    @torch.inference_mode()
     def advance(self, state: WindState, world: World, dt: float) -> None:
-        state.settled |= in_containers(world, state.carts, state.settled)
+        state.settled.logical_or_(in_containers(world, state.carts, state.settled))
         if self.gust_intensity:
             state.gust.copy_(gusts.gust(state.gust, dt, self.gust_time, world.chance.normal("wind.gust")))
         if not self.turbulence and not self.torque:
             return
-        draws = gusts.normal_pairs(world.chance, "wind.turbulence", world.num_bodies, 3)
-        sway, twist = (d.movedim(-1, 1) for d in draws)
-        if self.fixed_length:  # a normal vector has no preferred direction
-            sway = math.sqrt(3.0) * sway / sway.square().sum(1, keepdim=True).sqrt()
         scale = gusts.per_frame(dt)
-        high = air.spans(drag.axes_of(world.rotation), drag.planes(world.extent))[2]
-        state.sway.copy_(air.sideways(state.heading, sway) * (scale * self.turbulence / math.sqrt(3.0)))
-        state.twist.copy_(air.sideways(state.heading, twist) * (0.5 * scale * self.torque * high)[:, None])
+        world.launches.run(
+            kernels.turbulence,
+            tuple(world.exists.shape),
+            word("wind.turbulence"),
+            self.fixed_length,
+            scale * self.turbulence / math.sqrt(3.0),
+            scale * self.torque,
+            world.chance.seed,
+            world.chance.frame,
+            state.heading,
+            world.rotation,
+            world.extent,
+            state.sway,
+            state.twist,
+        )
+
+    def _flow(self, state: WindState) -> tuple[Argument, ...]:
+        """What the kernels need to know of the air."""
+        return self.gust_intensity, self.roughness, self.sheltered, state.speed, state.gust, state.corner, state.loss, state.cause
 
     def speed_at(self, state: WindState, world: World, points: Tensor) -> Tensor:
         """Speed of the air along its heading [m/s] at `points` [m], [E, P, 3], world frame: [E, P]."""
-        speed = (state.speed * (1.0 + self.gust_intensity * state.gust))[:, None].expand(points.shape[:2])
-        if self.roughness:
-            speed = speed * gusts.profile(points[..., 2], self.roughness)
-        if self.sheltered:
-            speed = speed * shelter.share(state.loss, state.cause, state.corner, points)
-        return speed
+        points = points.contiguous()
+        found = points.new_empty(points.shape[:2])
+        world.launches.run(kernels.speeds, tuple(found.shape), *self._flow(state), points, found)
+        return found
 
     def velocity_at(self, state: WindState, world: World, points: Tensor) -> Tensor:
         """Velocity of the air x, y [m/s] at `points` [m], [E, P, 3], world frame: [E, P, 2]."""

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.hand import GRASP_REACH, conjugate
-from hazard_ms.hazards.containers import BASKET_HIGH, BASKET_LOW
+from hazard_ms.kernels.containers import BASKET_HIGH, BASKET_LOW
 from hazard_ms.skills import failures
 from hazard_ms.skills.arm import HOVER, NEARLY, REACH_FRAMES, THERE, go, retract, unfold, way
 from hazard_ms.skills.decision import Result

@@ -10,12 +10,12 @@ from collections.abc import Iterator
 import numpy as np
 import torch
 
-from hazard_ms.hazards import slab, wading
-from hazard_ms.hazards.buoyancy import BALL, BOX, CYLINDER, Immersion, immersion
-from hazard_ms.hazards.drag import axes_of, drag
-from hazard_ms.hazards.floating import Water
+from hazard_ms.hazards import wading
 from hazard_ms.hazards.presets import flood
+from hazard_ms.hazards.water import Water
+from hazard_ms.kernels.buoyancy import BALL, BOX, CYLINDER
 from hazard_ms.validation.cases import Case, table
+from hazard_ms.validation.probes import Immersion, drag, immersion, slab_push
 from hazard_ms.validation.tank import Tank, Thing, begin, frames, room
 
 PAPER, SHIPPED = flood("paper"), flood("shipped")
@@ -132,7 +132,7 @@ def wet(half: tuple[float, float, float], axis: tuple[float, float, float], degr
     """Of a box turned about an axis, the surface `height` [m] above its centre."""
     turn = torch.tensor(axis) / torch.tensor(axis).norm() * math.sin(math.radians(degrees) / 2)
     rotation = torch.cat([torch.tensor([math.cos(math.radians(degrees) / 2)]), turn])[None]
-    return immersion(torch.tensor([height]), torch.zeros(2, 1), axes_of(rotation), torch.tensor(half)[:, None], torch.tensor([BOX]))
+    return immersion(torch.tensor([height]), torch.zeros(1, 2), rotation, 2 * torch.tensor([half]), torch.tensor([BOX]))
 
 
 def turning(degrees: float) -> float:
@@ -174,20 +174,20 @@ def slope_after(updates: int) -> float:
 
 def dragged(slip: float, area: float) -> float:
     """Force [N] over a step so short that it is that of the moment."""
-    pull = torch.full((3, 1), 0.5 * 1000.0 * 1.05 * area)
-    axes = axes_of(torch.tensor([[1.0, 0.0, 0.0, 0.0]]))
-    return float(drag(torch.tensor([[slip], [0.0], [0.0]]), axes, pull, torch.tensor([1.0]), 1e-7)[0, 0])
+    pull = torch.full((1, 3), 0.5 * 1000.0 * 1.05 * area)
+    upright, box = torch.tensor([[1.0, 0.0, 0.0, 0.0]]), torch.tensor([False])
+    return float(drag(torch.tensor([[slip, 0.0, 0.0]]), upright, pull, torch.tensor([1.0]), box, 1e-7)[0, 0])
 
 
 def shipped_frames(case: tuple[float, float]) -> float:
     """Frames until a floating thing of an area [m^2] and a mass [kg] has 63 % of the original's current."""
     area, mass = case
-    velocity, frame = torch.zeros(3, 1), 0
-    while float(velocity[0]) < (1 - math.exp(-1)):
-        box = torch.tensor([[math.sqrt(area)]] * 3)
-        slip = torch.tensor([[1.0], [0.0], [0.0]]) - velocity
-        made = slab.push(torch.tensor([1.0]), box, slip, torch.tensor([[1.0], [0.0]]), torch.tensor([mass]), 9.81, 0.01)
-        velocity[0] += made[0] * 0.01 / mass
+    velocity, frame = torch.zeros(1, 3), 0
+    one, box, flow = torch.tensor([1.0]), torch.full((1, 3), math.sqrt(area)), torch.tensor([[1.0, 0.0]])
+    while float(velocity[0, 0]) < (1 - math.exp(-1)):
+        slip = torch.tensor([[1.0, 0.0, 0.0]]) - velocity
+        made = slab_push(one, box, slip, flow, torch.tensor([mass]), 9.81, 0.01)
+        velocity[0, 0] += made[0, 0] * 0.01 / mass
         frame += 1
     return frame
 
@@ -265,7 +265,7 @@ def of_forces() -> Iterator[Case]:
         "sideways arm of a level box",
         0.0,
         1e-6,
-        lambda: float(wet(beam, upright, 0.0, 0.03).arm[:2].abs().max()),
+        lambda: float(wet(beam, upright, 0.0, 0.03).arm[0, :2].abs().max()),
         "m",
         absolute=True,
     )

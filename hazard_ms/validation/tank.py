@@ -11,8 +11,8 @@ import sapien
 import torch
 from sapien.physx import PhysxCpuSystem, PhysxRigidDynamicComponent
 
-from hazard_ms.hazards.buoyancy import FILLS
 from hazard_ms.hazards.flood import Flood, FloodState
+from hazard_ms.kernels.buoyancy import FILLS
 from hazard_ms.simulator import CpuHandles
 from hazard_ms.spec import AgentStart, Body, Opening, Partition, Room, SceneSpec
 from hazard_ms.validation.fire_room import repeat

@@ -1,0 +1,73 @@
+"""What moving air does to a box: functions of the kernels of wind, see hazard_ms.kernels.drag.
+
+    F = K |s| s / (1 + K |s| dt / m),   K = c rho A,   s = flow - velocity
+
+the mean over a step of dt of the exact solution for a free body: it never overshoots the flow, however light the body (physics.md
+W-5, W-17). `c` is 1 in the paper (F1 = rho A v^2), Cd / 2 in aerodynamics. The original's explicit step K |s| s, held at the force that
+stops the slip within the step, is kept for comparison.
+"""
+
+from __future__ import annotations
+
+import warp as wp
+
+from hazard_ms.kernels.drag import face_areas
+from hazard_ms.launching import OPTIONS
+
+wp.set_module_options(OPTIONS)
+
+DENSITY = wp.constant(1.225)  # of air [kg/m^3] [HAZARD wind_utils.py:8; ISA, sea level, 15 C]
+LEADING = wp.constant(0.2)  # of an edge: how far the centre of pressure is ahead; slanting plates: 0.3 (1 - sin angle) (Joessel) [ours]
+REFERENCE = wp.constant(10.0)  # height at which meteorologists measure wind [m]
+CELL = wp.constant(0.5)  # edge of a cell of a map of shelter [m] [ours]
+LOWEST = wp.constant(0.5)  # lower fixtures shelter nothing [m] [ours]
+_NOTHING = wp.constant(1e-9)  # keeps 0 / 0 away [m/s], [kg], [m^2]
+
+
+@wp.func
+def drag(slip: float, strength: float, mass: float, dt: float, implicit: bool) -> float:
+    """Mean force [N] along the slip [m/s] over a step of `dt` [s]; `strength` K [kg/m], `mass` [kg]."""
+    rate, m = strength * wp.abs(slip), wp.max(mass, _NOTHING)
+    if implicit:
+        return rate * slip / (1.0 + rate * (dt / m))
+    return slip * wp.min(rate, m / dt)
+
+
+@wp.func
+def projected_area(across: wp.vec3, extent: wp.vec3) -> float:
+    """Area [m^2] of a box of `extent` [m] as seen along `across`, a direction in its own frame."""
+    faces = face_areas(extent)
+    return wp.abs(across[0]) * faces[0] + wp.abs(across[1]) * faces[1] + wp.abs(across[2]) * faces[2]
+
+
+@wp.func
+def pressure_arm(across: wp.vec3, extent: wp.vec3) -> wp.vec3:
+    """Torque per newton along `across` [m], own frame: the force acts upwind of the centre, so plates turn broadside on.
+
+    A cube or a face seen squarely feels none.
+    """
+    return wp.cross(-LEADING * wp.cw_mul(extent, across), across)
+
+
+@wp.func
+def unit(slip: wp.vec3) -> wp.vec3:
+    """The direction of a slip [m/s]."""
+    return slip / wp.max(wp.length(slip), _NOTHING)
+
+
+@wp.func
+def profile(height: float, roughness: float) -> float:
+    """Share of the wind at 10 m that blows at `height` [m] over ground of `roughness` [m]."""
+    return wp.log(wp.max(height, roughness) / roughness) / wp.log(REFERENCE / roughness)
+
+
+@wp.func
+def share(e: int, point: wp.vec3, corner: wp.vec2, loss: wp.array3d(dtype=float), cause: wp.array3d(dtype=float)) -> float:
+    """Share of the wind that is left at a `point` [m] of the environment `e`.
+
+    Maps and their `corner` [m]: hazard_ms.hazards.shelter.
+    """
+    x, y = int(wp.floor((point[0] - corner[0]) / CELL)), int(wp.floor((point[1] - corner[1]) / CELL))
+    if x < 0 or x >= loss.shape[2] or y < 0 or y >= loss.shape[1]:
+        return 1.0
+    return 1.0 - loss[e, y, x] * wp.clamp(2.0 - 2.0 * point[2] / wp.max(cause[e, y, x], LOWEST), 0.0, 1.0)

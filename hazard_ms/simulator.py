@@ -32,7 +32,7 @@ class CpuHandles:
         self._groups = [[s.get_collision_groups() for s in b.collision_shapes] for b in self.bodies]
         self._frozen = [False] * len(self.bodies)
         self._px: Any = entities[0].scene.physx_system if entities else None
-        every = self._px.rigid_dynamic_components if entities else []
+        every = self._px.rigid_dynamic_components if self._px else []
         self._rows = torch.tensor([every.index(b) for b in self.bodies], dtype=torch.int64)
         self._packed = torch.zeros(len(every), NUMBERS)
 

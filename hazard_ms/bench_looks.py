@@ -48,13 +48,18 @@ def _advanced(env_id: str, mode: str, seed: int) -> gym.Env:
     env: Any = gym.make(env_id, obs_mode="rgb+depth+segmentation", effects=mode, sensor_configs=size)
     env.reset(seed=seed)
     base = env.unwrapped
-    for _ in range(ADVANCED):
-        base.world.chance.tick()
-        for hazard in base.task.hazards:
-            hazard.advance(base.episode.states[hazard.name], base.world, 1.0 / base.control_freq)
+    go_on(base, ADVANCED)
     for _ in range(2):  # shaders are compiled at the first picture
         _picture(base)
     return env
+
+
+def go_on(base: Any, frames: int) -> None:
+    """Let the hazards of a HazardEnv go on for so many frames, while all things stay where they are: quick, and the same on any machine."""
+    for _ in range(frames):
+        base.world.chance.tick()
+        for hazard in base.task.hazards:
+            hazard.advance(base.episode.states[hazard.name], base.world, 1.0 / base.control_freq)
 
 
 def _picture(base: Any) -> float:

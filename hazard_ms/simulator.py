@@ -32,16 +32,24 @@ class CpuHandles:
         self._groups = [[s.get_collision_groups() for s in b.collision_shapes] for b in self.bodies]
         self._frozen = [False] * len(self.bodies)
         self._px: Any = entities[0].scene.physx_system if entities else None
-        every = self._px.rigid_dynamic_components if self._px else []
-        self._rows = torch.tensor([every.index(b) for b in self.bodies], dtype=torch.int64)
-        self._packed = torch.zeros(len(every), NUMBERS)
+        self._length = -1  # of what SAPIEN packed last [bytes]
 
     def read(self, world: World) -> None:
         if not self.bodies:
             return
-        self._packed.view(-1).numpy()[:] = np.frombuffer(self._px.pack(), np.float32, self._packed.numel())
+        packed = self._px.pack()
+        if len(packed) != self._length:
+            self._find(len(packed))
+        self._packed.view(-1).numpy()[:] = np.frombuffer(packed, np.float32, self._packed.numel())
         seen = world.extent, world.position, world.rotation, world.velocity, world.angular_velocity
         world.launches.run(unpack, (len(self.bodies),), self._packed, self._rows, *seen)
+
+    def _find(self, length: int) -> None:
+        """Note where the bodies stand in what SAPIEN packs, until others come or go."""
+        every = self._px.rigid_dynamic_components
+        self._length = length
+        self._rows = torch.tensor([every.index(b) for b in self.bodies])
+        self._packed = torch.zeros(len(every), NUMBERS)
 
     def asleep(self) -> Tensor:
         """Which bodies PhysX has put to rest, [1, M], bool."""
@@ -74,7 +82,7 @@ class CpuHandles:
             if wanted[b] != self._frozen[b]:
                 self._switch(b, wanted[b])
             if wanted[b]:
-                    body.entity.set_pose(sapien.Pose(base[0, b].numpy(), rotation[0, b].numpy()))
+                body.entity.set_pose(sapien.Pose(base[0, b].numpy(), rotation[0, b].numpy()))
 
     def _switch(self, b: int, frozen: bool) -> None:
         self._frozen[b] = frozen

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import copy
+import os
+import shlex
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 import torch
 import warp as wp
+from flood_worlds import Thing, begin, frames, room
 
 from hazard_ms.chance import Chance
+from hazard_ms.hazards.presets import flood
 from hazard_ms.kernels import draws
-from hazard_ms.launching import OPTIONS, Launches
+from hazard_ms.launching import OPTIONS, Launches, of_environments
 
 wp.set_module_options(OPTIONS)
 
@@ -51,10 +57,37 @@ def test_a_repeated_launch_follows_its_arguments() -> None:
     assert torch.equal(made, 3 * given)  # what was written before stays
 
 
-def test_results_are_kept_per_kernel() -> None:
+def test_nothing_to_do_is_no_launch() -> None:
+    launches, made = Launches(), torch.zeros(2, 3)
+    launches.run(scale, (2, 0), 2.0, torch.rand(2, 0), torch.zeros(2, 0))
+    launches.run(scale, (2, 3), 2.0, torch.ones(2, 3), made)
+    assert (made == 2).all()
+
+
+def test_results_are_kept_per_kernel_and_size() -> None:
     launches, like = Launches(), torch.rand(2, 3)
     (first,), (second,) = launches.results(scale, like), launches.results(scale, like)
     assert first is second and first.shape == like.shape and launches.results(numbers, like)[0] is not first
+    assert launches.results(scale, torch.rand(4, 5))[0].shape == (4, 5)
+    assert launches.results(scale, torch.rand(4, 5) > 0.5)[0].dtype == torch.bool
+
+
+def test_a_world_that_was_used_can_be_copied() -> None:
+    law, world = flood("paper"), room([Thing((0.2, 0.2, 0.2))])
+    state = begin(law, world)
+    frames(law, state, world, 3)
+    other = copy.deepcopy(world)
+    other.position += 1.0
+    frames(law, begin(law, other), other, 3)
+    assert not torch.equal(other.position, world.position) and len(world.launches._made) > 0
+
+
+@pytest.mark.parametrize("shape", [(3, 4, 3), (2, 3), (2, 4, 2)])
+def test_points_of_other_environments_are_refused(shape: tuple[int, ...]) -> None:
+    with pytest.raises(ValueError, match=r"points of shape .* were given; \[2, P, 3\] is allowed"):
+        of_environments(torch.zeros(shape), 2)
+    shared = of_environments(torch.rand(1, 4, 3), 2)
+    assert shared.shape == (2, 4, 3) and torch.equal(shared[0], shared[1])
 
 
 @pytest.mark.parametrize("count", [1, 7, 1000])
@@ -71,3 +104,28 @@ def test_random_numbers_of_kernels_are_those_of_chance_bit_for_bit(count: int) -
 def test_a_machine_without_a_gpu_is_not_scolded() -> None:
     made = subprocess.run([sys.executable, "-c", "import hazard_ms.launching"], capture_output=True, text=True, timeout=120, check=True)
     assert made.stdout == "" and "arp" not in made.stderr
+
+
+def test_kernels_are_kept_where_hazard_ms_keeps_everything(tmp_path: Path) -> None:
+    """And a process goes on where nothing can be kept, and without a standard error."""
+    code = "import hazard_ms.launching, warp; print(warp.config.kernel_cache_dir)"
+    for home, inside in ((tmp_path, True), (Path("/proc/nowhere"), False)):
+        environ = {k: v for k, v in os.environ.items() if k != "WARP_CACHE_PATH"} | {"HAZARD_MS_HOME": str(home)}
+        command = f"exec {shlex.quote(sys.executable)} -c {shlex.quote(code)} 2>&-"
+        made = subprocess.run(["/bin/sh", "-c", command], stdout=subprocess.PIPE, text=True, timeout=120, check=True, env=environ)
+        assert made.stdout.startswith(str(tmp_path / "kernels")) == inside and made.stdout.strip()
+
+
+@pytest.mark.gpu
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="needs an NVIDIA GPU")
+@pytest.mark.parametrize("side", [False, True])
+def test_kernels_on_a_gpu_agree_and_keep_their_place(side: bool) -> None:
+    """In torch's own stream and in another one: what was written before is read, what comes after reads what was made."""
+    stream = torch.cuda.Stream() if side else torch.cuda.current_stream()
+    launches = Launches()
+    with torch.cuda.stream(stream):
+        given, made = torch.zeros(512, 4096, device="cuda"), torch.zeros(512, 4096, device="cuda")
+        for k in range(1, 50):
+            given.fill_(float(k))
+            launches.run(scale, (512, 4096), 2.0, given, made)
+            assert bool((made == 2.0 * k).all())

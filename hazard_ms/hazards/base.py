@@ -63,7 +63,7 @@ class State:
 
 @dataclasses.dataclass
 class Push:
-    """What a hazard does to the bodies over the coming physics step, [E, B, 3], world frame.
+    """What a hazard does to the bodies over the coming physics step, [E, B, 3], world frame; not to be changed in place.
 
     Mean force [N], and torque about the centre of mass [N m].
     """

@@ -203,7 +203,8 @@ class Flood(Hazard):
             state.drag_coefficient,
             *made,
         )
-        return Push(*(part.clone() for part in made))
+        force, torque = made
+        return Push(force.clone(), None if self.slabs else torque.clone())
 
     def damaged(self, state: FloodState, world: World) -> Tensor:
         return (state.under > 0) & (state.under >= state.endures - ROUNDING) & world.exists & ~world.held

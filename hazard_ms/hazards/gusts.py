@@ -1,8 +1,7 @@
-"""How wind varies: gusts in time, less of it near the ground, and turbulence from thing to thing.
+"""How wind varies in time. Less of it near the ground, and in a lee: hazard_ms.kernels.air; from thing to thing: hazard_ms.kernels.wind.
 
 Gust    an Ornstein-Uhlenbeck process of unit variance, advanced exactly: g' = c g + sqrt(1 - c^2) n, c = exp(-dt / T), n normal. Its
         distribution does not depend on dt. Below 0.3 Hz as good as a von Karman spectrum (physics.md 3.3).
-Profile u(z) / u(10 m) = ln(z / z0) / ln(10 / z0), the logarithmic law over ground of roughness z0; 0 below z0.
 Turbulence  r, a new random vector per frame (paper: of fixed length; original: normal). A force F r that is held for a frame of dt
         makes a random walk whose variance grows with dt times time: r is scaled by sqrt(0.01 s / dt), so that it does not.
 """

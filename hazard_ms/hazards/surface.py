@@ -15,7 +15,7 @@ from torch import Tensor
 
 from hazard_ms.kernels import reach
 from hazard_ms.kernels.reach import NEVER
-from hazard_ms.launching import Launches
+from hazard_ms.launching import Launches, of_environments
 from hazard_ms.spec import Room, SceneSpec, Vec2
 
 SIDES: dict[str, Vec2] = {"south": (0.0, 1.0), "east": (-1.0, 0.0), "north": (0.0, -1.0), "west": (1.0, 0.0)}  # which way it flows in
@@ -105,7 +105,7 @@ def _gate_ways(gates: list[Gate], flow: Vec2, start: float, near: tuple[int, int
 
 def ways_to(ways: Ways, place: Tensor, launches: Launches | None = None) -> tuple[Tensor, Tensor]:
     """How far water has come at `place` [m], [E, P, 3]: [m], [E, P], NEVER where it cannot; and the flow's direction, [E, P, 2]."""
-    place = place.contiguous()
+    place = of_environments(place, len(ways.flow))
     way, toward = place.new_empty(place.shape[:2]), place.new_empty(*place.shape[:2], 2)
     (launches or Launches()).run(reach.ways_to, tuple(way.shape), *ways, place, way, toward)
     return way, toward

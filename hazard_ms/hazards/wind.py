@@ -27,7 +27,7 @@ from hazard_ms.hazards.containers import container_index, in_containers
 from hazard_ms.kernels import wind as kernels
 from hazard_ms.kernels.air import REFERENCE
 from hazard_ms.kernels.draws import word
-from hazard_ms.launching import Argument
+from hazard_ms.launching import Argument, of_environments
 from hazard_ms.world import World
 
 SLOWEST, FASTEST = 2.5, 5.0  # of a wind that the scene leaves open [m/s] [the original's shipped scenes, physics.md 1.3]
@@ -185,7 +185,7 @@ class Wind(Hazard):
 
     def speed_at(self, state: WindState, world: World, points: Tensor) -> Tensor:
         """Speed of the air along its heading [m/s] at `points` [m], [E, P, 3], world frame: [E, P]."""
-        points = points.contiguous()
+        points = of_environments(points, world.num_envs)
         found = points.new_empty(points.shape[:2])
         world.launches.run(kernels.speeds, tuple(found.shape), *self._flow(state), points, found)
         return found

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.kernels.drag import face_areas
+from hazard_ms.kernels.boxes import face_areas
 from hazard_ms.launching import OPTIONS
 
 wp.set_module_options(OPTIONS)
@@ -57,7 +57,7 @@ def unit(slip: wp.vec3) -> wp.vec3:
 
 @wp.func
 def profile(height: float, roughness: float) -> float:
-    """Share of the wind at 10 m that blows at `height` [m] over ground of `roughness` [m]."""
+    """Share of the wind at 10 m that blows at `height` [m] over ground of `roughness` [m], by the logarithmic law; 0 below that height."""
     return wp.log(wp.max(height, roughness) / roughness) / wp.log(REFERENCE / roughness)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.kernels.drag import axes_of, spans, to_body
+from hazard_ms.kernels.boxes import axes_of, base_of, spans, to_body
 from hazard_ms.launching import OPTIONS
 
 wp.set_module_options(OPTIONS)
@@ -15,20 +15,20 @@ TOUCH = wp.constant(0.02)  # what rests on a thing, or has sunk a little into th
 
 
 @wp.func
+def within(point: wp.vec3, low: wp.vec3, high: wp.vec3) -> bool:
+    """Whether `point` is inside the box from `low` to `high`."""
+    x = point[0] > low[0] and point[0] < high[0]
+    y = point[1] > low[1] and point[1] < high[1]
+    return x and y and point[2] > low[2] and point[2] < high[2]
+
+
+@wp.func
 def _in_basket(cart: wp.vec3, axes: wp.mat33, extent: wp.vec3, point: wp.vec3) -> bool:
     """Whether `point` [m] is in the basket of a cart whose centre, axes and extent are given."""
     local = to_body(axes, point - cart)
     low = wp.cw_mul(extent, BASKET_LOW) - wp.vec3(TOUCH, TOUCH, TOUCH)
     high = wp.cw_mul(extent, BASKET_HIGH) + wp.vec3(TOUCH, TOUCH, TOUCH)
     return within(local, low, high)
-
-
-@wp.func
-def within(point: wp.vec3, low: wp.vec3, high: wp.vec3) -> bool:
-    """Whether `point` is inside the box from `low` to `high`."""
-    x = point[0] > low[0] and point[0] < high[0]
-    y = point[1] > low[1] and point[1] < high[1]
-    return x and y and point[2] > low[2] and point[2] < high[2]
 
 
 @wp.kernel
@@ -50,7 +50,7 @@ def find(
     if not exists[e, b] or not movable[e, b] or held[e, b] or away[e, b]:
         return
     centre = position[e, b]
-    base = centre - axes_of(rotation[e, b]) * wp.vec3(0.0, 0.0, 0.5 * extent[e, b][2])
+    base = base_of(centre, axes_of(rotation[e, b]), extent[e, b])
     for c in range(containers.shape[1]):
         cart = int(containers[e, c])
         if cart >= 0:

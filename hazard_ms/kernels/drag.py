@@ -8,40 +8,19 @@ step of constant flow: no step is too long, no body too light, and the slip neve
 (not |s_i|) is the slip that they would leave at the end of the step. T is the box form of MuJoCo's
 inertia model (its documentation, "Fluid forces"). Limits: no lift, no shading of one body by another.
 
-These are functions of kernels, for one body; what a kernel calls `axes` is the matrix whose columns are the body's axes.
+Functions of kernels, for one body; `axes`: see hazard_ms.kernels.boxes.
 """
 
 from __future__ import annotations
 
 import warp as wp
 
+from hazard_ms.kernels.boxes import to_body
 from hazard_ms.launching import OPTIONS
 
 wp.set_module_options(OPTIONS)
 
 _NOTHING = wp.constant(1e-12)  # [kg], [kg m^2]: keeps 0 / 0 away where there is no body
-
-
-@wp.func
-def axes_of(rotation: wp.vec4) -> wp.mat33:
-    """The rotation matrix of a unit quaternion w x y z: it takes vectors from the body's frame to the world's."""
-    w, x, y, z = 2.0 * rotation[0], rotation[1], rotation[2], rotation[3]
-    wx, wy, wz = w * x, w * y, w * z
-    xx, xy, xz = 2.0 * x * x, 2.0 * x * y, 2.0 * x * z
-    yy, yz, zz = 2.0 * y * y, 2.0 * y * z, 2.0 * z * z
-    return wp.mat33(1.0 - (yy + zz), xy - wz, xz + wy, xy + wz, 1.0 - (xx + zz), yz - wx, xz - wy, yz + wx, 1.0 - (xx + yy))
-
-
-@wp.func
-def to_body(axes: wp.mat33, vector: wp.vec3) -> wp.vec3:
-    """A vector of the world's frame along the body's own axes."""
-    return wp.transpose(axes) * vector
-
-
-@wp.func
-def face_areas(extent: wp.vec3) -> wp.vec3:
-    """Areas [m^2] of a box's faces across its axes, from its edges [m]."""
-    return wp.vec3(extent[1] * extent[2], extent[0] * extent[2], extent[0] * extent[1])
 
 
 @wp.func
@@ -96,23 +75,6 @@ def spin_drag(spin: wp.vec3, axes: wp.mat33, extent: wp.vec3, mass: float, densi
     slowing = wp.cw_div(wp.cw_mul(fast, across) * density, inertia) + wp.vec3(rate, rate, rate)  # [1/s]
     left = slowing * dt + wp.vec3(1.0, 1.0, 1.0)
     return -(axes * wp.cw_div(wp.cw_mul(wp.cw_mul(turn, inertia), slowing), left))
-
-
-@wp.func
-def spans(axes: wp.mat33, extent: wp.vec3) -> wp.vec3:
-    """Edges [m] of the box along the world's axes around a box of `extent` [m]."""
-    a = wp.mat33(
-        wp.abs(axes[0, 0]),
-        wp.abs(axes[0, 1]),
-        wp.abs(axes[0, 2]),
-        wp.abs(axes[1, 0]),
-        wp.abs(axes[1, 1]),
-        wp.abs(axes[1, 2]),
-        wp.abs(axes[2, 0]),
-        wp.abs(axes[2, 1]),
-        wp.abs(axes[2, 2]),
-    )
-    return a * extent
 
 
 @wp.func

@@ -14,8 +14,9 @@ from __future__ import annotations
 
 import warp as wp
 
+from hazard_ms.kernels.boxes import face_areas, spans
 from hazard_ms.kernels.buoyancy import BALL, CYLINDER, FILLS, Immersion
-from hazard_ms.kernels.drag import drag, face_areas, spans, spin_drag
+from hazard_ms.kernels.drag import drag, spin_drag
 from hazard_ms.launching import OPTIONS
 
 wp.set_module_options(OPTIONS)

@@ -5,18 +5,12 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.kernels import floating, slab
+from hazard_ms.kernels.boxes import axes_of, base_of, spans
 from hazard_ms.kernels.buoyancy import immersion
-from hazard_ms.kernels.drag import axes_of, spans
 from hazard_ms.kernels.reach import reach
 from hazard_ms.launching import OPTIONS
 
 wp.set_module_options(OPTIONS)
-
-
-@wp.func
-def base_of(centre: wp.vec3, axes: wp.mat33, extent: wp.vec3) -> wp.vec3:
-    """Middle of the base [m] of a box whose `centre` is given."""
-    return centre - axes * wp.vec3(0.0, 0.0, 0.5 * extent[2])
 
 
 @wp.kernel

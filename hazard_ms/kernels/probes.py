@@ -6,6 +6,7 @@ import warp as wp
 
 from hazard_ms.kernels import buoyancy, slab
 from hazard_ms.kernels import drag as drags
+from hazard_ms.kernels.boxes import axes_of
 from hazard_ms.launching import OPTIONS
 
 wp.set_module_options(OPTIONS)
@@ -25,7 +26,7 @@ def immersion(
 ):
     """What is under water of every body."""
     n = wp.tid()
-    found = buoyancy.immersion(height[n], slope[n], drags.axes_of(rotation[n]), 0.5 * extent[n], int(shape[n]))
+    found = buoyancy.immersion(height[n], slope[n], axes_of(rotation[n]), 0.5 * extent[n], int(shape[n]))
     fraction[n] = found.fraction
     arm[n] = found.arm
     waterline[n] = found.waterline
@@ -44,7 +45,7 @@ def drag(
 ):
     """Drag of every body."""
     n = wp.tid()
-    force[n] = drags.drag(slip[n], drags.axes_of(rotation[n]), pull[n], mass[n], dt, ball[n], wp.vec3())
+    force[n] = drags.drag(slip[n], axes_of(rotation[n]), pull[n], mass[n], dt, ball[n], wp.vec3())
 
 
 @wp.kernel
@@ -59,7 +60,7 @@ def spin_drag(
 ):
     """Drag of the turning of every body."""
     n = wp.tid()
-    torque[n] = drags.spin_drag(spin[n], drags.axes_of(rotation[n]), extent[n], mass[n], density, dt, 0.0)
+    torque[n] = drags.spin_drag(spin[n], axes_of(rotation[n]), extent[n], mass[n], density, dt, 0.0)
 
 
 @wp.kernel

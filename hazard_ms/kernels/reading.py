@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.kernels.drag import axes_of
+from hazard_ms.kernels.boxes import axes_of, centre_of
 from hazard_ms.launching import OPTIONS
 
 wp.set_module_options(OPTIONS)
@@ -26,6 +26,6 @@ def unpack(
     turn = wp.vec4(packed[k, 0], packed[k, 1], packed[k, 2], packed[k, 3])
     base = wp.vec3(packed[k, 4], packed[k, 5], packed[k, 6])
     rotation[0, b] = turn
-    position[0, b] = base + axes_of(turn) * wp.vec3(0.0, 0.0, 0.5 * extent[0, b][2])
+    position[0, b] = centre_of(base, axes_of(turn), extent[0, b])
     velocity[0, b] = wp.vec3(packed[k, 7], packed[k, 8], packed[k, 9])
     angular_velocity[0, b] = wp.vec3(packed[k, 10], packed[k, 11], packed[k, 12])

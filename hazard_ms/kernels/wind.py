@@ -5,7 +5,8 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.kernels import air, draws
-from hazard_ms.kernels.drag import axes_of, spans, spin_drag, to_body
+from hazard_ms.kernels.boxes import axes_of, spans, to_body
+from hazard_ms.kernels.drag import spin_drag
 from hazard_ms.launching import OPTIONS
 
 wp.set_module_options(OPTIONS)

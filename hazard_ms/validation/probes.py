@@ -10,6 +10,8 @@ from torch import Tensor
 from hazard_ms.kernels import probes
 from hazard_ms.launching import Launches
 
+_launches = Launches()
+
 
 class Immersion(NamedTuple):
     """What is under water, see hazard_ms.kernels.buoyancy.Immersion."""
@@ -23,26 +25,26 @@ class Immersion(NamedTuple):
 def immersion(height: Tensor, slope: Tensor, rotation: Tensor, extent: Tensor, shape: Tensor) -> Immersion:
     """Of a surface `height` [m], [N], above bodies, that rises by `slope`, [N, 2]; rotation [N, 4], extent [m], [N, 3], shape [N]."""
     found = Immersion(*(torch.empty_like(t) for t in (height, extent, height, height)))
-    Launches().run(probes.immersion, (len(height),), height, slope, rotation, extent, shape, *found)
+    _launches.run(probes.immersion, (len(height),), height, slope, rotation, extent, shape, *found)
     return found
 
 
 def drag(slip: Tensor, rotation: Tensor, pull: Tensor, mass: Tensor, ball: Tensor, dt: float) -> Tensor:
     """Force [N], [N, 3], see hazard_ms.kernels.drag.drag: slip [m/s], [N, 3], pull [kg/m], [N, 3], mass [kg], [N], ball [N]."""
     force = torch.empty_like(slip)
-    Launches().run(probes.drag, (len(slip),), dt, slip, rotation, pull, mass, ball, force)
+    _launches.run(probes.drag, (len(slip),), dt, slip, rotation, pull, mass, ball, force)
     return force
 
 
 def spin_drag(spin: Tensor, rotation: Tensor, extent: Tensor, mass: Tensor, density: float, dt: float) -> Tensor:
     """Torque [N m], [N, 3], see hazard_ms.kernels.drag.spin_drag: spin [rad/s], [N, 3], extent [m], [N, 3], mass [kg], [N]."""
     torque = torch.empty_like(spin)
-    Launches().run(probes.spin_drag, (len(spin),), dt, density, spin, rotation, extent, mass, torque)
+    _launches.run(probes.spin_drag, (len(spin),), dt, density, spin, rotation, extent, mass, torque)
     return torque
 
 
 def slab_push(share: Tensor, box: Tensor, slip: Tensor, flow: Tensor, mass: Tensor, gravity: float, dt: float) -> Tensor:
     """Force [N], [N, 3], see hazard_ms.kernels.slab.push: share [N], box [m], [N, 3], slip [m/s], [N, 3], flow [N, 2], mass [kg], [N]."""
     force = torch.empty_like(slip)
-    Launches().run(probes.slab_push, (len(slip),), dt, gravity, share, box, slip, flow, mass, force)
+    _launches.run(probes.slab_push, (len(slip),), dt, gravity, share, box, slip, flow, mass, force)
     return force

@@ -284,7 +284,7 @@ def test_a_batch_of_64_is_as_each_alone() -> None:
 
 
 def test_a_thing_burns_as_long_as_its_fuel_lasts_then_cools_and_warms_nothing() -> None:
-    plain = dataclasses.replace(REAL, lapse=1.0)
+    plain = dataclasses.replace(REAL, lapse=1.0, every=1)
     world = with_room(room_world([("throw_pillow", (2.0, 2.0, 0.0))], size=(4.0, 4.0), extent=(0.4, 0.4, 0.15)), floor="tile")
     state = begin(plain, world)
     state.temperature[:] = 400.0  # above the ignition of foam, 390 C
@@ -349,3 +349,23 @@ def test_the_image_shows_the_layer_and_the_flames() -> None:
 def test_impossible_parameters_are_refused_by_name(field: str, value: float) -> None:
     with pytest.raises(ValueError, match=f"{field} is {value}"):
         dataclasses.replace(REAL, **{field: value})
+
+
+def test_an_episode_that_began_later_is_updated_at_its_own_frames() -> None:
+    """Two environments, the second two frames behind: each has the bits that it has alone."""
+    bodies, fires = [("book", (2.4, 2.0, 0.0)), ("throw_pillow", (2.0, 2.5, 0.0))], [(2.0, 2.0)]
+    pair, alone = (room_world(bodies, fires, copies=copies) for copies in (2, 1))
+    both, one = begin(REAL, pair), begin(REAL, alone)
+    run(REAL, both, pair, 2 / 30)
+    both.clear(torch.tensor([1]))
+    REAL.reset(both, pair, torch.tensor([1]))
+    pair.chance.frame[1] = 0
+    run(REAL, both, pair, 63 / 30)
+    for env, frames in ((0, 65), (1, 63)):
+        one.clear(torch.tensor([0]))
+        alone.chance.seed[:], alone.chance.frame[:] = pair.chance.seed[env], 0
+        REAL.reset(one, alone, torch.tensor([0]))
+        run(REAL, one, alone, frames / 30)
+        for name in ("temperature", "status", "burn_age", "smoke_volume", "agent_dose", "flame_age"):
+            assert torch.equal(getattr(both, name)[env], getattr(one, name)[0]), name
+    assert not torch.equal(both.temperature[0], both.temperature[1])

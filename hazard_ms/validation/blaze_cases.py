@@ -22,7 +22,7 @@ from hazard_ms.world import World
 ROOM = (21.66, 7.04, 3.82)  # of N-7 and N-8 [m]
 GYPSUM = 0.00012 * 737 * 1.42  # k rho c of its walls [kW^2 s/m^4 K^2]
 HALL = (20.0, 20.0)  # floor of the rooms in which one fire burns [m]
-PLAIN = Blaze(lapse=1.0)
+PLAIN = Blaze(lapse=1.0, every=1)
 T_SQUARED = {
     ("slow", fuels.SLOW): 600.0,
     ("medium", fuels.MEDIUM): 300.0,
@@ -141,7 +141,7 @@ def neighbour(apart: float, dt: float = 0.5) -> float:
 @functools.cache
 def front(runs: int = 16, seconds: float = 800.0, dt: float = 4.0) -> float:
     """Speed [m/s] of the edge of a fire on an open wooden floor: that of a circle of the burning area, from 300 s on."""
-    blaze = Blaze(lapse=1.0, horizon=seconds)
+    blaze = Blaze(lapse=1.0, every=1, horizon=seconds)
     state, world = burn_room([], blaze, runs, floor="wood", fires=[(10.0, 10.0)])
     seen = {}
     for step in range(1, round(seconds / dt) + 1):

@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from hazard_ms.catalogue import CATEGORIES
 from hazard_ms.effects.charring import char_codes
 from hazard_ms.hazards import burning, fuels, radiation, smoke, tenability
-from hazard_ms.hazards.blaze import Blaze, BlazeState
+from hazard_ms.hazards.blaze import Blaze
+from hazard_ms.hazards.blaze_state import BlazeState
 from hazard_ms.hazards.fire import BURNING, BURNT, NORMAL, body_flames, floor_flames
 from hazard_ms.hazards.presets import fire
 from hazard_ms.spec import Opening, Room

@@ -23,9 +23,10 @@ from torch import Tensor
 
 from hazard_ms.catalogue import CATEGORIES
 from hazard_ms.hazards import burning, floor, fuels, radiation, smoke, spread, tenability, together
-from hazard_ms.hazards.base import Hazard, State, nobody, quantity
+from hazard_ms.hazards.base import Hazard, State, nobody
+from hazard_ms.hazards.blaze_state import HEATED, BlazeState
 from hazard_ms.hazards.fire import begin_flames, can_burn, enlisted, light, lit
-from hazard_ms.hazards.fire_state import BURNING, NORMAL, FireState
+from hazard_ms.hazards.fire_state import BURNING, NORMAL
 from hazard_ms.world import World
 
 FRONT = 0.5  # mean time per cell of a front, in units of 1 / rate, over ten cells; 0.41 far out [ours, see case 4.3 of validation]
@@ -38,52 +39,6 @@ TOUCH_FLUX = 30.0  # on what a flame touches [kW/m^2] [M: SFPE, flames on walls 
 NO_CROWD = 2**31  # things on the floor do not keep flames away
 UPDATE = 1 / 6  # of an episode: the original's interval of 5 frames, in which pictures count the age of flames on things [s]
 CHEST = 1.0  # where the agent feels heat and smoke [m] [ours]
-
-HEATED = (  # quantities that an update of heat changes
-    *("temperature", "status", "burn_age", "burn_updates", "agent_temperature", "agent_dose", "heat_release"),
-    *("smoke_volume", "smoke_energy", "smoke_mass", "smoke_height", "smoke_temperature", "smoke_density"),
-)
-
-
-@dataclass
-class BlazeState(FireState):
-    """As FireState, and more: O gaps in the outer walls. `burn_updates` counts intervals of UPDATE."""
-
-    burn_age: Tensor = quantity("E B", "s", "since ignition")
-    inertia: Tensor = quantity("E B", "kW^2 s/m^4 K^2", "k rho c of a thick solid")
-    sheet: Tensor = quantity("E B", "kJ/m^2 K", "heat capacity of a thin solid")
-    critical: Tensor = quantity("E B", "kW/m^2", "least flux that ignites it", fill=1.0)
-    ignition: Tensor = quantity("E B", "C", "ignition temperature of its material", fill=1000.0)
-    growth: Tensor = quantity("E B", "kW/s^2", "of its heat release")
-    peak: Tensor = quantity("E B", "kW", "of its heat release")
-    decline: Tensor = quantity("E B", "s", "when it declines")
-    burn_end: Tensor = quantity("E B", "s", "when it is burnt", fill=1.0)
-    curve: Tensor = quantity("E B", "", "row of its measured curve; -1 for none", dtype="int", fill=-1)
-    soot_yield: Tensor = quantity("E B", "kg/kJ", "soot per heat")
-    flame_age: Tensor = quantity("E F", "s", "since the flame appeared")
-    flame_peak: Tensor = quantity("E F", "kW", "its heat release once grown")
-    floor_speed: Tensor = quantity("E", "m/s", "at which fire spreads over the floor")
-    height: Tensor = quantity("E", "m", "of the room", fill=2.6)
-    vents: Tensor = quantity("E O 3", "m", "gaps: width, lower and upper end")
-    roofed: Tensor = quantity("E", "", "1 under a ceiling, 0 in the open, where smoke does not gather", fill=1.0)
-    heat_release: Tensor = quantity("E", "kW", "of all that burns")
-    smoke_volume: Tensor = quantity("E", "m^3", "of the layer")
-    smoke_energy: Tensor = quantity("E", "kJ", "excess heat of the layer")
-    smoke_mass: Tensor = quantity("E", "kg", "soot in the layer")
-    smoke_height: Tensor = quantity("E", "m", "lower face of the layer above the floor", fill=2.6)
-    smoke_temperature: Tensor = quantity("E", "C", "of the layer", fill=20.0)
-    smoke_density: Tensor = quantity("E", "1/m", "extinction of light in the layer: one sees about 3 / it")
-    agent_dose: Tensor = quantity("E", "", "heat that the agent has borne; 1 is too much for people")
-
-    @property
-    def course(self) -> burning.Course:
-        """Heat release of every thing."""
-        return burning.Course(self.growth, self.peak, self.decline, self.burn_end, self.curve)
-
-    @property
-    def solid(self) -> radiation.Solid:
-        """Surface of every thing."""
-        return radiation.Solid(self.ignition, self.critical, self.inertia, self.sheet)
 
 
 @dataclass(frozen=True)

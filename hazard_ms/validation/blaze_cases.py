@@ -12,7 +12,8 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards import burning, fuels, radiation, smoke, tenability
-from hazard_ms.hazards.blaze import Blaze, BlazeState
+from hazard_ms.hazards.blaze import Blaze
+from hazard_ms.hazards.blaze_state import BlazeState
 from hazard_ms.hazards.fire import NORMAL
 from hazard_ms.validation import correlations
 from hazard_ms.validation.cases import Case, table

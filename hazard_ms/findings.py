@@ -10,7 +10,7 @@ from hazard_ms import drivers, rendering
 from hazard_ms.machine import Machine
 from hazard_ms.vulkan import OLDEST_MESA, Answer
 
-PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "torchvision", "numpy", "scipy", "trimesh", "opencv-python-headless")
+PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "torchvision", "warp-lang", "numpy", "scipy", "trimesh", "opencv-python-headless")
 OPENCVS = ("opencv-python", "opencv-contrib-python", "opencv-python-headless", "opencv-contrib-python-headless")
 PYTHONS = ((3, 10), (3, 12))  # first and last; mani-skill's mplib has no later build (ecosystem.md)
 LEAST_FREE = 1.0  # [GB] a video, a result and the caches of one run need less

@@ -15,7 +15,7 @@ from hazard_ms import __version__
 from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
 
 FORMAT = 1  # goes up when a field changes its meaning
-PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "numpy")  # whose versions can change an episode
+PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "warp-lang", "numpy")  # whose versions can change an episode
 
 
 @dataclass(frozen=True)

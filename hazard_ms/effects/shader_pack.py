@@ -1,9 +1,10 @@
 """Shader packs with our effects, derived at run time from those of the installed SAPIEN: we ship no text of others.
 
 A pack is a folder of GLSL. Ours is SAPIEN's own, with charring, water and haze added to its opaque pass and a third pass that draws
-flames, smoke, the water's surface and what flies into the picture alone; the full one has a fourth for hot air, and bends what is seen
-through it when it puts the picture together. It is kept in the user's cache under a hash of all that it is made of, so another SAPIEN
-makes another pack. If the installed files are not as expected, pictures are SAPIEN's own, without effects, and labels stay right.
+flames, smoke, the water's surface and what flies into the picture alone; the full one has two more, for foliage in the wind and for hot
+air, and bends what is seen of them or through them when it puts the picture together. It is kept in the user's cache under a hash of all
+that it is made of, so another SAPIEN makes another pack. If the installed files are not as expected, pictures are SAPIEN's own, without
+effects, and labels stay right.
 """
 
 from __future__ import annotations
@@ -25,12 +26,14 @@ from torch import Tensor
 
 from hazard_ms.effects.glsl import CHAR, CHAR_DEFERRED, CHAR_FORWARD, EFFECT_FRAG, EFFECT_VERT
 from hazard_ms.effects.shimmer_glsl import AIR_FRAG, AIR_VERT, BEND
+from hazard_ms.effects.sway_glsl import STILL, SWAY_FRAG, SWAY_VERT
 from hazard_ms.effects.water_glsl import IMMERSE, IMMERSE_DEFERRED, IMMERSE_FORWARD
 from hazard_ms.rendering import home
 
 NAMES = {"full": "hazard", "fast": "hazard-fast", "off": "default"}  # effects mode -> shader pack of the cameras
 EFFECT_PASS = 2  # shading mode of effect geometry: no stock pack has this pass, so none draws it
-AIR_PASS = 3  # that of hot air, in the full pack alone
+SWAY_PASS = 3  # that of foliage, in the full pack alone
+AIR_PASS = 4  # that of hot air, in the full pack alone; it comes last, since its quads would hide what is drawn after them
 SETS = ("camera_set.glsl", "object_set.glsl", "material_set.glsl")
 LABELS = "PositionLabel"  # the fast pack's own name: ManiSkill changes the pixel format of "PositionSegmentation" for the whole process
 
@@ -127,19 +130,21 @@ def _full(files: dict[str, str]) -> dict[str, str]:
     if not end.search(opaque):
         raise UnknownSapienError("gbuffer.frag does not end with its main function")
     files["gbuffer.frag"] = end.sub(lambda _: CHAR_DEFERRED + IMMERSE_DEFERRED + "}\n", opaque)
-    files |= {"gbuffer2.vert": EFFECT_VERT, "gbuffer2.frag": EFFECT_FRAG, "gbuffer3.vert": AIR_VERT, "gbuffer3.frag": AIR_FRAG}
+    files |= {"gbuffer2.vert": EFFECT_VERT, "gbuffer2.frag": EFFECT_FRAG}
+    files |= {f"gbuffer{SWAY_PASS}.vert": SWAY_VERT, f"gbuffer{SWAY_PASS}.frag": SWAY_FRAG}
+    files |= {f"gbuffer{AIR_PASS}.vert": AIR_VERT, f"gbuffer{AIR_PASS}.frag": AIR_FRAG}
     return files | {"composite0.frag": _bent(files)}
 
 
 def _bent(files: dict[str, str]) -> str:
-    """The full pack's last pass, which looks up the lit picture through hot air."""
+    """The full pack's last pass, which looks up the lit picture through hot air, and where foliage stands that sways."""
     name, straight = "composite0.frag", "texture(samplerLighting, inUV)"
     _insert(files, name, straight, "")
-    text = files[name].replace(straight, "hazardBent(inUV)")
+    text = files[name].replace(straight, "hazardSeen(inUV)")
     free = 1 + max(map(int, re.findall(r"set = 0, binding = (\d+)", text)), default=0)
-    air = "".join(f"layout(set = 0, binding = {free + k}) uniform sampler2D sampler{n};\n" for k, n in enumerate(("Bend", "Air")))
-    _known_words(text, "samplerPositionRaw", name=name)
-    return _insert({name: text}, name, "void main() {", air + BEND)
+    air = "".join(f"layout(set = 0, binding = {free + k}) uniform sampler2D sampler{n};\n" for k, n in enumerate(("Bend", "Air", "Sway")))
+    _known_words(text, "samplerPositionRaw", "samplerSegmentation", name=name)
+    return _insert({name: text}, name, "void main() {", air + BEND + STILL)
 
 
 def _fast(files: dict[str, str]) -> dict[str, str]:

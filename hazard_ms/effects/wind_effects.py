@@ -1,7 +1,7 @@
-"""What a wind carries past the camera, and its haze, driven by the state of `hazard_ms.hazards.wind.Wind`.
+"""What a wind carries past the camera, its haze, and foliage that sways, driven by the state of `hazard_ms.hazards.wind.Wind`.
 
-Leaves, paper and streaks are three meshes per scene, blown along the heading by the mean speed; a gust makes more of them fly.
-Nothing that stands sways: its labels must stay where it is.
+Leaves, paper and streaks are three meshes per scene, blown along the heading by the mean speed; a gust makes more of them fly, and bends
+trees and hedges more. Labels are those of trees at rest.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from hazard_ms.effects import meshes, shader_pack
 from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, canvas, make_effect
 from hazard_ms.effects.glsl import LEAF, PAPER, STREAK
 from hazard_ms.effects.surroundings import Surroundings
+from hazard_ms.effects.sway import foliage
 from hazard_ms.effects.textures import noise_texture
 from hazard_ms.effects.wind_glsl import BOX
 from hazard_ms.hazards.wind import WindState
@@ -39,11 +40,12 @@ HAZE = 0.008  # density of haze in a strong wind [1/m] [ours]
 class _SceneWind:
     """The wind of one scene."""
 
-    def __init__(self, scene: sapien.Scene, around: Surroundings, rich: bool) -> None:
+    def __init__(self, scene: sapien.Scene, spec: SceneSpec, around: Surroundings, rich: bool) -> None:
         self._around = around
         texture = noise_texture()
         made = [make_effect(scene, texture, partial(flying, kind, NUMBERS[kind][0 if rich else 1]), kind) for kind in NUMBERS]
         self._parts: list[Effect] = [e for e in made if e is not None]
+        self._foliage = foliage(scene, spec) if rich else None
 
     def show(self, heading: tuple[float, float], speed: float, gust: float, time: float) -> None:
         """A wind of `speed` [m/s] towards `heading`, a unit vector; `gust` in standard deviations."""
@@ -53,6 +55,8 @@ class _SceneWind:
         self._around.haze(HAZE * strength, drift)
         for part in self._parts:
             part.show(sapien.Pose([*drift, time], [math.cos(half), 0.0, 0.0, math.sin(half)]), strength, time)
+        if self._foliage is not None:
+            self._foliage.show(sapien.Pose([heading[0] * strength, heading[1] * strength, time]), strength, time)
 
 
 class WindEffects:
@@ -65,14 +69,15 @@ class WindEffects:
     def build(
         cls, scenes: list[sapien.Scene], specs: tuple[SceneSpec, ...], world: World, mode: str, around: list[Surroundings]
     ) -> WindEffects:
-        """Effects of `mode` (full; fast: less flies, and no clouds of dust; off) for `scenes` in which the things of `specs` stand.
+        """Effects of `mode` (full; fast: less flies, no clouds of dust, nothing sways; off) for `scenes` with the things of `specs`.
 
         Without a renderer, or with a SAPIEN whose shaders are unknown, nothing is shown.
         """
         device, shown = canvas(scenes, mode)
         if not shown:
             return cls([], mode, device)
-        return cls([_SceneWind(scene, air, mode == "full") for scene, air in zip(scenes, around, strict=True)], mode, device)
+        rows = zip(scenes, specs, around, strict=True)
+        return cls([_SceneWind(scene, spec, air, mode == "full") for scene, spec, air in rows], mode, device)
 
     def update(self, world: World, wind: WindState, frame: Tensor) -> None:
         """Show `wind` at `frame` [E]. Call it before a picture is taken; it changes nothing but the picture."""

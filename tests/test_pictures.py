@@ -19,8 +19,10 @@ import torch
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.cli import main
 from hazard_ms.effects import ray_pack
+from hazard_ms.effects.ray_geometry import side_by_side
 from hazard_ms.effects.shader_pack import UnknownSapienError
 from hazard_ms.lighting import DRAWN, FIRST_FAILURE, LAST_FAILURE, LIGHTINGS, Lighting
+from hazard_ms.pictures import camera
 from hazard_ms.pictures.camera import denoised, developed
 from hazard_ms.pictures.order import RenderOrder
 from hazard_ms.pictures.stage import Stage
@@ -108,15 +110,19 @@ def test_every_light_and_every_look_leaves_the_episode_alone(lighting: str, effe
     assert episode(lighting, effects, draw=True)[0] == episode("day", "full", draw=False)[0]
 
 
+def without_cameras(scene: sapien.Scene) -> list[sapien.Entity]:
+    return [e for e in scene.entities if e.find_component_by_type(sapien.render.RenderCameraComponent) is None]
+
+
 @pytest.mark.render
 def test_pictures_of_both_kinds(tmp_path: Path) -> None:
     """Ray-traced and raster pictures show the same room; where it burns, both are fiery; the scene is left as it was."""
     order = RenderOrder(output=tmp_path / "x.png", seed=3, frame=500)
     with Stage(order) as stage:
-        count = len(stage._scene.entities)
         view = stage.view("third", 48, 32)
+        count = len(without_cameras(stage._scene))
         raster, traced = stage.picture(view, "default", 1), stage.picture(view, "rt-fast", 1)
-        assert len(stage._scene.entities) == count
+        assert len(without_cameras(stage._scene)) == count
     assert raster.shape == traced.shape == (32, 48, 3)
     small = [cv2.resize(p, (6, 4), interpolation=cv2.INTER_AREA).astype(float).ravel() for p in (raster, traced)]
     assert np.corrcoef(*small)[0, 1] > 0.7
@@ -126,10 +132,11 @@ def test_pictures_of_both_kinds(tmp_path: Path) -> None:
 
 
 @pytest.mark.render
-def test_the_command_writes_the_picture(tmp_path: Path) -> None:
+def test_the_command_writes_the_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "out.png"
     assert main(["render", "-s", "3", "--frame", "5", "--size", "48x32", "--light", "evening", "--camera", "head", "-o", str(path)]) == 0
     assert cv2.imread(str(path)).shape == (32, 48, 3)
+    assert re.search(r"48 x 32, raster: \d+\.\d s, \d+\.\d s of processor time", capsys.readouterr().out)
     assert [p.name for p in tmp_path.iterdir()] == ["out.png"]
 
 
@@ -185,3 +192,69 @@ def test_denoising_smooths_noise() -> None:
     noisy = flat + draw.normal(0.0, 0.2, flat.shape).astype(np.float32)
     calm = denoised(noisy, flat, np.zeros_like(flat) + np.float32([0.0, 0.0, 1.0]))
     assert np.abs(calm - flat).mean() < 0.2 * np.abs(noisy - flat).mean()
+
+
+def test_without_the_denoiser_pictures_keep_their_grain_and_one_line_says_so(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(camera, "DENOISER", "no_such_denoiser")
+    camera.denoiser.cache_clear()
+    light = np.random.default_rng(0).random((8, 8, 3), np.float32)
+    with caplog.at_level(logging.WARNING):
+        for _ in range(3):
+            np.testing.assert_array_equal(denoised(light, light, light), light)
+    camera.denoiser.cache_clear()
+    assert [r.levelname for r in caplog.records] == ["WARNING"]
+    assert "pip install no_such_denoiser" in caplog.text
+
+
+def test_denoising_keeps_edges_of_the_guides_and_bright_light() -> None:
+    """Left and right differ in albedo alone; the light goes up to 8, and rows stay rows."""
+    pytest.importorskip("pyoidn")
+    draw = np.random.default_rng(1)
+    albedo = np.full((48, 96, 3), 0.1, np.float32)
+    albedo[:, 48:] = 0.9
+    albedo[24:] *= 0.5
+    truth = albedo * 8.0 / 0.9
+    noisy = truth * draw.gamma(4.0, 0.25, truth.shape[:2])[..., None].astype(np.float32)
+    calm = denoised(noisy, albedo, np.zeros_like(truth) + np.float32([0.0, 0.0, 1.0]))
+    assert calm.shape == truth.shape
+    assert np.abs(calm - truth).mean() < 0.25 * np.abs(noisy - truth).mean()
+
+
+def test_halves_of_side_by_side_points_lie_on_either_side_of_a_plane() -> None:
+    points = np.random.default_rng(2).random((37, 3))
+    order = side_by_side(points)
+    assert sorted(order) == list(range(37))
+    first, rest = points[order[:32]], points[order[32:]]
+    assert (first.max(0) <= rest.min(0)).any()
+    assert (points[order[:16]].max(0) <= points[order[16:32]].min(0)).any()
+    assert len(side_by_side(np.zeros((0, 3)))) == 0 and list(side_by_side(np.zeros((1, 3)))) == [0]
+
+
+def box_under_two_lights() -> sapien.Scene:
+    scene = sapien.Scene([sapien.physx.PhysxCpuSystem(), sapien.render.RenderSystem()])
+    scene.set_ambient_light([0.0, 0.0, 0.0])
+    for half, at in (([2.0, 2.0, 0.1], [0.0, 0.0, -0.1]), ([0.3, 0.3, 0.3], [0.0, 0.0, 0.3]), ([0.1, 2.0, 2.0], [1.5, 0.0, 0.0])):
+        builder = scene.create_actor_builder()
+        builder.add_box_visual(half_size=half, material=sapien.render.RenderMaterial(base_color=[0.8, 0.6, 0.4, 1.0], roughness=0.6))
+        builder.initial_pose = sapien.Pose(at)
+        builder.build_static("box")
+    scene.add_directional_light([0.3, 0.2, -1.0], [0.6, 0.6, 0.6])
+    scene.add_point_light([-1.0, 1.0, 1.5], [1.0, 0.5, 0.2])
+    return scene
+
+
+@pytest.mark.render
+@pytest.mark.long
+def test_drawn_lights_and_ended_paths_give_the_light_of_sapiens_own_pack() -> None:
+    scene, means = box_under_two_lights(), []
+    view = camera.View(sapien.Pose([-3.0, 0.0, 1.2], [0.985, 0.0, 0.174, 0.0]), 0.8, 24, 24)
+    for pack in (ray_pack.ray_pack(), str(Path(sapien.__file__).parent / "vulkan_shader" / "rt")):
+        camera._settings(3, 256)
+        eye = camera._camera(scene, view, pack)
+        eye.take_picture()
+        means.append(eye.get_picture("HdrColor")[..., :3].mean((0, 1)))
+        scene.remove_entity(eye.entity)
+    assert means[1].min() > 0.01
+    np.testing.assert_allclose(means[0], means[1], rtol=0.03)

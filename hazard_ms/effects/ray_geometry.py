@@ -12,7 +12,7 @@ import numpy as np
 import sapien
 from sapien.render import RenderBodyComponent, RenderMaterial, RenderShapeTriangleMesh
 
-from hazard_ms.effects import meshes, ray_pack
+from hazard_ms.effects import meshes, ray_glsl
 from hazard_ms.effects.entities import PREFIX
 from hazard_ms.effects.glsl import EMBER, FLAME, LEAF, SCORCH, SMOKE, WATER
 from hazard_ms.effects.textures import noise_texture
@@ -92,17 +92,34 @@ def _mesh(quads: Quads, time: float, air: Array) -> RenderShapeTriangleMesh:
     material.base_color_texture = noise_texture()
     material.base_color = [*air, 1.0]  # a texture is only seen after a scalar has been set (SAPIEN 3.0.3)
     material.transmission = 1.0
-    material.transmission_roughness = ray_pack.EFFECT + time
+    material.transmission_roughness = ray_glsl.EFFECT + time
     count = len(quads.corners)
     faces = (meshes.FACES[None] + 4 * np.arange(count, dtype=np.uint32)[:, None, None]).reshape(-1, 3)
-    normals = np.repeat(quads.lives, 4, 0)
-    return RenderShapeTriangleMesh(
-        quads.corners.reshape(-1, 3).astype(np.float32),
-        faces,
-        normals.astype(np.float32),
-        quads.places.reshape(-1, 2).astype(np.float32),
-        material,
+    return _shape(quads.corners.reshape(-1, 3), faces, np.repeat(quads.lives, 4, 0), quads.places.reshape(-1, 2), material)
+
+
+def _shape(vertices: Array, faces: Array, normals: Array, places: Array, material: RenderMaterial) -> RenderShapeTriangleMesh:
+    """A mesh with its faces side by side: rays find them many times as quickly."""
+    faces = faces[side_by_side(vertices[faces].mean(1))]
+    data = (
+        np.ascontiguousarray(a, t) for a, t in ((vertices, np.float32), (faces, np.uint32), (normals, np.float32), (places, np.float32))
     )
+    return RenderShapeTriangleMesh(*data, material)
+
+
+def side_by_side(points: Array) -> Array:
+    """The order of points [P, 3] in which each half, each half of a half, and so on, lies on one side of a plane, [P].
+
+    Mesa's lavapipe puts triangles into its tree as they come; graphics cards sort them anyway.
+    """
+    order, place = np.arange(len(points)), np.arange(len(points))
+    size = 1 << max(len(points) - 1, 0).bit_length()
+    while size > 1:
+        here, group, first = points[order], place // size, np.arange(0, len(points), size)
+        extent = np.maximum.reduceat(here, first) - np.minimum.reduceat(here, first)
+        order = order[np.lexsort((here[place, extent.argmax(1)[group]], group))]
+        size //= 2
+    return order
 
 
 def _spread(vertices: Array, data: Array, pose: Array, view: Array, strength: float) -> Quads:
@@ -176,9 +193,8 @@ def _water(vertices: Array, data: Array, place: Array, pose: Array, time: float)
     grid = np.concatenate(points)
     normal = _waves(grid, time)
     material = RenderMaterial(base_color=[*TINT, 1.0], roughness=SMOOTH, specular=0.5)
-    material.transmission, material.ior, material.transmission_roughness = TRANSPARENT, REFRACTION, ray_pack.WATER
-    flat = np.zeros((len(grid), 2), np.float32)
-    return RenderShapeTriangleMesh(grid.astype(np.float32), np.concatenate(faces).astype(np.uint32), normal, flat, material)
+    material.transmission, material.ior, material.transmission_roughness = TRANSPARENT, REFRACTION, ray_glsl.WATER
+    return _shape(grid, np.concatenate(faces), normal, np.zeros((len(grid), 2)), material)
 
 
 def _waves(grid: Array, time: float) -> Array:

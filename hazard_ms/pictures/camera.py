@@ -17,9 +17,10 @@ from hazard_ms.effects import shader_config, shader_pack
 from hazard_ms.effects.ray_geometry import dress, undress
 from hazard_ms.effects.ray_pack import ray_pack
 
-BOUNCES = {"rt-fast": 1, "rt": 5}  # of a path [ours]
+BOUNCES = {"rt-fast": 1, "rt": 3}  # of a path, where water costs none; further ones are ambient light [ours]
 NEAR, FAR = 0.05, 120.0  # of what is seen [m]
 KNEE = 0.75  # brightness from which highlights are compressed instead of cut off [ours]
+TINY = 16  # of the picture that compiles [pixels]
 DENOISER = "pyoidn"  # Intel Open Image Denoise on the CPU; optional
 
 Image = NDArray[np.uint8]
@@ -36,18 +37,56 @@ class View:
     height: int
 
 
-def photograph(scene: sapien.Scene, view: View, shader: str = "default", samples: int = 4, time: float = 0.0) -> Image:
-    """A picture of `scene` as it is shown now, [H, W, 3], RGB.
+class Photographer:
+    """Takes pictures of one scene.
 
-    `shader`: default (raster, with effects), rt-fast or rt; `samples` per pixel of the latter; `time` [s] of flames and waves.
+    SAPIEN compiles ray tracing anew when one of its cameras goes, so ray-tracing ones stay: one for each size and quality.
     """
-    if shader == "default":
-        return _raster(scene, view)
-    added = dress(scene, view.pose, time)
-    try:
-        return _traced(scene, view, BOUNCES[shader], samples)
-    finally:
-        undress(scene, added)
+
+    def __init__(self, scene: sapien.Scene) -> None:
+        """Of `scene`, which must have a renderer."""
+        self._scene = scene
+        self._eyes: dict[tuple[int, int, int, int], Any] = {}  # by width, height, bounces and samples, which stay as a camera is made
+
+    def prepare(self, view: View, shader: str) -> None:
+        """Compile what ray-traced pictures need: a scene's first two do, be they as tiny as these."""
+        if shader == "default" or self._eyes:
+            return
+        tiny = View(view.pose, view.angle, TINY, TINY)
+        for _ in range(2):
+            self._traced(tiny, 1, 1, 0.0)
+
+    def photograph(self, view: View, shader: str = "default", samples: int = 4, time: float = 0.0) -> Image:
+        """A picture of the scene as it is shown now, [H, W, 3], RGB.
+
+        `shader`: default (raster, with effects), rt-fast or rt; `samples` per pixel of the latter; `time` [s] of flames and waves.
+        """
+        if shader == "default":
+            return _raster(self._scene, view)
+        self.prepare(view, shader)
+        light, albedo, normal = self._traced(view, BOUNCES[shader], samples, time)
+        return developed(denoised(np.nan_to_num(light, nan=0.0, posinf=0.0), albedo, normal))
+
+    def _traced(self, view: View, bounces: int, samples: int, time: float) -> tuple[NDArray[np.float32], ...]:
+        """Linear light, albedo and normals, [H, W, 3] each."""
+        added = dress(self._scene, view.pose, time)
+        try:
+            camera = self._eye(view, bounces, samples)
+            camera.take_picture()
+            return tuple(camera.get_picture(name)[..., :3].astype(np.float32) for name in ("HdrColor", "Albedo", "Normal"))
+        finally:
+            undress(self._scene, added)
+
+    def _eye(self, view: View, bounces: int, samples: int) -> Any:
+        key = view.width, view.height, bounces, samples
+        if key not in self._eyes:
+            _settings(bounces, samples)
+            self._eyes[key] = _camera(self._scene, view, ray_pack())
+        camera = self._eyes[key]
+        camera.set_fovy(view.angle, compute_x=True)
+        camera.entity.set_pose(view.pose)
+        self._scene.update_render()
+        return camera
 
 
 def _raster(scene: sapien.Scene, view: View) -> Image:
@@ -59,15 +98,11 @@ def _raster(scene: sapien.Scene, view: View) -> Image:
     return np.ascontiguousarray(shown) if shown.dtype == np.uint8 else (np.clip(shown, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
 
 
-def _traced(scene: sapien.Scene, view: View, bounces: int, samples: int) -> Image:
+def _settings(bounces: int, samples: int) -> None:
+    """Of cameras that are made from now on."""
     sapien.render.set_ray_tracing_samples_per_pixel(samples)
     sapien.render.set_ray_tracing_path_depth(bounces)
     sapien.render.set_ray_tracing_denoiser("none")
-    camera = _camera(scene, view, ray_pack())
-    camera.take_picture()
-    light, albedo, normal = (camera.get_picture(name)[..., :3].astype(np.float32) for name in ("HdrColor", "Albedo", "Normal"))
-    scene.remove_entity(camera.entity)
-    return developed(denoised(np.nan_to_num(light, nan=0.0, posinf=0.0), albedo, normal))
 
 
 def _camera(scene: sapien.Scene, view: View, pack: str) -> Any:

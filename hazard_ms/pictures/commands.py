@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from time import perf_counter, process_time
 
 import tyro
 
@@ -23,7 +24,12 @@ def render(order: tyro.conf.OmitArgPrefixes[RenderOrder]) -> int:
     width, height = order.pixels()
     with Stage(order) as stage:
         if order.output is not None:
-            save(order.output, stage.picture(stage.view(order.camera, width, height), order.shader, order.spp))
+            view = stage.view(order.camera, width, height)
+            stage.prepare(view, order.shader)
+            began, worked = perf_counter(), process_time()
+            picture = stage.picture(view, order.shader, order.spp)
+            print(f"{order.kind()}: {perf_counter() - began:.1f} s, {process_time() - worked:.1f} s of processor time")
+            save(order.output, picture)
         if order.turntable is not None:
             views = (stage.around(k / order.turns, width, height) for k in range(order.turns))
             film(order.turntable, (stage.picture(v, order.shader, order.spp) for v in views), (width, height), FILM_RATE)

@@ -1,4 +1,4 @@
-"""The gallery: every task at four moments, rasterised and ray-traced, from the corner and through the robot's eyes, in three lights."""
+"""The gallery: every task at four moments, rasterised and ray-traced, outside and through the robot's eyes, in three lights; all places."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ class Show(NamedTuple):
     frames: tuple[int, ...]
     camera: str
     about: str
+    scene: str | None = None  # by the seed if not given
 
 
 SHOWS = (
@@ -36,6 +37,13 @@ SHOWS = (
     Show("HazardWind-v1", 3, "day", (30, 150, 400, 900), "third", "Wind blows things over the street, with leaves, paper and dust."),
     Show("HazardWind-v1", 3, "evening", (400,), "third", "The same street in the evening."),
     Show("HazardWind-v1", 3, "night", (400,), "third", "The same street at night, by its lamps."),
+    Show("HazardWind-v1", 3, "day", (150,), "head", "The same street, as the robot sees it."),
+    Show("HazardFire-v1", 0, "day", (800,), "third", "Fire in a living room.", "living_room_a/02"),
+    Show("HazardFlood-v1", 0, "day", (450,), "third", "Water in a craft room.", "craft_room_a/01"),
+    Show("HazardFire-v1", 0, "evening", (800,), "third", "Fire in the kitchen of the test split.", "kitchen_b/03"),
+    Show("HazardWind-v1", 0, "day", (200,), "third", "Wind over a crossing.", "crossing/02"),
+    Show("HazardWind-v1", 0, "evening", (200,), "third", "Wind in a park.", "park/04"),
+    Show("HazardWind-v1", 0, "day", (200,), "third", "Wind over the car park of the test split.", "parking/01"),
 )
 
 
@@ -50,7 +58,8 @@ def make(folder: Path, samples: int, shows: tuple[Show, ...] = SHOWS) -> Path:
     ]
     for show in shows:
         lines += [f"## {show.env_id}, {show.light}", "", show.about, "", "| frame | rasterised | ray-traced |", "|---|---|---|"]
-        with Stage(RenderOrder(output=Path(PAGE).with_suffix(".jpg"), env_id=show.env_id, seed=show.seed, light=show.light)) as stage:
+        order = RenderOrder(output=Path(PAGE).with_suffix(".jpg"), env_id=show.env_id, seed=show.seed, scene=show.scene, light=show.light)
+        with Stage(order) as stage:
             for frame in show.frames:
                 stage.play(frame)
                 names = [_keep(folder, show, frame, shader, _picture(stage, show, shader, samples)) for shader in ("default", "rt-fast")]
@@ -69,6 +78,7 @@ def _picture(stage: Stage, show: Show, shader: str, samples: int) -> Image:
 def _keep(folder: Path, show: Show, frame: int, shader: str, picture: Image) -> str:
     """Write the picture; returns its name."""
     task = show.env_id.removeprefix("Hazard").partition("-")[0].lower()
-    name = f"{task}_{show.light}_{show.camera}_{frame:04d}_{shader.replace('default', 'raster')}.jpg"
+    place = f"{show.scene.partition('/')[0]}_" if show.scene else ""
+    name = f"{task}_{place}{show.light}_{show.camera}_{frame:04d}_{shader.replace('default', 'raster')}.jpg"
     save(folder / name, picture, QUALITY)
     return name

@@ -81,6 +81,11 @@ class RenderOrder:
             raise ValueError(f"size is {self.size!r}; 1024 or 1024x768 are allowed")
         return whole(int(parts[0]), 16, LARGEST, "width"), whole(int(parts[-1]), 16, LARGEST, "height")
 
+    def kind(self) -> str:
+        """Size, shader and samples, as `512 x 512, rt, 4 samples`."""
+        width, height = self.pixels()
+        return f"{width} x {height}, " + ("raster" if self.shader == "default" else f"{self.shader}, {self.spp} samples")
+
 
 @dataclass(frozen=True)
 class GalleryOrder:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import Any
 
 import gymnasium as gym
@@ -15,7 +16,7 @@ from hazard_ms.agents.base import agent
 from hazard_ms.building import corner_view
 from hazard_ms.effects.entities import FRAMES_PER_SECOND
 from hazard_ms.env import HazardEnv
-from hazard_ms.pictures.camera import Image, View, photograph
+from hazard_ms.pictures.camera import Image, Photographer, View
 from hazard_ms.pictures.order import RenderOrder
 from hazard_ms.play import Episode
 from hazard_ms.rendering import backend
@@ -74,10 +75,19 @@ class Stage:
         eye = np.array([x / 2 + radius * math.cos(turn), y / 2 + radius * math.sin(turn), ORBIT_HEIGHT * corner_view(spec).p[2]])
         return View(look_at(eye, [x / 2, y / 2, 0.3]).sp, THIRD_ANGLE, width, height)
 
+    def prepare(self, view: View, shader: str) -> None:
+        """Compile what pictures from `view` through `shader` need, so that the first takes no longer than the next."""
+        self.env.observer.show()
+        self._photographer.prepare(view, shader)
+
     def picture(self, view: View, shader: str, samples: int) -> Image:
         """What is seen from `view`, [H, W, 3], RGB."""
         self.env.observer.show()
-        return photograph(self._scene, view, shader, samples, self.frame / FRAMES_PER_SECOND)
+        return self._photographer.photograph(view, shader, samples, self.frame / FRAMES_PER_SECOND)
+
+    @cached_property
+    def _photographer(self) -> Photographer:
+        return Photographer(self._scene)
 
     @property
     def _scene(self) -> sapien.Scene:

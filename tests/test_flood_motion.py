@@ -26,7 +26,8 @@ def row(things: list[Thing]) -> list[Thing]:
     return [dataclasses.replace(t, at=(3.0 * k, 10.0, t.at[2])) for k, t in enumerate(things)]
 
 
-BOXES = [Thing(size, 1000 * s) for size in ((0.2, 0.2, 0.2), (0.5, 0.4, 0.12)) for s in (0.2, 0.37, 0.5, 0.9)]
+# So flat that they float upright: a cube of 0.37 turns on its edge after some seconds, from whatever rounds its first torque.
+BOXES = [Thing(size, 1000 * s) for size in ((0.4, 0.4, 0.2), (0.5, 0.4, 0.12)) for s in (0.2, 0.37, 0.5, 0.9)]
 ROUND = [Thing((0.3, 0.3, 0.2), 1000 * s, shape=CYLINDER) for s in (0.2, 0.37, 0.5, 0.9)]
 BALLS = [Thing((d, d, d), 1000 * s, shape=BALL) for d in (0.08, 0.3) for s in (0.2, 0.5, 0.9)]
 

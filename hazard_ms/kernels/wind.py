@@ -12,6 +12,7 @@ from hazard_ms.launching import OPTIONS
 wp.set_module_options(OPTIONS)
 
 CALM = wp.constant(1e-3)  # slower air does nothing [m/s] [C object.py:41]
+UNIT_VARIANCE = wp.constant(3.0**0.5)  # length of a vector of three numbers of mean square 1
 
 
 @wp.func
@@ -76,7 +77,7 @@ def turbulence(
     z = draws.normal_pair(key, 3 * b + 2)
     r = wp.vec3(x[0], y[0], z[0])
     if fixed_length:  # a normal vector has no preferred direction
-        r = 1.7320508 * wp.normalize(r)
+        r = UNIT_VARIANCE * wp.normalize(r)
     along = wp.vec3(heading[e][0], heading[e][1], 0.0)
     high = spans(axes_of(rotation[e, b]), extent[e, b])[2]
     sway[e, b] = sideways * wp.cross(along, r)

@@ -38,7 +38,7 @@ def fire_charts() -> Iterator[Chart]:
 
 def _room() -> Chart:
     """A living room with a sofa 1 m from a waste basket: height of the smoke, and what a person may bear."""
-    blaze = Blaze(lapse=1.0)
+    blaze = Blaze(lapse=1.0, every=1)
     world = room_world([("sofa", (2.5, 2.0, 0.0))], [(2.0, 2.0)], size=(5.0, 4.0), agent=(4.5, 3.5), extent=(0.9, 0.8, 0.8))
     state = blaze.state_type.allocate({"E": 1, "B": world.num_bodies, **blaze.sizes(world)}, "cpu")
     blaze.reset(state, world, torch.arange(1))

@@ -24,6 +24,7 @@ from hazard_ms.lighting import LIGHTINGS, Lighting
 from hazard_ms.rendering import backend
 from hazard_ms.robots import ROBOTS
 from hazard_ms.scenes.files import playing
+from hazard_ms.sensing.ray_camera import with_our_shaders
 from hazard_ms.spec import SceneSpec
 from hazard_ms.tasks import TASKS, task_of
 from hazard_ms.world import World
@@ -122,8 +123,8 @@ class HazardEnv(BaseEnv):
             render_backend=chosen,
             sim_backend=sim_backend,
             sim_config=sim_config or {},
-            sensor_configs={**pack, **(sensor_configs or {})},
-            human_render_camera_configs={**pack, **(human_render_camera_configs or {})},
+            sensor_configs=with_our_shaders({**pack, **(sensor_configs or {})}, num_envs, sim_backend),
+            human_render_camera_configs=with_our_shaders({**pack, **(human_render_camera_configs or {})}, num_envs, sim_backend),
             robot_uids=ROBOTS[robot_uids].uid,
             reconfiguration_freq=checks.whole(reconfiguration_freq, 0, 2**31, "reconfiguration_freq"),
             **{**maniskill_keywords, "enhanced_determinism": True},

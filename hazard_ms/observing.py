@@ -11,8 +11,10 @@ from torch import Tensor
 from hazard_ms.building import extent_of_bag, pose_of
 from hazard_ms.checks import one_of
 from hazard_ms.effects import Looks
+from hazard_ms.effects.entities import FRAMES_PER_SECOND
 from hazard_ms.sensing.camera import AGENT, NOTHING, STRUCTURE, relabel
 from hazard_ms.sensing.hazard_image import SIDE, enlarge, hazard_image, sample_points
+from hazard_ms.sensing.ray_camera import take_over
 from hazard_ms.sensing.target_table import TargetTable
 from hazard_ms.sensing.view import View
 
@@ -63,6 +65,8 @@ class Observer:
         hazards = env.task.hazards
         self.effects = Looks(hazards, env.scene.sub_scenes, env.specs, env.world, env.effects_mode) if self.renders else None
         self.labels = self._labels()
+        for cameras in (env._sensors, env._human_render_cameras):
+            take_over(cameras, lambda: int(env.world.frame[0]) / FRAMES_PER_SECOND)
 
     def _labels(self) -> Tensor:
         """Label of each of the renderer's segmentation ids, [E, S]: index along B, or STRUCTURE, AGENT, NOTHING."""

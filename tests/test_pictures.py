@@ -18,14 +18,14 @@ import torch
 
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.cli import main
-from hazard_ms.effects import ray_pack
+from hazard_ms.effects import ray_pack, ray_picture
 from hazard_ms.effects.ray_geometry import side_by_side
 from hazard_ms.effects.shader_pack import UnknownSapienError
 from hazard_ms.lighting import DRAWN, FIRST_FAILURE, LAST_FAILURE, LIGHTINGS, Lighting
 from hazard_ms.pictures import camera
-from hazard_ms.pictures.camera import denoised, developed
 from hazard_ms.pictures.order import RenderOrder
 from hazard_ms.pictures.stage import Stage
+from hazard_ms.rendering import DEVICES, backend
 from hazard_ms.tasks import TASKS
 
 FRAMES = 40  # of an episode: the fire has spread by then
@@ -179,9 +179,9 @@ def test_an_unknown_sapien_gives_its_own_pack(monkeypatch: pytest.MonkeyPatch, c
 
 def test_developing_keeps_black_and_order() -> None:
     light = np.linspace(0.0, 20.0, 200, dtype=np.float32)[None, :, None].repeat(3, -1)
-    shown = developed(light).astype(int)[0, :, 0]
+    shown = ray_picture.developed(light).astype(int)[0, :, 0]
     assert shown[0] == 0 and shown[-1] == 255 and (np.diff(shown) >= 0).all()
-    half = developed(np.full((1, 1, 3), 0.5, np.float32))[0, 0, 0]
+    half = ray_picture.developed(np.full((1, 1, 3), 0.5, np.float32))[0, 0, 0]
     assert half == round(255 * 0.5 ** (1 / 2.2))
 
 
@@ -190,20 +190,20 @@ def test_denoising_smooths_noise() -> None:
     draw = np.random.default_rng(0)
     flat = np.full((64, 64, 3), 0.5, np.float32)
     noisy = flat + draw.normal(0.0, 0.2, flat.shape).astype(np.float32)
-    calm = denoised(noisy, flat, np.zeros_like(flat) + np.float32([0.0, 0.0, 1.0]))
+    calm = ray_picture.denoised(noisy, flat, np.zeros_like(flat) + np.float32([0.0, 0.0, 1.0]))
     assert np.abs(calm - flat).mean() < 0.2 * np.abs(noisy - flat).mean()
 
 
 def test_without_the_denoiser_pictures_keep_their_grain_and_one_line_says_so(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(camera, "DENOISER", "no_such_denoiser")
-    camera.denoiser.cache_clear()
+    monkeypatch.setattr(ray_picture, "DENOISER", "no_such_denoiser")
+    ray_picture.denoiser.cache_clear()
     light = np.random.default_rng(0).random((8, 8, 3), np.float32)
     with caplog.at_level(logging.WARNING):
         for _ in range(3):
-            np.testing.assert_array_equal(denoised(light, light, light), light)
-    camera.denoiser.cache_clear()
+            np.testing.assert_array_equal(ray_picture.denoised(light, light, light), light)
+    ray_picture.denoiser.cache_clear()
     assert [r.levelname for r in caplog.records] == ["WARNING"]
     assert "pip install no_such_denoiser" in caplog.text
 
@@ -217,7 +217,7 @@ def test_denoising_keeps_edges_of_the_guides_and_bright_light() -> None:
     albedo[24:] *= 0.5
     truth = albedo * 8.0 / 0.9
     noisy = truth * draw.gamma(4.0, 0.25, truth.shape[:2])[..., None].astype(np.float32)
-    calm = denoised(noisy, albedo, np.zeros_like(truth) + np.float32([0.0, 0.0, 1.0]))
+    calm = ray_picture.denoised(noisy, albedo, np.zeros_like(truth) + np.float32([0.0, 0.0, 1.0]))
     assert calm.shape == truth.shape
     assert np.abs(calm - truth).mean() < 0.25 * np.abs(noisy - truth).mean()
 
@@ -233,7 +233,7 @@ def test_halves_of_side_by_side_points_lie_on_either_side_of_a_plane() -> None:
 
 
 def box_under_two_lights() -> sapien.Scene:
-    scene = sapien.Scene([sapien.physx.PhysxCpuSystem(), sapien.render.RenderSystem()])
+    scene = sapien.Scene([sapien.physx.PhysxCpuSystem(), sapien.render.RenderSystem(sapien.Device(DEVICES[backend()]))])
     scene.set_ambient_light([0.0, 0.0, 0.0])
     for half, at in (([2.0, 2.0, 0.1], [0.0, 0.0, -0.1]), ([0.3, 0.3, 0.3], [0.0, 0.0, 0.3]), ([0.1, 2.0, 2.0], [1.5, 0.0, 0.0])):
         builder = scene.create_actor_builder()
@@ -251,10 +251,9 @@ def test_drawn_lights_and_ended_paths_give_the_light_of_sapiens_own_pack() -> No
     scene, means = box_under_two_lights(), []
     view = camera.View(sapien.Pose([-3.0, 0.0, 1.2], [0.985, 0.0, 0.174, 0.0]), 0.8, 24, 24)
     for pack in (ray_pack.ray_pack(), str(Path(sapien.__file__).parent / "vulkan_shader" / "rt")):
-        camera._settings(3, 256)
         eye = camera._camera(scene, view, pack)
-        eye.take_picture()
-        means.append(eye.get_picture("HdrColor")[..., :3].mean((0, 1)))
+        light, _, _ = ray_picture.exposed(scene, eye, 3, 256)
+        means.append(light.mean((0, 1)))
         scene.remove_entity(eye.entity)
     assert means[1].min() > 0.01
     np.testing.assert_allclose(means[0], means[1], rtol=0.03)

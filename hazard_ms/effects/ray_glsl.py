@@ -10,9 +10,11 @@ EFFECT, WATER = 1000.0, 3000.0  # transmission_roughness: from here on quads of 
 GLOW = "1.6"  # brightness of flames in linear light, before tones are mapped [ours]
 PIXEL = 0.0015  # angle that a pixel sees, for the sharpness of textures [rad] [ours]
 CAREFUL = 2  # bounces from which on effects are seen in mirrors, too
-KEPT = 0.6  # share of paths that are followed after a bounce, at most [ours]
+BLOCK, STRIDE = (4, 2), "61u"  # pixels that are traced in step; rows of them between one and the next, a prime [ours]
+SKY = "1.0e30"  # farther than anything
+KEPT = 0.5  # share of paths that are followed after a bounce, for each part of light that they carry [ours]
 MOST_WATERS = 2  # the first hit of water's surface uses up no bounce
-MOST_VEILS = 48  # quads of effects that one ray passes
+MOST_VEILS = 32  # quads of effects that one ray passes, the nearest ones
 
 HIT = (
     """
@@ -22,6 +24,30 @@ struct { mat4 modelMatrix; } objectTransformBuffer;
 struct { mat4 viewMatrix; mat4 viewMatrixInverse; } cameraBuffer;
 int hazardTexture;
 #define transmissionTexture textures[nonuniformEXT(hazardTexture)]
+"""
+    + CHAR
+    + IMMERSE
+)
+
+CARRIED = f"""
+  float chance;
+  bool dull;
+  float far;  // of what the ray has hit
+  int veils;  // quads of effects that it has passed
+  float veilFar[{MOST_VEILS}];
+  uvec2 veilShown[{MOST_VEILS}];
+"""
+
+PASSED = (
+    """
+hitAttributeEXT vec3 attribs;
+
+#include "./light.glsl"
+#define SET_NUM 1
+#include "./scene_set.glsl"
+#undef SET_NUM
+
+int hazardTexture;
 
 float noise(vec2 p) { return texture(textures[nonuniformEXT(hazardTexture)], p).r; }
 vec4 water(vec3 place, vec2 flow, float way, float time, float strength) { return vec4(0); }  // here it is glass
@@ -29,8 +55,27 @@ vec4 water(vec3 place, vec2 flow, float way, float time, float strength) { retur
     + FIRE_FRAG
     + WIND_FRAG
     + SHOWN
-    + CHAR
-    + IMMERSE
+    + f"""
+#define MOST_VEILS {MOST_VEILS}
+"""
+    + """
+// Note a quad that the ray passes; of too many the nearest.
+void hazardPassed(vec4 veil) {
+  int place = ray.veils;
+  if (place < MOST_VEILS) {
+    ray.veils += 1;
+  } else {
+    place = 0;
+    for (int k = 1; k < MOST_VEILS; ++k) {
+      if (ray.veilFar[k] > ray.veilFar[place]) place = k;
+    }
+    if (ray.veilFar[place] < gl_HitTEXT) return;
+  }
+  ray.veilFar[place] = gl_HitTEXT;
+  ray.veilShown[place] = uvec2(packHalf2x16(veil.rg), packHalf2x16(veil.ba));
+}
+
+"""
 )
 
 LIT = """
@@ -74,23 +119,6 @@ vec3 hazardLit(vec3 pos, vec3 normal, vec3 diffuse, vec3 specular, float roughne
 }
 """
 
-VEIL = f"""
-  if (mat.transmissionRoughness >= {EFFECT} && mat.transmissionRoughness < {WATER}) {{
-    hazardTexture = ti.diffuse;
-    vec3 life = n0 * b0 + n1 * b1 + n2 * b2;
-    vec4 veil = shown(uv, vec4(floor(life.x), fract(life.x), life.y, 1.0), worldPosition, mat.transmissionRoughness - {EFFECT},
-                      life.z, mat.baseColor.rgb);
-    if (veil.a < (life.x < 1.0 ? 0.05 : 0.02)) veil.a = 0.0;
-    veil.rgb *= life.x < 1.0 || floor(life.x) == 3.0 ? {GLOW} : 1.0;
-    ray.radiance = veil.rgb * veil.a;
-    ray.attenuation = vec3(1.0 - veil.a);
-    ray.albedo = veil.rgb * veil.a;
-    ray.origin = worldPosition;
-    ray.segmentation = uvec4(0, 0, 0, 1);
-    return;
-  }}
-"""
-
 SHARPNESS = f"""
   float sharpness = 0.0;  // level of the texture: as many metres as a pixel shows, else what is far sparkles
   if (ti.diffuse >= 0) {{
@@ -120,6 +148,7 @@ SOLID = f"""
 """
 
 SURFACE = "worldPosition, worldShadingNormal, diffuseColor, specularColor, roughness, transmission, eta"
+LIGHTS = "".join(f"\n    + trace{kind}Lights({SURFACE})" for kind in ("Point", "Directional", "Spot", "Parallelogram"))
 
 SCATTERED = "    attenuation = attenuation / diffuseProb;\n"
 SMOOTH = 0.3  # roughness up to which a surface mirrors effects [ours]
@@ -129,19 +158,56 @@ LAST = """
   if (ray.depth >= maxDepth) ray.radiance += ambientLight * diffuseColor;
 """
 
-SHADOW = f"""  if ((gl_IncomingRayFlagsEXT & gl_RayFlagsTerminateOnFirstHitEXT) != 0) {{
+VEIL = f"""  if ((gl_IncomingRayFlagsEXT & gl_RayFlagsTerminateOnFirstHitEXT) != 0) {{
     if (mat.transmissionRoughness >= {EFFECT}) ignoreIntersectionEXT;
     return;
   }}
-  bool veil = mat.transmissionRoughness >= {EFFECT} && mat.transmissionRoughness < {WATER};
-  if (veil && (ray.dull || maxDepth < {CAREFUL} && ray.depth > 0)) ignoreIntersectionEXT;  // the fire's own lamp lights things
+  if (mat.transmissionRoughness >= {EFFECT} && mat.transmissionRoughness < {WATER}) {{
+    if (!ray.dull && (maxDepth >= {CAREFUL} || ray.depth == 0)) {{  // else the fire's own lamp lights things
+      TextureIndex ti = textureIndices.t[materialIndex];
+      uint index = geometryInstances.i[instanceId].geometryIndex;
+      vec2 uv = vec2(0);
+      vec3 life = vec3(0), weight = vec3(1.0 - attribs.x - attribs.y, attribs.xy);
+      for (int k = 0; k < 3; ++k) {{
+        Vertex v = vertices[nonuniformEXT(index)].v[indices[nonuniformEXT(index)].i[3 * gl_PrimitiveID + k]];
+        uv += weight[k] * vec2(v.u, v.v);
+        life += weight[k] * vec3(v.nx, v.ny, v.nz);
+      }}
+      hazardTexture = ti.diffuse;
+      vec3 place = gl_WorldRayOriginEXT + gl_WorldRayDirectionEXT * gl_HitTEXT;
+      vec4 veil = shown(uv, vec4(floor(life.x), fract(life.x), life.y, 1.0), place, mat.transmissionRoughness - {EFFECT}, life.z,
+                        mat.baseColor.rgb);
+      if (life.x < 1.0 || floor(life.x) == 3.0) veil.rgb *= {GLOW};
+      if (veil.a >= (life.x < 1.0 ? 0.05 : 0.02)) hazardPassed(veil);
+    }}
+    ignoreIntersectionEXT;
+  }}
 """
 
-GUIDE = f"""      if (ray.segmentation.w == 1u) {{  // a quad of an effect
-        guideAlbedo += guideLeft * min(ray.albedo, vec3(1));
-        guideLeft *= ray.attenuation;
-        if (++veils < {MOST_VEILS}) ray.depth -= 1;
-      }} else if (ray.segmentation.w == 2u) {{
+FRONT = f"""
+      for (int k = 0; k < ray.veils; ++k) {{  // effects before what the ray has hit, the nearest first
+        int next = -1;
+        float near = ray.far;
+        for (int j = 0; j < ray.veils; ++j) {{
+          if (ray.veilFar[j] < near) {{
+            near = ray.veilFar[j];
+            next = j;
+          }}
+        }}
+        if (next < 0) break;
+        ray.veilFar[next] = {SKY};
+        vec2 alpha = unpackHalf2x16(ray.veilShown[next].y);
+        vec3 veil = vec3(unpackHalf2x16(ray.veilShown[next].x), alpha.x) * alpha.y;
+        radiance += attenuation * veil;
+        attenuation *= 1.0 - alpha.y;
+        if (!labelled) {{
+          guideAlbedo += guideLeft * min(veil, vec3(1));
+          guideLeft *= 1.0 - alpha.y;
+        }}
+      }}
+"""
+
+GUIDE = f"""      if (ray.segmentation.w == 2u) {{
         if (maxDepth >= {CAREFUL} && ++waters < {MOST_WATERS}) ray.depth -= 1;
         guideLeft *= 0.9;  // water: what lies below it guides, or what it mirrors
       }} else if (!labelled) {{
@@ -151,11 +217,20 @@ GUIDE = f"""      if (ray.segmentation.w == 1u) {{  // a quad of an effect
 
 """
 
+# Lanes that work in step take blocks of pixels, and threads, that get one part of the picture each, rows of blocks from all over it.
+PIXEL_OF_RAY = f"""
+  uvec2 hazardPixel = gl_LaunchIDEXT.xy, block = uvec2({BLOCK[0]}, {BLOCK[1]}), blocks = gl_LaunchSizeEXT.xy / block;
+  if (gl_LaunchSizeEXT.xy == blocks * block && blocks.y % {STRIDE} != 0u) {{
+    uint at = gl_LaunchIDEXT.y * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x, which = at / (block.x * block.y), lane = at % (block.x * block.y);
+    hazardPixel = uvec2(which % blocks.x, which / blocks.x * {STRIDE} % blocks.y) * block + uvec2(lane % block.x, lane / block.x);
+  }}
+"""
+
 EACH = "  for (int i = 0; i < spp; ++i) {\n"
 ANY = """
   vec3 attenuation = vec3(1.0), guideLeft = vec3(1.0);
   bool labelled = false, alive = false;
-  int veils = 0, waters = 0;
+  int waters = 0;
   float turn = rnd(ray.seed);
   for (int i = 0; i < spp || alive;) {  // one loop for all bounces of all samples: a path that ends early makes room for the next
     if (!alive) {
@@ -164,7 +239,7 @@ BOUNCES = "    vec3 attenuation = vec3(1.0);\n    for (ray.depth = 0; ray.depth 
 BEGUN = """
     attenuation = guideLeft = vec3(1.0);
     labelled = false;
-    veils = waters = 0;
+    waters = 0;
     ray.dull = false;
     ray.chance = fract((float(i) + rnd(ray.seed)) / spp + turn);
     alive = true;
@@ -179,7 +254,7 @@ STEP = f"""
     float left = max(attenuation.x, max(attenuation.y, attenuation.z));
     alive = ray.depth <= maxDepth && left > 1e-3;
     if (alive && ray.segmentation.w == 0u) {{  // what little is left is followed now and then, and counts for more
-      float kept = clamp(left, 0.1, {KEPT});
+      float kept = clamp({KEPT} * left, 0.1, 1.0);
       alive = rnd(ray.seed) < kept;
       attenuation /= kept;
     }}

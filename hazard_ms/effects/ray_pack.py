@@ -30,7 +30,7 @@ _log = logging.getLogger(__name__)
 @cache
 def ray_pack() -> str:
     """The pack as SAPIEN's cameras take it: its folder, made if need be; SAPIEN's own where that is unknown to us."""
-    stock = shader_pack._stock()
+    stock = shader_pack.stock_packs()
     try:
         return str(shader_pack._write(NAME, _derive(shader_pack._texts(stock / "rt"))))
     except (UnknownSapienError, OSError) as fault:
@@ -42,7 +42,7 @@ def _derive(files: dict[str, str]) -> dict[str, str]:
     """SAPIEN's files with our text in them. Raises UnknownSapienError where they are not as expected."""
     shadow = "gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsOpaqueEXT |"
     files = _all(files, "shading.glsl", shadow, shadow.replace(" gl_RayFlagsOpaqueEXT |", ""))
-    files = _before(files, "camera.rahit", "  bool isInside", glsl.SHADOW)
+    files = _passing(files)
     files = _before(files, "camera.rchit", "void main() {", glsl.HIT + glsl.LIT)
     files = _before(files, "camera.rchit", "  if (ti.diffuse >= 0) {", glsl.SHARPNESS)
     files = _all(
@@ -54,12 +54,10 @@ def _derive(files: dict[str, str]) -> dict[str, str]:
     files = _all(
         files, "camera.rchit", "mat.textureTransforms[0].xy);\n    baseColor =", "mat.textureTransforms[0].xy, sharpness);\n    baseColor ="
     )
-    files = _before(files, "camera.rchit", "  float metallic = mat.metallic;", glsl.VEIL)
     files = _before(files, "camera.rchit", "  transmission = clamp(transmission, 0.0, 1.0);", glsl.SOLID)
     files = _before(files, "camera.rchit", "  ray.origin = worldPosition;\n  ray.direction = L;", glsl.LAST)
-    lights = "".join(f"    + trace{kind}Lights({glsl.SURFACE})\n" for kind in ("Point", "Directional"))
-    files = _all(files, "camera.rchit", lights, f"    + hazardLit({glsl.SURFACE})\n")
-    files = _before(files, "ray.glsl", "  uint seed;\n", "  float chance;\n  bool dull;\n")
+    files = _all(files, "camera.rchit", glsl.LIGHTS, f" + hazardLit({glsl.SURFACE})")
+    files = _before(files, "ray.glsl", "  uint seed;\n", glsl.CARRIED)
     files = _all(files, "camera.rchit", glsl.SCATTERED, glsl.SCATTERED + "    ray.dull = true;\n")
     files = _all(files, "camera.rchit", glsl.MIRRORED, glsl.MIRRORED + f"    ray.dull = roughness > {glsl.SMOOTH};\n")
     mark = f"  ray.segmentation.w = mat.transmissionRoughness >= {glsl.WATER} ? 2u : 0u;\n"
@@ -68,9 +66,29 @@ def _derive(files: dict[str, str]) -> dict[str, str]:
     return _generation(files)
 
 
+def _passing(files: dict[str, str]) -> dict[str, str]:
+    """Rays that pass quads of effects, and note what these show; balls of point clouds, which no task has, shine by themselves."""
+    name = "camera.rahit"
+    own = "layout(set = 1, binding = 1) readonly buffer GeometryInstances"
+    start, end = files.get(name, "").find(own), files.get(name, "").find("void main() {")
+    if not 0 < start < end:
+        raise UnknownSapienError(f"{name} has no {own!r} before its main function")
+    files = files | {name: files[name][:start] + glsl.PASSED + files[name][end:]}
+    files = _before(files, name, "  bool isInside", glsl.VEIL)
+    files = _all(files, "point.rchit", f"emission{glsl.LIGHTS}", "baseColor")
+    main = "void main() {"
+    for name, far in (("camera.rchit", "gl_HitTEXT"), ("point.rchit", "gl_HitTEXT"), ("camera.rmiss", glsl.SKY)):
+        files = _all(files, name, main, f"{main}\n  ray.far = {far};")
+    return files
+
+
 def _generation(files: dict[str, str]) -> dict[str, str]:
     """The paths' beginnings: guides for the denoiser are means over all samples, behind effects."""
     name = "camera.rgen"
+    pixel = files.get(name, "").replace("gl_LaunchIDEXT", "hazardPixel")
+    files = _before(files | {name: pixel}, name, "  vec2 invScreen", glsl.PIXEL_OF_RAY)
+    files = _before(files, name, "      traceRayEXT(tlas,", "      ray.veils = 0;\n")
+    files = _before(files, name, "      radiance += ray.radiance * attenuation;", glsl.FRONT)
     files = _before(files, name, "  ray.seed = seed;", "  vec3 guideAlbedo = vec3(0.0), guideNormal = vec3(0.0);\n")
     for old, new in ((glsl.EACH, glsl.ANY), (glsl.BOUNCES, glsl.BEGUN), (glsl.ENDED, glsl.STEP)):
         files = _all(files, name, old, new)
@@ -81,7 +99,9 @@ def _generation(files: dict[str, str]) -> dict[str, str]:
         if len(lines) != 1:
             raise UnknownSapienError(f"{name} stores {word} {len(lines)} times, not once")
         files = _all(files, name, lines[0] + "\n", "")
-    stores = "".join(f"  imageStore(out{word}, ivec2(gl_LaunchIDEXT.xy), vec4(guide{word} / spp, 1.0));\n" for word in ("Normal", "Albedo"))
+    place = "vec4(position.xyz, ndc.z / ndc.w)"
+    files = _all(files, name, place, f"ray.far < {glsl.SKY} ? {place} : vec4(0.0)")  # nothing is nowhere, as in raster pictures
+    stores = "".join(f"  imageStore(out{word}, ivec2(hazardPixel), vec4(guide{word} / spp, 1.0));\n" for word in ("Normal", "Albedo"))
     return _before(files, name, "  radiance /= spp;", stores)
 
 

@@ -63,7 +63,7 @@ def register() -> None:
     """Make `shader_pack="hazard"` and `"hazard-fast"` known to ManiSkill."""
     full, fast = _pack("hazard"), _pack("hazard-fast")
     stock = PREBUILT_SHADER_CONFIGS["default"]
-    bytes_or_float = {**stock.texture_transforms, "Color": _colour}
+    bytes_or_float = {**stock.texture_transforms, "Color": colour}
     PREBUILT_SHADER_CONFIGS["hazard"] = replace(stock, shader_pack=full, texture_transforms=bytes_or_float) if full else stock
     PREBUILT_SHADER_CONFIGS["hazard-fast"] = _fast_config(fast) if fast else PREBUILT_SHADER_CONFIGS["minimal"]
 
@@ -74,7 +74,7 @@ def keep_warm(mode: str, device: sapien.Device) -> None:
     if pack in _warm:
         return
     scene = sapien.Scene([sapien.physx.PhysxCpuSystem(), sapien.render.RenderSystem(device)])
-    camera = sapien.render.RenderCameraComponent(16, 16, str(_stock() / pack))  # an absolute `pack` stays as it is
+    camera = sapien.render.RenderCameraComponent(16, 16, str(stock_packs() / pack))  # an absolute `pack` stays as it is
     entity = sapien.Entity()
     entity.add_component(camera)
     scene.add_entity(entity)
@@ -87,14 +87,14 @@ def _fast_config(pack: str) -> ShaderConfig:
     return ShaderConfig(
         shader_pack=pack,
         texture_names={"Color": ["rgb"], LABELS: ["position", "depth", "segmentation"]},
-        texture_transforms={"Color": _colour, LABELS: _labels},
+        texture_transforms={"Color": colour, LABELS: _labels},
     )
 
 
-def _colour(data: Tensor) -> dict[str, Tensor]:
+def colour(data: Tensor) -> dict[str, Tensor]:
     """Colours in bytes, of whatever format "Color" has in this process."""
-    colour = data[..., :3]
-    return {"rgb": colour if colour.dtype == torch.uint8 else (colour * 255).to(torch.uint8)}
+    seen = data[..., :3]
+    return {"rgb": seen if seen.dtype == torch.uint8 else (seen * 255).to(torch.uint8)}
 
 
 def _labels(data: Tensor) -> dict[str, Tensor]:
@@ -105,7 +105,7 @@ def _labels(data: Tensor) -> dict[str, Tensor]:
 @cache
 def _pack(name: str) -> str | None:
     """Folder of the pack, made if need be; None if the installed SAPIEN is unknown."""
-    stock = _stock()
+    stock = stock_packs()
     try:
         base = stock / ("default" if name == "hazard" else "minimal")
         files = _texts(base) | {f"../common/{n}": t for n, t in _texts(stock / "common").items()}
@@ -169,7 +169,7 @@ def _fast_char() -> str:
     return text.replace("frm.x, frm.y", "specular, roughness")
 
 
-def _stock() -> Path:
+def stock_packs() -> Path:
     """The installed SAPIEN's own packs."""
     return Path(sapien.__file__).parent / "vulkan_shader"
 

@@ -25,10 +25,12 @@ def render(order: tyro.conf.OmitArgPrefixes[RenderOrder]) -> int:
     with Stage(order) as stage:
         if order.output is not None:
             view = stage.view(order.camera, width, height)
-            stage.prepare(view, order.shader)
-            began, worked = perf_counter(), process_time()
-            picture = stage.picture(view, order.shader, order.spp)
-            print(f"{order.kind()}: {perf_counter() - began:.1f} s, {process_time() - worked:.1f} s of processor time")
+            start = perf_counter()
+            with stage.ready(view, order.shader) as take:
+                began, worked = perf_counter(), process_time()
+                picture = take(order.spp)
+                spent = f"{perf_counter() - began:.1f} s, {process_time() - worked:.1f} s of processor time"
+            print(f"{order.kind()}: {spent}, after {began - start:.1f} s that made it ready")
             save(order.output, picture)
         if order.turntable is not None:
             views = (stage.around(k / order.turns, width, height) for k in range(order.turns))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from typing import Any
 
@@ -75,15 +77,17 @@ class Stage:
         eye = np.array([x / 2 + radius * math.cos(turn), y / 2 + radius * math.sin(turn), ORBIT_HEIGHT * corner_view(spec).p[2]])
         return View(look_at(eye, [x / 2, y / 2, 0.3]).sp, THIRD_ANGLE, width, height)
 
-    def prepare(self, view: View, shader: str) -> None:
-        """Compile what pictures from `view` through `shader` need, so that the first takes no longer than the next."""
+    @contextmanager
+    def ready(self, view: View, shader: str) -> Iterator[Callable[[int], Image]]:
+        """Compile what pictures from `view` through `shader` need; yields what takes one, given the samples per pixel."""
         self.env.observer.show()
-        self._photographer.prepare(view, shader)
+        with self._photographer.ready(view, shader, self.frame / FRAMES_PER_SECOND) as take:
+            yield take
 
     def picture(self, view: View, shader: str, samples: int) -> Image:
         """What is seen from `view`, [H, W, 3], RGB."""
-        self.env.observer.show()
-        return self._photographer.photograph(view, shader, samples, self.frame / FRAMES_PER_SECOND)
+        with self.ready(view, shader) as take:
+            return take(samples)
 
     @cached_property
     def _photographer(self) -> Photographer:

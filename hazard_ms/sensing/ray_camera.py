@@ -1,0 +1,114 @@
+"""ManiSkill's cameras with its ray-tracing shaders, `shader_pack="rt"`, `"rt-med"` or `"rt-fast"`, and what our tasks show.
+
+SAPIEN's own pack knows no flames or water, and its denoisers need a card of NVIDIA. Ours draws and denoises everywhere, with as many
+samples per pixel as ManiSkill's shader of that name. Depth, positions, normals, albedo and labels are those of raster pictures, pixel for
+pixel: a second camera in the same place sees them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import sapien
+import torch
+from mani_skill.render import PREBUILT_SHADER_CONFIGS
+from mani_skill.sensors.camera import Camera
+from torch import Tensor
+
+from hazard_ms.effects.ray_geometry import dress, undress
+from hazard_ms.effects.ray_pack import ray_pack
+from hazard_ms.effects.ray_picture import BOUNCES, denoised, developed, exposed
+from hazard_ms.effects.shader_pack import colour, shader_config, stock_packs
+
+OURS = {name: f"hazard-{name}" for name in BOUNCES}  # ManiSkill's name of a shader -> that of ours
+SAMPLES = "ray_tracing_samples_per_pixel"
+
+
+def with_our_shaders(configs: dict[str, Any], num_envs: int, sim_backend: str = "auto") -> dict[str, Any]:
+    """Settings of cameras as ManiSkill takes them, with our ray tracing where `configs` asks for its own.
+
+    Raises ValueError where more than one environment would be ray-traced, or one whose physics runs on a GPU.
+    """
+    made = {k: with_our_shaders(v, num_envs, sim_backend) if isinstance(v, dict) else v for k, v in configs.items()}
+    shader = made.get("shader_pack")
+    if isinstance(shader, str) and shader in OURS:
+        if num_envs > 1:
+            raise ValueError(f"shader_pack is {shader!r} and num_envs {num_envs}; ray-traced pictures are taken with num_envs=1 only")
+        if sim_backend not in ("auto", "cpu", "physx_cpu"):
+            raise ValueError(
+                f"shader_pack is {shader!r} and sim_backend {sim_backend!r}; ray-traced pictures are taken with sim_backend='cpu'"
+            )
+        stock = PREBUILT_SHADER_CONFIGS[shader]
+        bytes_too = {**stock.texture_transforms, "Color": colour}
+        PREBUILT_SHADER_CONFIGS[OURS[shader]] = replace(stock, shader_pack=ray_pack(), texture_transforms=bytes_too)
+        sapien.render.set_ray_tracing_denoiser("none")  # of cameras made from now on: pictures are denoised here
+        made["shader_pack"] = OURS[shader]
+    return made
+
+
+class RayCamera(Camera):
+    """A camera of one environment that ManiSkill has made with a shader of ours."""
+
+    def __init__(self, made: Camera, clock: Callable[[], float]) -> None:
+        """Take over the camera `made`; `clock` tells the time [s] of flames and waves."""
+        self.__dict__.update(vars(made))
+        self._clock = clock
+        self._twin = self._rasterising()
+        self._textures: dict[str, Tensor] = {}
+
+    def capture(self) -> None:
+        """Take a picture, with effects in the scene as long as it takes."""
+        (scene,), (eye,) = self.camera.scene.sub_scenes, self.camera._render_cameras
+        shader, config = next(k for k, v in OURS.items() if v == self.config.shader_pack), self.config.shader_config
+        self._twin.entity.set_pose(eye.global_pose)
+        scene.update_render()
+        self._twin.take_picture()
+        taken = {name: self._twin.get_picture(name) for name in config.texture_names}
+        added = dress(scene, eye.global_pose, self._clock())
+        try:
+            taken["Color"] = developed(denoised(*exposed(scene, eye, BOUNCES[shader], config.shader_pack_config[SAMPLES])))
+        finally:
+            undress(scene, added)
+            scene.update_render()
+        self._textures = {name: torch.from_numpy(image)[None].to(self.camera.scene.device) for name, image in taken.items()}
+
+    def _rasterising(self) -> Any:
+        """A camera that sees what this one sees, but rasterises it."""
+        (scene,), (eye,) = self.camera.scene.sub_scenes, self.camera._render_cameras
+        pack = PREBUILT_SHADER_CONFIGS[shader_config("full")].shader_pack
+        twin = sapien.render.RenderCameraComponent(eye.width, eye.height, str(stock_packs() / pack))
+        twin.set_perspective_parameters(eye.near, eye.far, eye.fx, eye.fy, eye.cx, eye.cy, eye.skew)
+        entity = sapien.Entity()
+        entity.name = "labels"
+        entity.add_component(twin)
+        scene.add_entity(entity)
+        return twin
+
+    def get_obs(
+        self,
+        rgb: bool = True,
+        depth: bool = True,
+        position: bool = True,
+        segmentation: bool = True,
+        normal: bool = False,
+        albedo: bool = False,
+        apply_texture_transforms: bool = True,
+    ) -> dict[str, Tensor]:
+        """What the last picture shows, [1, H, W, C] each, as ManiSkill's cameras give it."""
+        asked = {"rgb": rgb, "depth": depth, "position": position, "segmentation": segmentation, "normal": normal, "albedo": albedo}
+        wanted = {k for k, yes in asked.items() if yes}
+        config, seen = self.config.shader_config, dict[str, Tensor]()
+        for name, given in config.texture_names.items():
+            if wanted.intersection(given):
+                data = self._textures[name]
+                seen |= config.texture_transforms[name](data) if apply_texture_transforms else {name: data}
+        return {k: v for k, v in seen.items() if k in wanted or not apply_texture_transforms}
+
+
+def take_over(cameras: dict[str, Camera], clock: Callable[[], float]) -> None:
+    """Let those of `cameras` that have a shader of ours take pictures with it."""
+    for name, camera in cameras.items():
+        if camera.config.shader_pack in OURS.values():
+            cameras[name] = RayCamera(camera, clock)

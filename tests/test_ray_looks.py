@@ -1,0 +1,151 @@
+"""What rays see of effects: quads that let light through, in their order, and cameras of ManiSkill's that are ray-traced."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+import sapien
+from mani_skill.render import PREBUILT_SHADER_CONFIGS
+
+import hazard_ms  # noqa: F401 registers the environments
+from hazard_ms.effects import ray_geometry, ray_glsl
+from hazard_ms.effects.glsl import EMBER, PAPER, SMOKE
+from hazard_ms.effects.ray_pack import ray_pack
+from hazard_ms.effects.ray_picture import exposed
+from hazard_ms.pictures.camera import View, _camera
+from hazard_ms.rendering import DEVICES, backend
+from hazard_ms.sensing.ray_camera import with_our_shaders
+from tests.watching import seen
+
+PALE = np.array([0.74, 0.72, 0.66])  # linear light of paper in full light (wind_glsl.py)
+GLOWING = np.array([1.6, 0.55, 0.08]) * float(ray_glsl.GLOW)  # of an ember (glsl.py)
+SIDE = 24  # of the cameras [pixels]
+
+pytestmark = pytest.mark.render
+
+
+class Bench:
+    """A camera at the origin that looks along x, or back, in the dark."""
+
+    def __init__(self) -> None:
+        self.scene = sapien.Scene([sapien.physx.PhysxCpuSystem(), sapien.render.RenderSystem(sapien.Device(DEVICES[backend()]))])
+        self.scene.set_ambient_light([0.0, 0.0, 0.0])
+        self.eye = _camera(self.scene, View(sapien.Pose(), 0.3, SIDE, SIDE), ray_pack())
+
+    def middle(self, *quads: tuple[float, float], walls: tuple[float, ...] = (), back: bool = False) -> np.ndarray:
+        """Linear light [3] above the middle, where paper bears no print, with quads (kind, distance [m]) across the whole picture.
+
+        `walls`: distances of solid ones, which come into the scene after the quads.
+        """
+        self.eye.entity.set_pose(sapien.Pose(q=[0, 0, 0, 1] if back else [1, 0, 0, 0]))
+        side = -1.0 if back else 1.0
+        added = [ray_geometry._entity(self.scene, _quads(tuple((kind, side * x) for kind, x in quads)))] if quads else []
+        added += [self.wall(x) for x in walls]
+        light, _, _ = exposed(self.scene, self.eye, 3, 4)
+        ray_geometry.undress(self.scene, added)
+        return light[SIDE // 4 : SIDE // 4 + 3, SIDE // 2 : SIDE // 2 + 3].mean((0, 1))
+
+    def wall(self, distance: float) -> sapien.Entity:
+        builder = self.scene.create_actor_builder()
+        builder.add_box_visual(half_size=[0.01, 9.0, 9.0], material=sapien.render.RenderMaterial(base_color=[0.5, 0.5, 0.5, 1.0]))
+        builder.initial_pose = sapien.Pose([distance, 0.0, 0.0])
+        return builder.build_static("wall")
+
+
+def _quads(rows: tuple[tuple[float, float], ...]) -> Any:
+    places = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    corners = np.array([[[x, -y, z] for y, z in places] for _, x in rows])
+    lives = np.array([[kind + 0.25, 0.5 if kind in (SMOKE, EMBER) else 1.0, 1.0] for kind, _ in rows])
+    return ray_geometry._mesh(ray_geometry.Quads(corners, np.tile(places, (len(rows), 1, 1)), lives), 0.0, np.ones(3))
+
+
+@pytest.fixture(scope="module")
+def bench() -> Iterator[Bench]:
+    yield Bench()
+
+
+def test_the_nearest_quad_is_seen_first_whatever_their_order(bench: Bench) -> None:
+    for rows in (((PAPER, 1.0), (EMBER, 2.0)), ((EMBER, 2.0), (PAPER, 1.0))):
+        np.testing.assert_allclose(bench.middle(*rows), PALE, rtol=2e-3)
+    np.testing.assert_allclose(bench.middle((PAPER, 2.0), (EMBER, 1.0)), GLOWING, rtol=2e-3)
+
+
+def test_smoke_dims_what_is_behind_it_alone(bench: Bench) -> None:
+    np.testing.assert_allclose(bench.middle((PAPER, 1.0), (SMOKE, 2.0)), PALE, rtol=2e-3)
+    smoke, dim = bench.middle((SMOKE, 1.0)), bench.middle((SMOKE, 1.0), (EMBER, 2.0))
+    left = (dim - smoke) / GLOWING
+    assert 0.05 < left.mean() < 0.95
+    np.testing.assert_allclose(left, left.mean(), rtol=0.02)  # the same share of red, green and blue
+    twice = bench.middle((SMOKE, 1.0), (SMOKE, 1.001), (EMBER, 2.0))
+    np.testing.assert_allclose(twice, smoke + left.mean() * dim, rtol=0.02)
+
+
+@pytest.mark.parametrize("back", (False, True))
+def test_of_too_many_quads_the_nearest_are_kept(bench: Bench, back: bool) -> None:
+    """Three puffs of smoke before many embers: rays meet the quads in one order, or, looking back, in the other."""
+    puffs = ((SMOKE, 1.0), (SMOKE, 1.0005), (SMOKE, 1.001))
+    crowd = tuple((EMBER, 2.0 + 0.01 * k) for k in range(ray_glsl.MOST_VEILS + 8))
+    few = bench.middle(*puffs, (EMBER, 2.0), back=back)
+    assert few.max() < 0.7 * GLOWING.max()
+    np.testing.assert_allclose(bench.middle(*puffs, *crowd, back=back), few, rtol=5e-3)
+
+
+def test_solid_things_hide_quads_and_get_light_through_them(bench: Bench) -> None:
+    np.testing.assert_array_equal(bench.middle((EMBER, 2.0), walls=(1.5,)), 0.0)
+    smoke = bench.middle((SMOKE, 1.0))
+    np.testing.assert_allclose(bench.middle((SMOKE, 1.0), (EMBER, 2.0), walls=(1.5,)), smoke, rtol=0.02)  # rays meet both quads first
+    bench.scene.add_directional_light([1.0, 0.0, 0.0], [1.0, 1.0, 1.0])
+    bare = bench.middle(walls=(1.5,))
+    assert bare.min() > 0.05
+    np.testing.assert_allclose(bench.middle((PAPER, -0.5), walls=(1.5,)), bare, rtol=0.02)  # between the wall and the light: no shadow
+
+
+def test_cameras_of_maniskill_are_ray_traced_with_effects() -> None:
+    pictures, played = {}, 60
+    for name, effects, shader in (("raster", "full", None), ("rays", "full", "rt-fast"), ("bare", "off", "rt-fast")):
+        camera = {"width": 64, "height": 48, **({} if shader is None else {"shader_pack": shader})}
+        env: Any = gym.make(
+            "HazardFlood-v1",
+            obs_mode="none",
+            render_mode="rgb_array",
+            effects=effects,
+            sensor_configs=camera,
+            human_render_camera_configs=camera,
+        ).unwrapped
+        env.reset(seed=3)
+        still = env.agent.action(0.0, 0.0, env.agent.tucked, True)
+        for _ in range(played):
+            env.advance(still)
+        pictures[name] = seen(env)["render_camera"]
+        if name == "rays":
+            again, entities = seen(env)["render_camera"], [e.name for e in env.scene.sub_scenes[0].entities]
+            for modality, image in again.items():
+                np.testing.assert_array_equal(image, pictures[name][modality], modality)
+            assert "picture" not in entities
+            assert env.render().shape == (1, 48, 64, 3)
+        env.close()
+    raster, rays, bare = pictures["raster"], pictures["rays"], pictures["bare"]
+    assert {k: (v.shape, v.dtype) for k, v in rays.items()} == {k: (v.shape, v.dtype) for k, v in raster.items()}
+    for modality in ("depth", "position", "segmentation", "normal"):
+        np.testing.assert_array_equal(rays[modality], raster[modality], modality)
+    assert np.abs(rays["rgb"].astype(float) - bare["rgb"]).mean() > 2.0
+    assert np.abs(rays["rgb"].astype(float) - raster["rgb"]).mean() < 40.0
+
+
+def test_ray_tracing_is_for_one_environment() -> None:
+    with pytest.raises(ValueError, match="'rt' and num_envs 4; ray-traced pictures are taken with num_envs=1"):
+        with_our_shaders({"head": {"shader_pack": "rt"}}, 4)
+    with pytest.raises(ValueError, match="'rt-fast' and sim_backend 'physx_cuda'.*sim_backend='cpu'"):
+        with_our_shaders({"shader_pack": "rt-fast"}, 1, "physx_cuda")
+
+
+def test_shaders_get_our_names_wherever_they_stand() -> None:
+    given = {"shader_pack": "minimal", "head": {"shader_pack": "rt", "width": 9}, "far": 3.0}
+    assert with_our_shaders(given, 1) == {"shader_pack": "minimal", "head": {"shader_pack": "hazard-rt", "width": 9}, "far": 3.0}
+    assert given["head"]["shader_pack"] == "rt"
+    assert PREBUILT_SHADER_CONFIGS["hazard-rt"].shader_pack == ray_pack()
+    assert PREBUILT_SHADER_CONFIGS["rt"].shader_pack == "rt"

@@ -13,6 +13,7 @@ from mani_skill.render import PREBUILT_SHADER_CONFIGS
 
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.effects import ray_geometry, ray_glsl
+from hazard_ms.effects.cutouts import mark_cutouts
 from hazard_ms.effects.glsl import EMBER, PAPER, SMOKE
 from hazard_ms.effects.ray_pack import ray_pack
 from hazard_ms.effects.ray_picture import exposed
@@ -24,6 +25,7 @@ from tests.watching import seen
 PALE = np.array([0.74, 0.72, 0.66])  # linear light of paper in full light (wind_glsl.py)
 GLOWING = np.array([1.6, 0.55, 0.08]) * float(ray_glsl.GLOW)  # of an ember (glsl.py)
 SIDE = 24  # of the cameras [pixels]
+ABOVE = slice(SIDE // 4, SIDE // 4 + 3)  # rows of pixels
 
 pytestmark = pytest.mark.render
 
@@ -36,7 +38,7 @@ class Bench:
         self.scene.set_ambient_light([0.0, 0.0, 0.0])
         self.eye = _camera(self.scene, View(sapien.Pose(), 0.3, SIDE, SIDE), ray_pack())
 
-    def middle(self, *quads: tuple[float, float], walls: tuple[float, ...] = (), back: bool = False) -> np.ndarray:
+    def middle(self, *quads: tuple[float, float], walls: tuple[float, ...] = (), back: bool = False, rows: slice = ABOVE) -> np.ndarray:
         """Linear light [3] above the middle, where paper bears no print, with quads (kind, distance [m]) across the whole picture.
 
         `walls`: distances of solid ones, which come into the scene after the quads.
@@ -47,7 +49,7 @@ class Bench:
         added += [self.wall(x) for x in walls]
         light, _, _ = exposed(self.scene, self.eye, 3, 4)
         ray_geometry.undress(self.scene, added)
-        return light[SIDE // 4 : SIDE // 4 + 3, SIDE // 2 : SIDE // 2 + 3].mean((0, 1))
+        return light[rows, SIDE // 2 : SIDE // 2 + 3].mean((0, 1))
 
     def wall(self, distance: float) -> sapien.Entity:
         builder = self.scene.create_actor_builder()
@@ -102,6 +104,30 @@ def test_solid_things_hide_quads_and_get_light_through_them(bench: Bench) -> Non
     bare = bench.middle(walls=(1.5,))
     assert bare.min() > 0.05
     np.testing.assert_allclose(bench.middle((PAPER, -0.5), walls=(1.5,)), bare, rtol=0.02)  # between the wall and the light: no shadow
+
+
+def test_rays_pass_where_a_texture_shows_nothing(bench: Bench) -> None:
+    """A card whose upper half is cut out: embers and a lit wall are seen through it as if it were not there."""
+    picture = np.full((8, 8, 4), 255, np.uint8)
+    picture[:4, :, 3] = 0
+    material = sapien.render.RenderMaterial(roughness=1.0, specular=0.0)
+    material.base_color_texture = sapien.render.RenderTexture2D(picture, "r8g8b8a8unorm", filter_mode="nearest")
+    material.base_color = [1.0, 1.0, 1.0, 1.0]
+    corners = np.array([[1.0, 0.2, -0.2], [1.0, -0.2, -0.2], [1.0, -0.2, 0.2], [1.0, 0.2, 0.2]])
+    places = np.array([[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]])  # rows of a texture go down
+    normals = np.tile([-1.0, 0.0, 0.0], (4, 1))
+    faces = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
+    card = ray_geometry._entity(bench.scene, ray_geometry._shape(corners, faces, normals, places, material))
+    card.name = "card"
+    assert mark_cutouts(bench.scene) == 1
+    above = bench.middle((EMBER, 2.0))
+    np.testing.assert_allclose(above, GLOWING, rtol=2e-3)
+    below = bench.middle((EMBER, 2.0), rows=slice(3 * SIDE // 4, 3 * SIDE // 4 + 3))
+    assert below.max() < 0.9 * GLOWING.max()
+    behind = bench.middle(walls=(1.5,))
+    bench.scene.remove_entity(card)
+    np.testing.assert_allclose(behind, bench.middle(walls=(1.5,)), rtol=0.02)
+    assert mark_cutouts(bench.scene) == 0
 
 
 def test_cameras_of_maniskill_are_ray_traced_with_effects() -> None:

@@ -7,6 +7,7 @@ from hazard_ms.effects.water_glsl import IMMERSE
 from hazard_ms.effects.wind_glsl import WIND_FRAG
 
 EFFECT, WATER = 1000.0, 3000.0  # transmission_roughness: from here on quads of effects, water; charred things have up to 257
+CUT = 9.0  # index of refraction, which nothing else reads: textures show where there is nothing (cut out leaves)
 GLOW = "1.6"  # brightness of flames in linear light, before tones are mapped [ours]
 PIXEL = 0.0015  # angle that a pixel sees, for the sharpness of textures [rad] [ours]
 CAREFUL = 2  # bounces from which on effects are seen in mirrors, too
@@ -59,6 +60,25 @@ vec4 water(vec3 place, vec2 flow, float way, float time, float strength) { retur
 #define MOST_VEILS {MOST_VEILS}
 """
     + """
+// Normal of the corners, and where the texture is looked up, at the place that is hit.
+vec3 hazardCorners(int instance, out vec2 uv) {
+  uint index = geometryInstances.i[instance].geometryIndex;
+  vec3 normal = vec3(0), weight = vec3(1.0 - attribs.x - attribs.y, attribs.xy);
+  uv = vec2(0);
+  for (int k = 0; k < 3; ++k) {
+    Vertex v = vertices[nonuniformEXT(index)].v[indices[nonuniformEXT(index)].i[3 * gl_PrimitiveID + k]];
+    uv += weight[k] * vec2(v.u, v.v);
+    normal += weight[k] * vec3(v.nx, v.ny, v.nz);
+  }
+  return normal;
+}
+
+float hazardSeen(int instance, Material mat, int which) {
+  vec2 uv;
+  hazardCorners(instance, uv);
+  return textureLod(textures[nonuniformEXT(which)], uv * mat.textureTransforms[0].zw + mat.textureTransforms[0].xy, 0.0).a;
+}
+
 // Note a quad that the ray passes; of too many the nearest.
 void hazardPassed(vec4 veil) {
   int place = ray.veils;
@@ -133,6 +153,7 @@ SHARPNESS = f"""
 """
 
 SOLID = f"""
+  if (mat.ior >= {CUT}) alpha = 1.0;
   materialBuffer = mat;
   objectCoord = p0 * b0 + p1 * b1 + p2 * b2;
   objectTransformBuffer.modelMatrix = mat4(vec4(gl_ObjectToWorldEXT[0], 0), vec4(gl_ObjectToWorldEXT[1], 0),
@@ -158,22 +179,16 @@ LAST = """
   if (ray.depth >= maxDepth) ray.radiance += ambientLight * diffuseColor;
 """
 
-VEIL = f"""  if ((gl_IncomingRayFlagsEXT & gl_RayFlagsTerminateOnFirstHitEXT) != 0) {{
+VEIL = f"""  if (mat.ior >= {CUT} && hazardSeen(instanceId, mat, textureIndices.t[materialIndex].diffuse) < 0.5) ignoreIntersectionEXT;
+  if ((gl_IncomingRayFlagsEXT & gl_RayFlagsTerminateOnFirstHitEXT) != 0) {{
     if (mat.transmissionRoughness >= {EFFECT}) ignoreIntersectionEXT;
     return;
   }}
   if (mat.transmissionRoughness >= {EFFECT} && mat.transmissionRoughness < {WATER}) {{
     if (!ray.dull && (maxDepth >= {CAREFUL} || ray.depth == 0)) {{  // else the fire's own lamp lights things
-      TextureIndex ti = textureIndices.t[materialIndex];
-      uint index = geometryInstances.i[instanceId].geometryIndex;
-      vec2 uv = vec2(0);
-      vec3 life = vec3(0), weight = vec3(1.0 - attribs.x - attribs.y, attribs.xy);
-      for (int k = 0; k < 3; ++k) {{
-        Vertex v = vertices[nonuniformEXT(index)].v[indices[nonuniformEXT(index)].i[3 * gl_PrimitiveID + k]];
-        uv += weight[k] * vec2(v.u, v.v);
-        life += weight[k] * vec3(v.nx, v.ny, v.nz);
-      }}
-      hazardTexture = ti.diffuse;
+      vec2 uv;
+      vec3 life = hazardCorners(instanceId, uv);
+      hazardTexture = textureIndices.t[materialIndex].diffuse;
       vec3 place = gl_WorldRayOriginEXT + gl_WorldRayDirectionEXT * gl_HitTEXT;
       vec4 veil = shown(uv, vec4(floor(life.x), fract(life.x), life.y, 1.0), place, mat.transmissionRoughness - {EFFECT}, life.z,
                         mat.baseColor.rgb);

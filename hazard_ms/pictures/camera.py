@@ -12,6 +12,7 @@ import sapien
 from mani_skill.render import PREBUILT_SHADER_CONFIGS
 
 from hazard_ms.effects import shader_config, shader_pack
+from hazard_ms.effects.cutouts import mark_cutouts
 from hazard_ms.effects.ray_geometry import dress, undress
 from hazard_ms.effects.ray_pack import ray_pack
 from hazard_ms.effects.ray_picture import BOUNCES, Image, denoised, developed, exposed
@@ -39,6 +40,7 @@ class Photographer:
     def __init__(self, scene: sapien.Scene) -> None:
         """Of `scene`, which must have a renderer."""
         self._scene = scene
+        mark_cutouts(scene)
         self._eyes: dict[tuple[int, int], Any] = {}  # by width and height
 
     @contextmanager

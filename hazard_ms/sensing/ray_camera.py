@@ -17,6 +17,7 @@ from mani_skill.render import PREBUILT_SHADER_CONFIGS
 from mani_skill.sensors.camera import Camera
 from torch import Tensor
 
+from hazard_ms.effects.cutouts import mark_cutouts
 from hazard_ms.effects.ray_geometry import dress, undress
 from hazard_ms.effects.ray_pack import ray_pack
 from hazard_ms.effects.ray_picture import BOUNCES, denoised, developed, exposed
@@ -55,6 +56,7 @@ class RayCamera(Camera):
         """Take over the camera `made`; `clock` tells the time [s] of flames and waves."""
         self.__dict__.update(vars(made))
         self._clock = clock
+        mark_cutouts(self.camera.scene.sub_scenes[0])
         self._twin = self._rasterising()
         self._textures: dict[str, Tensor] = {}
 

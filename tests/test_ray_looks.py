@@ -131,13 +131,13 @@ def test_rays_pass_where_a_texture_shows_nothing(bench: Bench) -> None:
 
 
 def test_cameras_of_maniskill_are_ray_traced_with_effects() -> None:
-    pictures, played = {}, 60
+    pictures, types, played = {}, {}, 60
     for name, effects, shader in (("raster", "full", None), ("rays", "full", "rt-fast"), ("bare", "off", "rt-fast")):
         camera = {"width": 64, "height": 48, **({} if shader is None else {"shader_pack": shader})}
         env: Any = gym.make(
             "HazardFlood-v1",
             obs_mode="none",
-            render_mode="rgb_array",
+            render_mode="all",
             effects=effects,
             sensor_configs=camera,
             human_render_camera_configs=camera,
@@ -147,31 +147,42 @@ def test_cameras_of_maniskill_are_ray_traced_with_effects() -> None:
         for _ in range(played):
             env.advance(still)
         pictures[name] = seen(env)["render_camera"]
+        raw = env._sensors["head"].get_obs(apply_texture_transforms=False)
+        types[name] = {k: v.dtype for k, v in raw.items() if k != "Color"}
         if name == "rays":
             again, entities = seen(env)["render_camera"], [e.name for e in env.scene.sub_scenes[0].entities]
             for modality, image in again.items():
                 np.testing.assert_array_equal(image, pictures[name][modality], modality)
             assert "picture" not in entities
-            assert env.render().shape == (1, 48, 64, 3)
+            assert env.render().shape[0] == 1
         env.close()
     raster, rays, bare = pictures["raster"], pictures["rays"], pictures["bare"]
     assert {k: (v.shape, v.dtype) for k, v in rays.items()} == {k: (v.shape, v.dtype) for k, v in raster.items()}
+    assert types["rays"] == types["raster"]
     for modality in ("depth", "position", "segmentation", "normal"):
         np.testing.assert_array_equal(rays[modality], raster[modality], modality)
     assert np.abs(rays["rgb"].astype(float) - bare["rgb"]).mean() > 2.0
     assert np.abs(rays["rgb"].astype(float) - raster["rgb"]).mean() < 40.0
 
 
-def test_ray_tracing_is_for_one_environment() -> None:
+@pytest.mark.parametrize("asked", ({"shader_pack": "rt"}, {"shader_config": PREBUILT_SHADER_CONFIGS["rt"]}))
+def test_ray_tracing_is_for_one_environment_on_the_cpu(asked: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match="'rt' and num_envs 4; ray-traced pictures are taken with num_envs=1"):
-        with_our_shaders({"head": {"shader_pack": "rt"}}, 4)
-    with pytest.raises(ValueError, match="'rt-fast' and sim_backend 'physx_cuda'.*sim_backend='cpu'"):
-        with_our_shaders({"shader_pack": "rt-fast"}, 1, "physx_cuda")
+        with_our_shaders({"head": asked}, 4)
+    with pytest.raises(ValueError, match="'rt' and sim_backend 'physx_cuda'.*sim_backend='cpu'"):
+        with_our_shaders(asked, 1, "physx_cuda")
 
 
-def test_shaders_get_our_names_wherever_they_stand() -> None:
-    given = {"shader_pack": "minimal", "head": {"shader_pack": "rt", "width": 9}, "far": 3.0}
-    assert with_our_shaders(given, 1) == {"shader_pack": "minimal", "head": {"shader_pack": "hazard-rt", "width": 9}, "far": 3.0}
-    assert given["head"]["shader_pack"] == "rt"
-    assert PREBUILT_SHADER_CONFIGS["hazard-rt"].shader_pack == ray_pack()
-    assert PREBUILT_SHADER_CONFIGS["rt"].shader_pack == "rt"
+def test_shaders_become_ours_wherever_they_stand() -> None:
+    given = {"shader_pack": "minimal", "head": {"shader_pack": "rt-med", "width": 9}, "far": 3.0}
+    made = with_our_shaders(given, 1)
+    config = made["head"].pop("shader_config")
+    assert made == {"shader_pack": "minimal", "head": {"width": 9}, "far": 3.0}
+    assert config.shader_pack == ray_pack() and config.shader_pack_config["ray_tracing_samples_per_pixel"] == 4
+    assert given["head"] == {"shader_pack": "rt-med", "width": 9}
+    assert PREBUILT_SHADER_CONFIGS["rt-med"].shader_pack == "rt"
+
+
+def test_sapiens_own_ray_tracing_is_refused() -> None:
+    with pytest.raises(ValueError, match="camera 'head' has SAPIEN's own ray tracing.*sensor_configs"):
+        gym.make("HazardFire-v1", obs_mode="none", shader_dir="rt-fast")

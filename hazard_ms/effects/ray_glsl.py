@@ -81,6 +81,9 @@ float hazardSeen(int instance, Material mat, int which) {
 
 // Note a quad that the ray passes; of too many the nearest.
 void hazardPassed(vec4 veil) {
+  for (int k = 0; k < ray.veils; ++k) {
+    if (ray.veilFar[k] == gl_HitTEXT) return;  // graphics cards may ask for one hit twice
+  }
   int place = ray.veils;
   if (place < MOST_VEILS) {
     ray.veils += 1;

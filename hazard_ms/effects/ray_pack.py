@@ -1,11 +1,12 @@
 """The ray-tracing shader pack with our effects, derived at run time from that of the installed SAPIEN, like those of shader_pack.py.
 
-What changes: shadow rays pass flames, smoke and water; quads of effects show what they show in raster pictures, let through the rest, and
-use up no bounce; opaque things char, get wet and are dimmed by water, haze and smoke, piece by piece of each path; the last bounce sees
-ambient light, so that closed rooms have some; albedo and normals for the denoiser are means over all samples, those behind effects.
+What changes: shadow rays pass flames, smoke and water; quads of effects let through what they do not show, all that a ray meets in one
+traversal; opaque things char, get wet and are dimmed by water, haze and smoke, piece by piece of each path, and leaves are cut out; the
+last bounce sees ambient light, so that closed rooms have some; albedo and normals for the denoiser are means over all samples, those
+behind effects. Spot lights and shining surfaces, which no task has, give no light.
 
-For speed on a CPU, without bias: each hit asks one light, drawn by what it may give; paths that carry little end by chance; and all
-bounces of all samples are one loop, since pixels are traced in step and would wait for the longest path.
+For speed on a CPU, without bias: each hit asks one light, drawn by what it may give; paths that carry little end by chance; all bounces of
+all samples are one loop, since pixels are traced in step and would wait for the longest path; threads share the picture row by row.
 
 A quad of ray_geometry.py carries in its normals (kind + seed, age or light, strength), in uv the corner, and its material's
 transmission_roughness is EFFECT + time [s]; of water it is WATER.
@@ -40,8 +41,6 @@ def ray_pack() -> str:
 
 def _derive(files: dict[str, str]) -> dict[str, str]:
     """SAPIEN's files with our text in them. Raises UnknownSapienError where they are not as expected."""
-    shadow = "gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsOpaqueEXT |"
-    files = _all(files, "shading.glsl", shadow, shadow.replace(" gl_RayFlagsOpaqueEXT |", ""))
     files = _passing(files)
     files = _before(files, "camera.rchit", "void main() {", glsl.HIT + glsl.LIT)
     files = _before(files, "camera.rchit", "  if (ti.diffuse >= 0) {", glsl.SHARPNESS)

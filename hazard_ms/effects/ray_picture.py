@@ -11,7 +11,7 @@ import numpy as np
 import sapien
 from numpy.typing import NDArray
 
-BOUNCES = {"rt-fast": 1, "rt-med": 3, "rt": 3}  # of a path, where water costs none; further ones are ambient light [ours]
+MOST_BOUNCES = 3  # of a path, where water costs none; further ones are ambient light [ours]
 KNEE = 0.75  # brightness from which highlights are compressed instead of cut off [ours]
 DENOISER = "pyoidn"  # Intel Open Image Denoise on the CPU; optional
 

@@ -15,8 +15,9 @@ from hazard_ms.effects import shader_config, shader_pack
 from hazard_ms.effects.cutouts import mark_cutouts
 from hazard_ms.effects.ray_geometry import dress, undress
 from hazard_ms.effects.ray_pack import ray_pack
-from hazard_ms.effects.ray_picture import BOUNCES, Image, denoised, developed, exposed
+from hazard_ms.effects.ray_picture import MOST_BOUNCES, Image, denoised, developed, exposed
 
+BOUNCES = {"rt-fast": 1, "rt": MOST_BOUNCES}  # by shader
 NEAR, FAR = 0.05, 120.0  # of what is seen [m]
 
 

@@ -2,7 +2,8 @@
 
 SAPIEN's own pack knows no flames or water, and its denoisers need a card of NVIDIA. Ours draws and denoises everywhere, with as many
 samples per pixel as ManiSkill's shader of that name. Depth, positions, normals, albedo and labels are those of raster pictures, pixel for
-pixel: a second camera in the same place sees them.
+pixel: a second camera in the same place sees them. Each picture takes seconds, since SAPIEN compiles anew for a scene with other effects
+in it: for pictures of an episode now and then, not for training.
 """
 
 from __future__ import annotations
@@ -12,19 +13,19 @@ from dataclasses import replace
 from typing import Any
 
 import sapien
-import torch
-from mani_skill.render import PREBUILT_SHADER_CONFIGS
+from mani_skill.render import PREBUILT_SHADER_CONFIGS, ShaderConfig
 from mani_skill.sensors.camera import Camera
+from mani_skill.utils.common import to_tensor
 from torch import Tensor
 
 from hazard_ms.effects.cutouts import mark_cutouts
 from hazard_ms.effects.ray_geometry import dress, undress
 from hazard_ms.effects.ray_pack import ray_pack
-from hazard_ms.effects.ray_picture import BOUNCES, denoised, developed, exposed
+from hazard_ms.effects.ray_picture import MOST_BOUNCES, denoised, developed, exposed
 from hazard_ms.effects.shader_pack import colour, shader_config, stock_packs
 
-OURS = {name: f"hazard-{name}" for name in BOUNCES}  # ManiSkill's name of a shader -> that of ours
-SAMPLES = "ray_tracing_samples_per_pixel"
+STOCK = "rt"  # SAPIEN's own pack
+SAMPLES, DEPTH = "ray_tracing_samples_per_pixel", "ray_tracing_path_depth"
 
 
 def with_our_shaders(configs: dict[str, Any], num_envs: int, sim_backend: str = "auto") -> dict[str, Any]:
@@ -33,20 +34,24 @@ def with_our_shaders(configs: dict[str, Any], num_envs: int, sim_backend: str = 
     Raises ValueError where more than one environment would be ray-traced, or one whose physics runs on a GPU.
     """
     made = {k: with_our_shaders(v, num_envs, sim_backend) if isinstance(v, dict) else v for k, v in configs.items()}
-    shader = made.get("shader_pack")
-    if isinstance(shader, str) and shader in OURS:
-        if num_envs > 1:
-            raise ValueError(f"shader_pack is {shader!r} and num_envs {num_envs}; ray-traced pictures are taken with num_envs=1 only")
-        if sim_backend not in ("auto", "cpu", "physx_cpu"):
-            raise ValueError(
-                f"shader_pack is {shader!r} and sim_backend {sim_backend!r}; ray-traced pictures are taken with sim_backend='cpu'"
+    for key in ("shader_pack", "shader_config"):
+        asked = made.get(key)
+        config = PREBUILT_SHADER_CONFIGS.get(asked) if isinstance(asked, str) else asked
+        if isinstance(config, ShaderConfig) and config.shader_pack == STOCK:
+            if num_envs > 1:
+                raise ValueError(f"{key} is {_name(asked)} and num_envs {num_envs}; ray-traced pictures are taken with num_envs=1 only")
+            if sim_backend not in ("auto", "cpu", "physx_cpu"):
+                raise ValueError(f"{key} is {_name(asked)} and sim_backend {sim_backend!r}; ray-traced pictures need sim_backend='cpu'")
+            made.pop("shader_pack", None)
+            made["shader_config"] = replace(
+                config, shader_pack=ray_pack(), texture_transforms={**config.texture_transforms, "Color": colour}
             )
-        stock = PREBUILT_SHADER_CONFIGS[shader]
-        bytes_too = {**stock.texture_transforms, "Color": colour}
-        PREBUILT_SHADER_CONFIGS[OURS[shader]] = replace(stock, shader_pack=ray_pack(), texture_transforms=bytes_too)
-        sapien.render.set_ray_tracing_denoiser("none")  # of cameras made from now on: pictures are denoised here
-        made["shader_pack"] = OURS[shader]
+            sapien.render.set_ray_tracing_denoiser("none")  # of cameras made from now on: pictures are denoised here
     return made
+
+
+def _name(asked: str | ShaderConfig) -> str:
+    return repr(asked if isinstance(asked, str) else asked.shader_pack)
 
 
 class RayCamera(Camera):
@@ -63,25 +68,26 @@ class RayCamera(Camera):
     def capture(self) -> None:
         """Take a picture, with effects in the scene as long as it takes."""
         (scene,), (eye,) = self.camera.scene.sub_scenes, self.camera._render_cameras
-        shader, config = next(k for k, v in OURS.items() if v == self.config.shader_pack), self.config.shader_config
+        config = self.config.shader_config
+        settings = config.shader_pack_config
         self._twin.entity.set_pose(eye.global_pose)
+        self._twin.set_perspective_parameters(eye.near, eye.far, eye.fx, eye.fy, eye.cx, eye.cy, eye.skew)
         scene.update_render()
         self._twin.take_picture()
-        taken = {name: self._twin.get_picture(name) for name in config.texture_names}
+        taken = {name: self._twin.get_picture(name) for name in config.texture_names if name != "Color"}
         added = dress(scene, eye.global_pose, self._clock())
         try:
-            taken["Color"] = developed(denoised(*exposed(scene, eye, BOUNCES[shader], config.shader_pack_config[SAMPLES])))
+            taken["Color"] = developed(denoised(*exposed(scene, eye, min(settings[DEPTH], MOST_BOUNCES), settings[SAMPLES])))
         finally:
             undress(scene, added)
             scene.update_render()
-        self._textures = {name: torch.from_numpy(image)[None].to(self.camera.scene.device) for name, image in taken.items()}
+        self._textures = {name: to_tensor(image)[None].to(self.camera.scene.device) for name, image in taken.items()}
 
     def _rasterising(self) -> Any:
-        """A camera that sees what this one sees, but rasterises it."""
+        """A camera for what this one sees, but rasterised."""
         (scene,), (eye,) = self.camera.scene.sub_scenes, self.camera._render_cameras
         pack = PREBUILT_SHADER_CONFIGS[shader_config("full")].shader_pack
         twin = sapien.render.RenderCameraComponent(eye.width, eye.height, str(stock_packs() / pack))
-        twin.set_perspective_parameters(eye.near, eye.far, eye.fx, eye.fy, eye.cx, eye.cy, eye.skew)
         entity = sapien.Entity()
         entity.name = "labels"
         entity.add_component(twin)
@@ -98,7 +104,7 @@ class RayCamera(Camera):
         albedo: bool = False,
         apply_texture_transforms: bool = True,
     ) -> dict[str, Tensor]:
-        """What the last picture shows, [1, H, W, C] each, as ManiSkill's cameras give it."""
+        """What the last picture shows, [1, H, W, C] each, as ManiSkill's cameras give it; the texture "Color" is in bytes."""
         asked = {"rgb": rgb, "depth": depth, "position": position, "segmentation": segmentation, "normal": normal, "albedo": albedo}
         wanted = {k for k, yes in asked.items() if yes}
         config, seen = self.config.shader_config, dict[str, Tensor]()
@@ -110,7 +116,13 @@ class RayCamera(Camera):
 
 
 def take_over(cameras: dict[str, Camera], clock: Callable[[], float]) -> None:
-    """Let those of `cameras` that have a shader of ours take pictures with it."""
+    """Let those of `cameras` that have our shader take pictures with it. Raises ValueError for one with SAPIEN's own ray tracing."""
     for name, camera in cameras.items():
-        if camera.config.shader_pack in OURS.values():
+        pack = camera.config.shader_config.shader_pack
+        if pack == ray_pack():
             cameras[name] = RayCamera(camera, clock)
+        elif pack == STOCK:
+            raise ValueError(
+                f"camera {name!r} has SAPIEN's own ray tracing (shader_dir?), which shows no effects; "
+                "allowed: sensor_configs and human_render_camera_configs with shader_pack 'rt', 'rt-med' or 'rt-fast'"
+            )

@@ -182,7 +182,10 @@ LAST = """
   if (ray.depth >= maxDepth) ray.radiance += ambientLight * diffuseColor;
 """
 
-VEIL = f"""  if (mat.ior >= {CUT} && hazardSeen(instanceId, mat, textureIndices.t[materialIndex].diffuse) < 0.5) ignoreIntersectionEXT;
+VEIL = f"""  if (mat.ior >= {CUT}) {{  // leaves are squares with two sides
+    if (gl_HitKindEXT == gl_HitKindBackFacingTriangleEXT) ignoreIntersectionEXT;
+    if (hazardSeen(instanceId, mat, textureIndices.t[materialIndex].diffuse) < 0.5) ignoreIntersectionEXT;
+  }}
   if ((gl_IncomingRayFlagsEXT & gl_RayFlagsTerminateOnFirstHitEXT) != 0) {{
     if (mat.transmissionRoughness >= {EFFECT}) ignoreIntersectionEXT;
     return;

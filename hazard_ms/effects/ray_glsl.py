@@ -12,6 +12,7 @@ GLOW = "1.6"  # brightness of flames in linear light, before tones are mapped [o
 PIXEL = 0.0015  # angle that a pixel sees, for the sharpness of textures [rad] [ours]
 CAREFUL = 2  # bounces from which on effects are seen in mirrors, too
 BLOCK, STRIDE = (4, 2), "61u"  # pixels that are traced in step; rows of them between one and the next, a prime [ours]
+DOME = "120.0"  # how far the sky is [m]: as the far plane of pictures, on which raster pictures have it
 SKY = "1.0e30"  # farther than anything
 KEPT = 0.5  # share of paths that are followed after a bounce, for each part of light that they carry [ours]
 MOST_WATERS = 2  # the first hit of water's surface uses up no bounce

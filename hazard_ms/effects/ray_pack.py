@@ -78,7 +78,8 @@ def _passing(files: dict[str, str]) -> dict[str, str]:
     main = "void main() {"
     for name, far in (("camera.rchit", "gl_HitTEXT"), ("point.rchit", "gl_HitTEXT"), ("camera.rmiss", glsl.SKY)):
         files = _all(files, name, main, f"{main}\n  ray.far = {far};")
-    return files
+    sky = "vec3 dir = ray.direction"
+    return _all(files, "camera.rmiss", sky, f"{sky} * {glsl.DOME} + gl_WorldRayOriginEXT")  # the horizon where raster pictures have it
 
 
 def _generation(files: dict[str, str]) -> dict[str, str]:

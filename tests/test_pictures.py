@@ -19,7 +19,8 @@ import torch
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.cli import main
 from hazard_ms.effects import ray_pack, ray_picture
-from hazard_ms.effects.ray_geometry import side_by_side
+from hazard_ms.effects.cutouts import mark_cutouts
+from hazard_ms.effects.ray_geometry import dress, side_by_side
 from hazard_ms.effects.shader_pack import UnknownSapienError
 from hazard_ms.lighting import DRAWN, FIRST_FAILURE, LAST_FAILURE, LIGHTINGS, Lighting
 from hazard_ms.pictures import camera
@@ -173,6 +174,10 @@ def test_an_unknown_sapien_gives_its_own_pack(monkeypatch: pytest.MonkeyPatch, c
     with caplog.at_level(logging.WARNING):
         assert Path(ray_pack.ray_pack.__wrapped__()) == Path(sapien.__file__).parent / "vulkan_shader" / "rt"
     assert "no effects in ray-traced pictures" in caplog.text
+    assert ray_pack.shows_effects()
+    monkeypatch.setattr(ray_pack, "ray_pack", ray_pack.ray_pack.__wrapped__)
+    assert not ray_pack.shows_effects()
+    assert dress(None, sapien.Pose(), 0.0) == [] and mark_cutouts(None) == 0  # else its pictures would show panes of glass
     with pytest.raises(UnknownSapienError):
         ray_pack._before({"a": "x x"}, "a", "x", "y")
 

@@ -6,13 +6,16 @@ import sapien
 
 from hazard_ms.effects import ray_glsl
 from hazard_ms.effects.entities import solid_materials
+from hazard_ms.effects.ray_pack import shows_effects
 
 
 def mark_cutouts(scene: sapien.Scene) -> int:
     """Mark the materials of what stands in `scene` whose textures are see-through in places, by what raster pictures do not read.
 
-    Returns their number.
+    Returns their number: none where SAPIEN's own pack, which reads it as what it is, is all there is.
     """
+    if not shows_effects():
+        return 0
     count = 0
     for material in solid_materials(scene):
         texture = material.base_color_texture

@@ -15,6 +15,7 @@ from sapien.render import RenderBodyComponent, RenderMaterial, RenderShapeTriang
 from hazard_ms.effects import meshes, ray_glsl
 from hazard_ms.effects.entities import PREFIX
 from hazard_ms.effects.glsl import EMBER, FLAME, LEAF, SCORCH, SMOKE, WATER
+from hazard_ms.effects.ray_pack import shows_effects
 from hazard_ms.effects.textures import noise_texture
 from hazard_ms.effects.wind_spread import carried
 
@@ -39,7 +40,12 @@ class Quads:
 
 
 def dress(scene: sapien.Scene, eye: sapien.Pose, time: float) -> list[sapien.Entity]:
-    """Add what the effects of `scene` look like from a camera at `eye` (x forward) at `time` [s]. Returns the entities that were added."""
+    """Add what the effects of `scene` look like from a camera at `eye` (x forward) at `time` [s].
+
+    Returns the entities that were added: none where SAPIEN's own pack, which would show panes of glass, is all there is.
+    """
+    if not shows_effects():
+        return []
     view = eye.to_transformation_matrix()
     found: list[Quads] = []
     added: list[sapien.Entity] = []

@@ -7,9 +7,10 @@ from hazard_ms.effects.water_glsl import IMMERSE
 from hazard_ms.effects.wind_glsl import WIND_FRAG
 
 EFFECT, WATER = 1000.0, 3000.0  # transmission_roughness: from here on quads of effects, water; charred things have up to 257
-CUT = 9.0  # index of refraction, which nothing else reads: textures show where there is nothing (cut out leaves)
+CUT = 9.0  # index of refraction, which nothing else reads: textures show where there is nothing (cut out leaves) [ours]
 GLOW = "1.6"  # brightness of flames in linear light, before tones are mapped [ours]
 PIXEL = 0.0015  # angle that a pixel sees, for the sharpness of textures [rad] [ours]
+LEAST_KEPT = 0.1  # however little light they carry [ours]
 CAREFUL = 2  # bounces from which on effects are seen in mirrors, too
 BLOCK, STRIDE = (4, 2), "61u"  # pixels that are traced in step; rows of them between one and the next, a prime [ours]
 DOME = "120.0"  # how far the sky is [m]: as the far plane of pictures, on which raster pictures have it
@@ -276,7 +277,7 @@ STEP = f"""
     float left = max(attenuation.x, max(attenuation.y, attenuation.z));
     alive = ray.depth <= maxDepth && left > 1e-3;
     if (alive && ray.segmentation.w == 0u) {{  // what little is left is followed now and then, and counts for more
-      float kept = clamp({KEPT} * left, 0.1, 1.0);
+      float kept = clamp({KEPT} * left, {LEAST_KEPT}, 1.0);
       alive = rnd(ray.seed) < kept;
       attenuation /= kept;
     }}

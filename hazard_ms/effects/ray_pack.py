@@ -23,9 +23,14 @@ from hazard_ms.effects import ray_glsl as glsl
 from hazard_ms.effects import shader_pack
 from hazard_ms.effects.shader_pack import UnknownSapienError
 
-NAME = "rt_hazard"
+NAME, STOCK = "rt_hazard", "rt"  # of our pack, and of SAPIEN's own
 
 _log = logging.getLogger(__name__)
+
+
+def shows_effects() -> bool:
+    """Whether ray-traced pictures go through our pack, not through that of a SAPIEN that is unknown to us."""
+    return ray_pack() != str(shader_pack.stock_packs() / STOCK)
 
 
 @cache
@@ -33,10 +38,10 @@ def ray_pack() -> str:
     """The pack as SAPIEN's cameras take it: its folder, made if need be; SAPIEN's own where that is unknown to us."""
     stock = shader_pack.stock_packs()
     try:
-        return str(shader_pack._write(NAME, _derive(shader_pack._texts(stock / "rt"))))
+        return str(shader_pack._write(NAME, _derive(shader_pack._texts(stock / STOCK))))
     except (UnknownSapienError, OSError) as fault:
         _log.warning("no effects in ray-traced pictures: cannot derive a shader pack from SAPIEN %s (%s)", sapien.__version__, fault)
-        return str(stock / "rt")
+        return str(stock / STOCK)
 
 
 def _derive(files: dict[str, str]) -> dict[str, str]:

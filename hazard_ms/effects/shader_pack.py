@@ -68,13 +68,18 @@ def register() -> None:
     PREBUILT_SHADER_CONFIGS["hazard-fast"] = _fast_config(fast) if fast else PREBUILT_SHADER_CONFIGS["minimal"]
 
 
+def pack_folder(mode: str) -> str:
+    """The pack of effects `mode` (full, fast, off) as SAPIEN's cameras take it: its folder."""
+    return str(stock_packs() / PREBUILT_SHADER_CONFIGS[shader_config(mode)].shader_pack)  # an absolute path stays as it is
+
+
 def keep_warm(mode: str, device: sapien.Device) -> None:
     """Compile the pack of `mode` once per process, not per scene: SAPIEN forgets a pack with its last camera, so one stays alive."""
-    pack = PREBUILT_SHADER_CONFIGS[shader_config(mode)].shader_pack
+    pack = pack_folder(mode)
     if pack in _warm:
         return
     scene = sapien.Scene([sapien.physx.PhysxCpuSystem(), sapien.render.RenderSystem(device)])
-    camera = sapien.render.RenderCameraComponent(16, 16, str(stock_packs() / pack))  # an absolute `pack` stays as it is
+    camera = sapien.render.RenderCameraComponent(16, 16, pack)
     entity = sapien.Entity()
     entity.add_component(camera)
     scene.add_entity(entity)

@@ -9,13 +9,12 @@ from typing import Any
 
 import numpy as np
 import sapien
-from mani_skill.render import PREBUILT_SHADER_CONFIGS
 
-from hazard_ms.effects import shader_config, shader_pack
 from hazard_ms.effects.cutouts import mark_cutouts
 from hazard_ms.effects.ray_geometry import dress, undress
 from hazard_ms.effects.ray_pack import ray_pack
 from hazard_ms.effects.ray_picture import MOST_BOUNCES, Image, denoised, developed, exposed
+from hazard_ms.effects.shader_pack import pack_folder
 
 BOUNCES = {"rt-fast": 1, "rt": MOST_BOUNCES}  # by shader
 NEAR, FAR = 0.05, 120.0  # of what is seen [m]
@@ -73,8 +72,7 @@ class Photographer:
 
 
 def _raster(scene: sapien.Scene, view: View) -> Image:
-    pack = PREBUILT_SHADER_CONFIGS[shader_config("full")].shader_pack
-    camera = _camera(scene, view, str(shader_pack.stock_packs() / pack))
+    camera = _camera(scene, view, pack_folder("full"))
     camera.take_picture()
     shown = camera.get_picture("Color")[..., :3]
     scene.remove_entity(camera.entity)

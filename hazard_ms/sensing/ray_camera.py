@@ -20,11 +20,10 @@ from torch import Tensor
 
 from hazard_ms.effects.cutouts import mark_cutouts
 from hazard_ms.effects.ray_geometry import dress, undress
-from hazard_ms.effects.ray_pack import ray_pack
+from hazard_ms.effects.ray_pack import STOCK, ray_pack
 from hazard_ms.effects.ray_picture import MOST_BOUNCES, denoised, developed, exposed
-from hazard_ms.effects.shader_pack import colour, shader_config, stock_packs
+from hazard_ms.effects.shader_pack import colour, pack_folder
 
-STOCK = "rt"  # SAPIEN's own pack
 SAMPLES, DEPTH = "ray_tracing_samples_per_pixel", "ray_tracing_path_depth"
 
 
@@ -86,8 +85,7 @@ class RayCamera(Camera):
     def _rasterising(self) -> Any:
         """A camera for what this one sees, but rasterised."""
         (scene,), (eye,) = self.camera.scene.sub_scenes, self.camera._render_cameras
-        pack = PREBUILT_SHADER_CONFIGS[shader_config("full")].shader_pack
-        twin = sapien.render.RenderCameraComponent(eye.width, eye.height, str(stock_packs() / pack))
+        twin = sapien.render.RenderCameraComponent(eye.width, eye.height, pack_folder("full"))
         entity = sapien.Entity()
         entity.name = "labels"
         entity.add_component(twin)

@@ -170,11 +170,11 @@ def test_an_unknown_sapien_gives_its_own_pack(monkeypatch: pytest.MonkeyPatch, c
     def fail(_: Any) -> Any:
         raise UnknownSapienError("other files")
 
+    assert ray_pack.shows_effects()
     monkeypatch.setattr(ray_pack, "_derive", fail)
     with caplog.at_level(logging.WARNING):
         assert Path(ray_pack.ray_pack.__wrapped__()) == Path(sapien.__file__).parent / "vulkan_shader" / "rt"
     assert "no effects in ray-traced pictures" in caplog.text
-    assert ray_pack.shows_effects()
     monkeypatch.setattr(ray_pack, "ray_pack", ray_pack.ray_pack.__wrapped__)
     assert not ray_pack.shows_effects()
     assert dress(None, sapien.Pose(), 0.0) == [] and mark_cutouts(None) == 0  # else its pictures would show panes of glass

@@ -18,7 +18,7 @@ def version() -> str:
 
 
 def asset_files() -> list[str]:
-    """Every file of `assets/` that belongs to the package: not `build`, the scripts that made them, nor hidden files."""
+    """The files of `assets/` that belong to the package: all but hidden ones and `build`, with their scripts."""
     folder = ROOT / "assets"
     files = [path.relative_to(folder) for path in folder.rglob("*") if path.is_file()]
     return [str(path) for path in files if path.parts[0] != "build" and not any(part[0] in "._" for part in path.parts)]
@@ -35,16 +35,17 @@ setup(
     packages=[*find_packages(include=["hazard_ms", "hazard_ms.*"]), ASSETS],
     package_dir={ASSETS: "assets"},
     package_data={ASSETS: asset_files(), "hazard_ms": ["**/*"]},
-    exclude_package_data={"hazard_ms": ["_assets/*", "_assets/**/*", "**/__pycache__/*"]},  # a checkout's own copy gives way to `assets/`
+    # a checkout's own copy gives way to `assets/`
+    exclude_package_data={"hazard_ms": ["_assets/*", "_assets/**/*", "**/__pycache__/*"]},
     include_package_data=False,
-    entry_points={"console_scripts": ["hazard-ms = hazard_ms.cli:main"]},
+    entry_points={"console_scripts": ["hazard-ms = hazard_ms.cli.__main__:main"]},
     install_requires=[
         "sapien>=3.0.3",
         "mani-skill>=3.0.1",
         "gymnasium>=1.2",
         "torch>=2.10",  # earlier ones have known holes in torch.load
         "torchvision>=0.25",
-        "warp-lang>=1.19",  # compiles the laws of the hazards for CPUs and GPUs: hazard_ms/launching.py
+        "warp-lang>=1.19",  # compiles the laws of the hazards for CPUs and GPUs: hazard_ms/kernels/launch.py
         "opencv-python-headless>=4.10",
         "numpy>=2.0",
         "trimesh>=4.5",
@@ -59,8 +60,19 @@ setup(
         "tyro>=0.9",
     ],
     extras_require={
-        "rl": ["stable-baselines3>=2.7"],
+        "rl": ["stable-baselines3>=2.9", "sb3-contrib>=2.9"],  # policies over skills, with action masks
+        "llm": ["openai>=3.54"],  # language models behind an OpenAI-compatible server
+        "perception": ["pycocotools>=2.0.11"],  # COCO labels and average precision
+        "demos": ["pyarrow>=25", "av>=17", "minari>=0.5.3"],  # demonstrations as LeRobot and Minari data sets
         "pictures": ["pyoidn>=2.5", "cffi>=1.0"],  # takes the grain out of ray-traced pictures
-        "test": ["pytest>=8", "pytest-timeout>=2.3", "pytest-xdist>=3.6", "hypothesis>=6.100", "ruff>=0.8", "mypy>=1.13"],
+        "docs": ["sphinx>=8.1", "myst-parser>=4.0", "furo>=2025.12"],
+        "test": [
+            "pytest>=8",
+            "pytest-timeout>=2.3",
+            "pytest-xdist>=3.6",
+            "hypothesis>=6.100",
+            "ruff>=0.8",
+            "mypy>=1.13",
+        ],
     },
 )

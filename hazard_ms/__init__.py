@@ -1,69 +1,63 @@
-"""hazard_ms: fire, flood and wind rescue tasks for ManiSkill and SAPIEN.
+"""Fire, flood and wind rescue tasks for ManiSkill and SAPIEN.
 
-Importing registers the environments with gymnasium, now or as soon as gymnasium is imported, and loads nothing heavy:
+Importing registers the environments with gymnasium and ManiSkill, now or as soon as these are imported, and loads
+nothing heavy:
 
     import gymnasium as gym, hazard_ms
     env = gym.make("HazardFire-v1")
+
+Third parties add tasks, hazards, robots and agents with `register_task`, `register_hazard`, `register_robot` and
+`register_agent`; see `hazard_ms.registry`.
 """
 
 from __future__ import annotations
 
-import importlib.util
-import sys
-from collections.abc import Sequence
-from importlib.abc import MetaPathFinder
-from importlib.machinery import ModuleSpec
-from types import ModuleType
 from typing import Any
+
+from hazard_ms.registry import load, register_agent, register_hazard, register_robot, register_task
+from hazard_ms.registry.announce import announce
 
 __version__ = "0.1.0"
 
-MAX_FRAMES = {  # frames of an episode (benchmark.md 1)
-    "HazardFire-v1": 1500,
-    "HazardFlood-v1": 1500,
-    "HazardWind-v1": 3000,
-    "HazardCompound-v1": 1500,
+_LAZY = {  # imported when they are first asked for: they need torch, SAPIEN and ManiSkill
+    "Action": "hazard_ms.skills.decision:Action",
+    "Agent": "hazard_ms.agents.base:Agent",
+    "NumpyEnv": "hazard_ms.wrappers:NumpyEnv",
+    "SkillEnv": "hazard_ms.skills.executor:SkillEnv",
+    "main": "hazard_ms.cli.__main__:main",  # the command hazard-ms
+    "render_backend": "hazard_ms.machine.render_backend:backend",
+    # what scenes, tasks and hazards of third parties are made of
+    "AgentStart": "hazard_ms.spec:AgentStart",
+    "Body": "hazard_ms.spec:Body",
+    "CATEGORIES": "hazard_ms.spec.catalogue:CATEGORIES",
+    "Case": "hazard_ms.hazards.case:Case",
+    "Fixture": "hazard_ms.spec:Fixture",
+    "Goal": "hazard_ms.spec:Goal",
+    "Hazard": "hazard_ms.hazards.base:Hazard",
+    "Level": "hazard_ms.spec:Level",
+    "Push": "hazard_ms.hazards.base:Push",
+    "Room": "hazard_ms.spec:Room",
+    "SceneSpec": "hazard_ms.spec:SceneSpec",
+    "Situation": "hazard_ms.episode.situation:Situation",
+    "State": "hazard_ms.hazards.base:State",
+    "Task": "hazard_ms.spec:Task",
+    "Term": "hazard_ms.spec:Term",
+    "World": "hazard_ms.simulation.world:World",
+    "hazard": "hazard_ms.hazards.presets:hazard",
+    "quantity": "hazard_ms.hazards.base:quantity",
+    "rescue": "hazard_ms.tasks.rescue:rescue",
 }
+__all__ = ["__version__", "register_agent", "register_hazard", "register_robot", "register_task", *_LAZY]  # noqa: PLE0604
 
 
-def register() -> None:
-    """Make the environments known to gymnasium."""
-    import gymnasium
-    from gymnasium.envs.registration import WrapperSpec
-
-    for name, frames in MAX_FRAMES.items():
-        if name not in gymnasium.registry:
-            gymnasium.register(
-                id=name,
-                entry_point="hazard_ms.env:HazardEnv",
-                max_episode_steps=frames,
-                disable_env_checker=True,  # it is written for unbatched numpy: see hazard_ms.wrappers.NumpyEnv
-                kwargs={"task": name},
-                additional_wrappers=(WrapperSpec("TimeLimit", "hazard_ms.wrappers:TimeLimit", kwargs={}),),
-            )
+def __getattr__(name: str) -> Any:
+    if name not in _LAZY:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return globals().setdefault(name, load(_LAZY[name]))
 
 
-class _AfterGymnasium(MetaPathFinder):
-    """Registers once gymnasium has been imported: loading it here would cost every `import hazard_ms` half a second."""
-
-    def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
-        if name != "gymnasium":
-            return None
-        sys.meta_path.remove(self)
-        spec = importlib.util.find_spec(name)
-        if spec is not None and spec.loader is not None:
-            loader: Any = spec.loader
-            load = loader.exec_module
-
-            def load_and_register(module: ModuleType) -> None:
-                load(module)
-                register()
-
-            loader.exec_module = load_and_register
-        return spec
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_LAZY})
 
 
-if "gymnasium" in sys.modules:
-    register()
-else:
-    sys.meta_path.insert(0, _AfterGymnasium())
+announce()

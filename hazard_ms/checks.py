@@ -1,4 +1,7 @@
-"""Bad input gets a clear error, early: each function names the bad value and what is allowed."""
+"""Bad input gets a clear error, early: each function names the bad value and what is allowed.
+
+Torch is imported only where a tensor can be what is checked, so that names can be checked without waiting for it.
+"""
 
 from __future__ import annotations
 
@@ -7,109 +10,147 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-import torch
 
 SEED_END = 2**32  # numpy's seeds end there, and ManiSkill draws with numpy
 SIM_BACKENDS = ("auto", "cpu", "gpu", "cuda", "physx_cpu", "physx_cuda")
 RENDER_BACKENDS = ("auto", "cpu", "gpu", "cuda", "sapien_cpu", "sapien_cuda", "none", "pci")
+SHOWN = 12  # names that an error lists; where there are more, it names the nearest
+NEAREST = 5  # names that an error suggests where it cannot list all
+LEAST_PIXELS = 16  # of a camera's image each way: the hazard image has as many samples
 OPTIONS = ("scene", "reconfigure", "env_idx", "reset_to_env_states")
 
 
-def one_of(value: Any, allowed: Iterable[str], what: str) -> str:
-    """`value` if it is one of the names `allowed`."""
+def one_of(value: Any, allowed: Iterable[str], what: str, listing: str = "", shown: int = SHOWN) -> str:
+    """`value` if it is one of the names `allowed`, of which an error lists `shown` at most.
+
+    Raises ValueError that names the nearest of them otherwise; `listing` says how to see all of very many.
+    """
     names = list(allowed)
-    if not isinstance(value, str) or value not in names:
-        close = difflib.get_close_matches(str(value), names, n=1)
-        hint = f" (did you mean {close[0]!r}?)" if close else ""
-        shown = ", ".join(names[:40]) + (f", ... ({len(names)} in all)" if len(names) > 40 else "")
-        raise ValueError(f"{what} {value!r} is unknown{hint}; allowed: {shown}")
-    return value
+    if isinstance(value, str) and value in names:
+        return value
+    close = difflib.get_close_matches(str(value), names, n=NEAREST)
+    if len(names) <= shown:
+        choices = f"one of {', '.join(names)}"
+    else:
+        choices = f"one of {len(names)} names such as {', '.join(close or names[:NEAREST])}"
+    hint = f" (did you mean {close[0]!r}?)" if close else ""
+    more = f"; {listing}" if listing and len(names) > shown else ""
+    raise ValueError(f"{what} must be {choices}, got {value!r:.100}{hint}{more}")
 
 
 def whole(value: Any, low: int, high: int, what: str) -> int:
-    """`value` as an int in [low, high]; bools and floats are refused."""
+    """`value` as an int in [low, high]. Raises ValueError for all else, bools and floats among them."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not low <= int(value) <= high:
-        raise ValueError(f"{what} is {value!r}; a whole number from {low} to {high} is allowed")
+        raise ValueError(f"{what} must be a whole number from {low} to {high}, got {value!r}")
     return int(value)
 
 
 def flag(value: Any, what: str) -> bool:
-    """`value` if it is True or False; numbers are refused."""
+    """`value` if it is True or False. Raises ValueError for all else, numbers among them."""
     if not isinstance(value, (bool, np.bool_)):
-        raise ValueError(f"{what} is {value!r}; True or False is allowed")
+        raise ValueError(f"{what} must be True or False, got {value!r}")
     return bool(value)
 
 
 def seeds(value: Any, num_envs: int) -> Any:
-    """`seed` of a reset: None, one seed, or a list of one per environment."""
+    """The `seed` of a reset: None, one seed, or a list of one per environment. Raises ValueError for all else."""
     if value is None:
         return None
     if isinstance(value, (list, tuple, np.ndarray)):
         if len(value) not in (1, num_envs):
-            raise ValueError(f"seed has {len(value)} entries; 1 or {num_envs} (num_envs) are allowed")
+            raise ValueError(f"seed must have 1 or {num_envs} (num_envs) entries, got {len(value)}")
         return [whole(s, 0, SEED_END - 1, "seed") for s in value]
     return whole(value, 0, SEED_END - 1, "seed")
 
 
 def options(value: Any, num_envs: int) -> dict[str, Any]:
-    """`options` of a reset."""
+    """The `options` of a reset, the rows of `env_idx` as a tensor. Raises ValueError for what no reset understands."""
     if value is None:
         return {}
     if not isinstance(value, dict):
-        raise ValueError(f"options is {value!r}; a dict or None is allowed")
+        raise ValueError(f"options must be a dict or None, got {value!r}")
     for key in value:
-        one_of(key, OPTIONS, "reset option")
+        one_of(key, OPTIONS, "a reset option")
+    if "scene" in value and value["scene"] is None:
+        raise ValueError("reset option 'scene' must be a scene's name or a list of them, got None")
     if "reconfigure" in value:
         flag(value["reconfigure"], "reset option 'reconfigure'")
     if "env_idx" in value:
-        rows = value["env_idx"].tolist() if isinstance(value["env_idx"], (np.ndarray, torch.Tensor)) else value["env_idx"]
-        if (
-            not isinstance(rows, (list, tuple))
-            or not rows
-            or not all(type(r) is int and 0 <= r < num_envs for r in rows)
-            or len(set(rows)) < len(rows)
-        ):
-            raise ValueError(f"reset option 'env_idx' is {value['env_idx']!r}; a list of indices from 0 to {num_envs - 1} is allowed")
+        import torch
+
+        given = value["env_idx"]
+        rows = given.tolist() if isinstance(given, (np.ndarray, torch.Tensor)) else given
+        whole_rows = isinstance(rows, (list, tuple)) and all(type(r) is int and 0 <= r < num_envs for r in rows)
+        if not rows or not whole_rows or len(set(rows)) < len(rows):
+            raise ValueError(
+                f"reset option 'env_idx' must be a list of indices from 0 to {num_envs - 1}, got {given!r}"
+            )
         return {**value, "env_idx": torch.tensor(rows)}
     return dict(value)
 
 
 def backends(num_envs: int, sim: Any, render: Any) -> None:
-    """Names of backends, and what `num_envs` asks of them."""
+    """Check the names of backends, and what `num_envs` asks of them. Raises ValueError for what cannot be."""
     one_of(sim.split(":")[0] if isinstance(sim, str) else sim, SIM_BACKENDS, "sim_backend")
     one_of(render.split(":")[0] if isinstance(render, str) else render or "none", RENDER_BACKENDS, "render_backend")
+    import torch
+
     if num_envs > 1 and (sim in ("cpu", "physx_cpu") or not torch.cuda.is_available()):
-        raise ValueError(f"num_envs is {num_envs}; 1 is allowed without a CUDA GPU (for more, use gymnasium's AsyncVectorEnv)")
+        raise ValueError(
+            f"num_envs must be 1 without a CUDA GPU, got {num_envs}; on a CPU each runs in a process of its own: "
+            f"gymnasium.vector.AsyncVectorEnv([lambda: hazard_ms.NumpyEnv(gymnasium.make(...))] * {num_envs}, "
+            "context='spawn')"
+        )
+
+
+def render_mode(value: str | None, allowed: Iterable[str], display: str | None) -> None:
+    """Check `render_mode`, which may be None. Raises ValueError for a window where there is no `display`."""
+    if value == "human" and not display:
+        names = ", ".join(m for m in allowed if m != "human")
+        raise ValueError(f"render_mode must be one of {names} without a display (DISPLAY is not set), got 'human'")
+    if value is not None:
+        one_of(value, allowed, "render_mode")
+
+
+def cameras(configs: Any) -> None:
+    """Check the sizes of cameras in ManiSkill's `sensor_configs`. Raises ValueError for less than LEAST_PIXELS."""
+    for part in (configs, *configs.values()) if isinstance(configs, dict) else ():
+        for name in ("width", "height") if isinstance(part, dict) else ():
+            if name in part:
+                whole(part[name], LEAST_PIXELS, 2**15, f"{name} in sensor_configs")
 
 
 def action(value: Any, space: Any, num_envs: int, modes: Iterable[str] = ()) -> Any:
-    """A low-level action: None (no new command), an array of the action space's shape, or ManiSkill's dict with a control mode."""
+    """A low-level action: None (no new command), an array of the action space's shape, or a dict with a control mode.
+
+    Raises ValueError for another type or shape, and for numbers that are not finite.
+    """
     if value is None:
         return value
     if isinstance(value, dict):
         if set(value) != {"control_mode", "action"}:
-            raise ValueError(f"action is a dict with {sorted(map(str, value))}; control_mode and action are allowed")
+            raise ValueError(f"an action dict must have control_mode and action, got {sorted(map(str, value))}")
         one_of(value["control_mode"], modes, "control_mode")
-        _numbers(value["action"])
+        array = _numbers(value["action"])
+        if array.ndim != 2 or array.shape[0] != num_envs:
+            raise ValueError(f"the action in a dict must have shape ({num_envs}, n), got {tuple(array.shape)}")
         return value
     array = _numbers(value)
     shapes = [(num_envs, *space.shape)] + ([space.shape] if num_envs == 1 else [])
     if tuple(array.shape) not in shapes:
-        raise ValueError(f"action has shape {tuple(array.shape)}; allowed: {' or '.join(map(str, shapes))}")
+        raise ValueError(f"action must have shape {' or '.join(map(str, shapes))}, got {tuple(array.shape)}")
     return value
 
 
-def _numbers(value: Any) -> torch.Tensor:
+def _numbers(value: Any) -> Any:
+    import torch
+
     if not isinstance(value, (np.ndarray, torch.Tensor)):
-        raise ValueError(f"action is a {type(value).__name__}; a numpy array or torch tensor is allowed")
+        raise ValueError(f"action must be a numpy array or a torch tensor, got {type(value).__name__}")
     array = torch.as_tensor(value)
     if array.dtype == torch.bool or array.is_complex():
-        raise ValueError(f"action has dtype {array.dtype}; floating-point or integer numbers are allowed")
-    if not bool(torch.isfinite(array).all()):
-        raise ValueError(f"action holds {_first_bad(array)}; finite numbers are allowed")
+        raise ValueError(f"action must hold floating-point or whole numbers, got dtype {array.dtype}")
+    finite = array.isfinite()
+    if not bool(finite.all()):
+        raise ValueError(f"action must hold finite numbers, got {float(array[~finite][0])}")
     return array
-
-
-def _first_bad(array: torch.Tensor) -> str:
-    bad = array[~torch.isfinite(array)]
-    return str(float(bad[0]))

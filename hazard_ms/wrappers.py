@@ -1,4 +1,4 @@
-"""Two wrappers: the batched time limit that every registered environment gets, and the plain numpy interface of gymnasium."""
+"""Two wrappers: the batched time limit of every registered environment, and gymnasium's plain numpy interface."""
 
 from __future__ import annotations
 
@@ -21,14 +21,16 @@ class TimeLimit(gym.Wrapper, RecordConstructorArgs):
     def __init__(self, env: gym.Env, max_episode_steps: int | None = None) -> None:
         RecordConstructorArgs.__init__(self, max_episode_steps=max_episode_steps)
         if isinstance(env, gym.wrappers.TimeLimit):
-            max_episode_steps = env._max_episode_steps if max_episode_steps is None else max_episode_steps
+            max_episode_steps = max_episode_steps or env.get_wrapper_attr("_max_episode_steps")
             env = env.env
         super().__init__(env)
         self._max_episode_steps = max_episode_steps
+        if max_episode_steps is not None:
+            env.unwrapped.allow_frames(max_episode_steps)  # type: ignore[attr-defined]
 
     @property
     def spec(self) -> EnvSpec | None:  # type: ignore[override]
-        """That of the environment, with this limit; gymnasium makes the same environment of it again."""
+        """The environment's spec with this limit, from which gymnasium makes the same environment again."""
         inner = self.env.spec
         if inner is None:
             return None
@@ -42,6 +44,13 @@ class TimeLimit(gym.Wrapper, RecordConstructorArgs):
         if self._max_episode_steps is not None:
             truncated = truncated | (self.unwrapped.elapsed_steps >= self._max_episode_steps)  # type: ignore[attr-defined]
         return obs, reward, terminated, truncated, info
+
+
+def is_bare(env: gym.Env) -> bool:
+    """Whether `env` is wrapped in nothing, or only in the TimeLimit above: then nobody else has to see its steps."""
+    while isinstance(env, TimeLimit):
+        env = env.env
+    return env is env.unwrapped
 
 
 class NumpyEnv(gym.Wrapper, RecordConstructorArgs):

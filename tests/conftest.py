@@ -23,6 +23,6 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def rendering_backend() -> str:
-    from hazard_ms.rendering import backend
+    from hazard_ms.machine.render_backend import backend
 
     return backend()

@@ -1,54 +1,108 @@
-"""The contract that every agent keeps, and the names by which agents are found.
+"""The contract that every agent keeps, and how agents are found and made.
 
-A third party's agent needs no entry here: `agent("package.module:Class")` imports it.
+A third party's agent needs no entry in the registry: `agent("package.module:Class")` or `agent("folder/file.py:Class")`
+imports it. Parameters follow the name: `agent("greedy:give_up=3")`.
 """
 
 from __future__ import annotations
 
 import abc
-import importlib
+import inspect
+import os
+import sys
+import typing
+from typing import Any
 
 import numpy as np
 
-from hazard_ms.sensing.semantic_map import Sighting
+from hazard_ms.checks import one_of
+from hazard_ms.registry import AGENTS, load, load_plugin
+from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
-from hazard_ms.spec import Task
 
-AGENTS = {  # as text, so that naming the agents imports none of them
-    "random": "hazard_ms.agents.random:Random",
-    "greedy": "hazard_ms.agents.greedy:Greedy",
-}
+FLAGS = {"true": True, "false": False}
 
 
 class Agent(abc.ABC):
-    """Chooses the next action from what has been seen. `note` may say why; it is shown with the decision and changes nothing."""
+    """Chooses the next action from what has been seen.
+
+    `note` may say why; it is shown with the decision and changes nothing. Parameters of `__init__` that are annotated
+    as int, float, bool or str can be given with the agent's name.
+    """
 
     note: str = ""
 
     @abc.abstractmethod
-    def reset(self, task: Task, seed: int) -> None:
-        """Begin an episode of `task`. An agent that draws lots draws them from `seed` alone."""
+    def reset(self, brief: Brief) -> None:
+        """Begin an episode. All randomness of the agent is derived from `brief.random_seed`."""
 
     @abc.abstractmethod
     def act(self, decision: Decision) -> Action:
         """The next action; called again when that has ended."""
 
 
-def agent(name: str) -> Agent:
-    """A new agent: one of `AGENTS`, or that of a third party as `package.module:Class`."""
-    if name not in AGENTS and ":" not in name:
-        raise ValueError(f"no agent is called {name!r}; there are {', '.join(sorted(AGENTS))}, or give package.module:Class")
-    module_name, _, class_name = AGENTS.get(name, name).partition(":")
-    if not module_name or not class_name:
-        raise ValueError(f"agent {name!r}: package.module:Class has two halves; there are also {', '.join(sorted(AGENTS))}")
-    try:
-        module = importlib.import_module(module_name)
-    except ModuleNotFoundError as missing:
-        raise ValueError(f"agent {name!r}: there is no module {missing.name!r}") from missing
-    made = getattr(module, class_name, None)
+def user_path() -> None:
+    """Let Python find modules in the current folder, where an installed command does not look by itself.
+
+    Processes that are started later inherit it.
+    """
+    if os.getcwd() not in sys.path:
+        sys.path.insert(0, os.getcwd())
+
+
+def agent(text: str) -> Agent:
+    """A new agent: a registered name, package.module:Class or file.py:Class, then perhaps :key=value,key=value.
+
+    Raises ValueError for an agent that cannot be found, and for parameters that it does not have.
+    """
+    words = text.split(":")
+    given = words.pop() if len(words) > 1 and "=" in words[-1] else ""
+    made = _class(":".join(words))
     if not (isinstance(made, type) and issubclass(made, Agent)):
-        raise ValueError(f"agent {name!r}: {class_name!r} of {module_name} is no subclass of hazard_ms.agents.base.Agent")
-    return made()
+        raise ValueError(f"agent must be a subclass of hazard_ms.agents.base.Agent, got {text!r}, which is {made!r}")
+    return made(**_parameters(made, given))
+
+
+def _class(name: str) -> Any:
+    module, colon, attribute = name.rpartition(":")
+    if not colon:
+        return load(AGENTS[one_of(name, AGENTS, "agent")].agent)
+    if not module.endswith(".py"):
+        return load(name)
+    found = getattr(load_plugin(module), attribute, None)
+    if found is None:
+        raise ValueError(f"agent must be a class of {module}, got {attribute!r}")
+    return found
+
+
+def _parameters(made: type[Agent], given: str) -> dict[str, Any]:
+    """The keywords `key=value,key=value` for an agent, converted as its `__init__` annotates them."""
+    known = [] if made.__init__ is object.__init__ else [*inspect.signature(made.__init__).parameters][1:]
+    kinds = typing.get_type_hints(made.__init__) if known else {}
+    keywords = {}
+    for part in filter(None, given.split(",")):
+        key, equals, value = part.partition("=")
+        if not equals or key not in known:
+            allowed = ", ".join(f"{name}=..." for name in known) or "(none)"
+            raise ValueError(f"a parameter of {made.__name__} must be one of {allowed}, got {part!r}")
+        keywords[key] = _converted(value, kinds.get(key, str), key)
+    return keywords
+
+
+def _converted(value: str, kind: Any, key: str) -> Any:
+    """`value` as `kind`: int, float, bool, str, or one of several such types."""
+    for each in typing.get_args(kind) or (kind,):
+        if each is bool and value.lower() in FLAGS:
+            return FLAGS[value.lower()]
+        if each is type(None) and value.lower() == "none":
+            return None
+        if each in (int, float, str):
+            try:
+                return each(value)
+            except ValueError:
+                continue
+    raise ValueError(f"{key} must be {getattr(kind, '__name__', kind)}, got {value!r}")
 
 
 def distance(decision: Decision, sighting: Sighting) -> float:
@@ -57,7 +111,7 @@ def distance(decision: Decision, sighting: Sighting) -> float:
 
 
 def known(decision: Decision, names: tuple[str, ...]) -> dict[str, Sighting]:
-    """Those of `names` that were seen and are remembered, nearest first."""
+    """The things among `names` that were seen and are remembered, nearest first."""
     seen = {name: decision.map.objects[i] for name in names if (i := decision.index(name)) in decision.map.objects}
     return dict(sorted(seen.items(), key=lambda item: distance(decision, item[1])))
 

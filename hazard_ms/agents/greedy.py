@@ -2,10 +2,10 @@
 
     cost = (distance + HANDLING) * (1 + failures)^2 / predicted value
 
-The predicted value is halved where the target is damaged or will be by the time of arrival, with its temperature, or the water over
-it, continued along the straight line through its last two sightings. A target that failed repeatedly gets a growing cost and is given
-up at last, so no path is tried for ever. Searching: walk to the landmark with the most unexplored floor around it, then look around
-there.
+The predicted value is halved where the target is damaged, or where a hazard threatens it by the time of arrival, with
+the hazard's level continued along the straight line through the last two sightings. A target that failed repeatedly
+gets a growing cost and is given up at last, so no path is tried for ever. Searching: walk to the landmark with the most
+unexplored floor around it, then look around there.
 """
 
 from __future__ import annotations
@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.base import Agent, distance, known, open_targets
-from hazard_ms.catalogue import DAMAGED_SHARE
-from hazard_ms.sensing.semantic_map import SemanticMap, Sighting
+from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
-from hazard_ms.spec import Task
+from hazard_ms.spec.catalogue import DAMAGED_SHARE
 
-WALKING = 1.0 / 62.0  # [m/frame] (benchmark rules 1)
+WALKING = 1.0 / 62.0  # [m/frame] (docs/benchmark.md 1)
 HANDLING = 1.0  # what picking up costs, as a distance: about 60 frames [m]
 NEAR = 0.7  # from here it reaches for a target without walking: arrival is at 0.5 m, and a position has some error [m]
 PROGRESS = 0.2  # a walk that brought it this far was no failure, even if it did not arrive [m]
@@ -27,16 +28,22 @@ LEGS = 8  # walks without arrival to one target that together count as a failure
 GIVE_UP = 4  # failures with one target
 AROUND = 2.0  # radius of floor that counts as around a landmark [m]
 LOW = 0.3  # floor below this height can be walked on [m]
-LOYALTY = 0.8  # factor on the cost of the target it is on its way to: it turns to another only if that is clearly better
+LOYALTY = 0.8  # factor on the cost of the target it is on its way to: another must be clearly better
 VISITS = 2  # of one landmark in search
 
 
 class Greedy(Agent):
     """Rule of the paper with the target, and in wind the container, of the lowest cost."""
 
-    def reset(self, task: Task, seed: int) -> None:
-        """Forget the last episode. It draws no lots: `seed` changes nothing."""
-        self._level_of = task.hazards[0].name if task.hazards else ""  # of which hazard sightings tell the level
+    def __init__(self, give_up: int = GIVE_UP) -> None:
+        """`give_up`: failures after which a target is given up. Raises ValueError unless it is positive."""
+        if give_up < 1:
+            raise ValueError(f"give_up must be at least 1, got {give_up}")
+        self._give_up = give_up
+
+    def reset(self, brief: Brief) -> None:
+        """Forget the last episode. Nothing is random."""
+        self._hazards = brief.hazards
         self._failures: dict[str, int] = {}
         self._visits: dict[int, int] = {}
         self._looked_from: tuple[float, float] | None = None  # where it last looked around [m]
@@ -46,7 +53,7 @@ class Greedy(Agent):
         self._before: tuple[Action, tuple[float, float]] | None = None  # the last action, and where it began [m]
 
     def act(self, decision: Decision) -> Action:
-        """Put away what it holds, else fetch the cheapest target, else search."""
+        """The next action: put away what it holds, else fetch the cheapest target, else search."""
         self._judge(decision)
         action = self._choose(decision)
         self._before = (action, decision.agent_position)
@@ -82,7 +89,7 @@ class Greedy(Agent):
         costs = {
             name: self._cost(decision, name, sighting)
             for name, sighting in known(decision, open_targets(decision)).items()
-            if self._failures.get(name, 0) < GIVE_UP
+            if self._failures.get(name, 0) < self._give_up
         }
         if not costs:
             return self._search(decision)
@@ -103,7 +110,7 @@ class Greedy(Agent):
             self.note = "into the bag"
             return Action(DROP)
         carts = known(decision, decision.containers)
-        open_carts = [name for name in carts if self._failures.get(name, 0) < GIVE_UP]
+        open_carts = [name for name in carts if self._failures.get(name, 0) < self._give_up]
         if not open_carts:
             return self._search(decision)
         nearest = min(open_carts, key=lambda name: distance(decision, carts[name]) * (1 + self._failures.get(name, 0)))
@@ -113,10 +120,9 @@ class Greedy(Agent):
     def _cost(self, decision: Decision, name: str, sighting: Sighting) -> float:
         way = distance(decision, sighting) + HANDLING
         target = decision.target(name)
-        level = _predicted(sighting, decision.frame + way / WALKING)
-        burns = self._level_of == "fire" and target.flammable and level >= target.ignition_temperature
-        drowns = self._level_of == "flood" and not target.waterproof and level >= float(sighting.position[2])
-        lost = target.damaged or burns or drowns
+        levels, height = _predicted(sighting, decision.frame + way / WALKING), float(sighting.position[2])
+        threats = zip(self._hazards, levels, strict=False)  # a level is missing where no hazard image was
+        lost = target.damaged or any(hazard.threatens(target, level, height) for hazard, level in threats)
         value = target.value * (DAMAGED_SHARE if lost else 1.0)
         loyalty = LOYALTY if decision.last_action == Action(WALK_TO, name) else 1.0
         return loyalty * way * (1 + self._failures.get(name, 0)) ** 2 / value
@@ -140,7 +146,10 @@ class Greedy(Agent):
         return Action(WALK_TO, self._landmark)
 
     def _landmarks(self, decision: Decision) -> dict[int, float]:
-        """Things worth walking to in search, by index: unexplored floor around them, over the way there and the visits paid."""
+        """The worth of walking to things in search, by index.
+
+        It is the unexplored floor around them, over the distance and the visits paid.
+        """
         frontier = frontier_points(decision.map)
         scores = {}
         for index, sighting in decision.map.objects.items():
@@ -152,18 +161,18 @@ class Greedy(Agent):
         return scores
 
 
-def _predicted(sighting: Sighting, frame: float) -> float:
-    """Hazard level at a thing at `frame`, along the line through its last two sightings at different frames [C] or [m]."""
-    late_frame, late = sighting.history[-1] if sighting.history else (sighting.frame, sighting.hazard)
-    earlier = [(f, level) for f, level in sighting.history if f < late_frame]
+def _predicted(sighting: Sighting, frame: float) -> list[float]:
+    """Levels of the hazards at a thing at `frame`, on the line through its last two sightings at different frames."""
+    late_frame, late = sighting.history[-1] if sighting.history else (sighting.frame, sighting.levels)
+    earlier = [(f, levels) for f, levels in sighting.history if f < late_frame]
     if not earlier:
-        return late
+        return list(late)
     early_frame, early = earlier[-1]
-    return late + (late - early) / (late_frame - early_frame) * (frame - late_frame)
+    return [b + (b - a) / (late_frame - early_frame) * (frame - late_frame) for a, b in zip(early, late, strict=True)]
 
 
 def frontier_points(seen: SemanticMap) -> NDArray[np.float64]:
-    """Middles of explored, walkable cells next to unexplored ones [m], [P, 2]."""
+    """The middles of explored, walkable cells next to unexplored ones [m], [P, 2], world frame."""
     closed = seen.explored
     inner = np.ones_like(closed)
     inner[1:-1, 1:-1] = closed[:-2, 1:-1] & closed[2:, 1:-1] & closed[1:-1, :-2] & closed[1:-1, 2:]

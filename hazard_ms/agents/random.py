@@ -5,21 +5,26 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.agents.base import Agent, known, open_targets
+from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
-from hazard_ms.spec import Task
 
 
 class Random(Agent):
-    """One step to the nearest target or container, pick up the nearest target, drop, explore, walk to something in sight."""
+    """Draws from six moves.
 
-    def reset(self, task: Task, seed: int) -> None:
-        """Begin a row of lots that `seed` fixes."""
-        self._lots = np.random.default_rng([seed, 0x52414E44])  # "RAND": not the stream of another agent with the same seed
+    They are: one step to the nearest target or container, pick up the nearest target, drop, explore, and walk to
+    something in sight.
+    """
+
+    def reset(self, brief: Brief) -> None:
+        """Begin a sequence of random numbers, fixed by `brief.random_seed`."""
+        # "RAND": not the stream of another agent with the same seed
+        self._chance = np.random.default_rng([brief.random_seed, 0x52414E44])
 
     def act(self, decision: Decision) -> Action:
-        """One of the possible moves."""
+        """The next action, one of the possible moves."""
         moves = self._moves(decision)
-        return moves[int(self._lots.integers(len(moves)))]
+        return moves[int(self._chance.integers(len(moves)))]
 
     def _moves(self, decision: Decision) -> list[Action]:
         carts = list(known(decision, decision.containers))
@@ -32,5 +37,5 @@ class Random(Agent):
             moves.append(Action(WALK_ONE_STEP, carts[0]))
         in_sight = [i for i in decision.map.in_view if decision.names[i] != decision.held]
         if in_sight:
-            moves.append(Action(WALK_TO, decision.names[in_sight[int(self._lots.integers(len(in_sight)))]]))
+            moves.append(Action(WALK_TO, decision.names[in_sight[int(self._chance.integers(len(in_sight)))]]))
         return moves

@@ -1,17 +1,17 @@
-"""How black and how hot a thing looks, as one scalar of its materials; see glsl.py."""
+"""Charring: one scalar of a thing's materials says how black and how hot it looks; see shaders/common.py."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from hazard_ms.hazards.fire import BURNING, BURNT, FireState
+from hazard_ms.hazards.fire.fire import BURNING, BURNT, FireState
 
 CHAR_UPDATES = 45.0  # heat updates of burning after which 63 % of a thing are black [ours]
 TOAST = 0.15  # char of a thing about to ignite [ours]
 
 
 def char_codes(fire: FireState, times: np.ndarray) -> np.ndarray:
-    """How black and how glowing each thing is, [E, B], as glsl.py packs it. `times` [s], [E]."""
+    """The char code of each thing, [E, B], as shaders/common.py describes it, at `times` [s], [E]."""
     status, updates = fire.status.cpu().numpy(), fire.burn_updates.cpu().numpy()
     warmth = ((fire.temperature - 20.0) / (fire.threshold - 20.0).clamp(min=1.0)).clamp(0.0, 1.0).cpu().numpy()
     charred = np.where(status == BURNING, 1.0 - np.exp(-updates / CHAR_UPDATES), TOAST * warmth**2)

@@ -1,4 +1,4 @@
-"""Quads for effects, and where on a thing they stand. See glsl.py for what a corner carries."""
+"""Quads for effects, and their places on a thing. See shaders/common.py for what a corner carries."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import sapien
 from sapien.render import RenderMaterial, RenderShapeTriangleMesh
 
-from hazard_ms.effects.glsl import EMBER, FLAME, SCORCH, SMOKE
+from hazard_ms.effects.shaders.common import EMBER, FLAME, SCORCH, SMOKE
 
 CORNERS = np.array([[-1, 0], [1, 0], [1, 1], [-1, 1]], np.float32)
 FACES = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
@@ -29,7 +29,10 @@ def quads(
 
 
 def spots(vertices: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
-    """`count` places [m], [count, 3], spread evenly over the upper faces of a mesh, a few over its sides, none below."""
+    """Places [m], [count, 3], spread evenly over the upper faces of a mesh, a few over its sides, none below.
+
+    `vertices` [m], [V, 3]; `faces`: indices, [T, 3].
+    """
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     across = np.cross(b - a, c - a)
     area = np.linalg.norm(across, axis=1)
@@ -50,7 +53,7 @@ def spots(vertices: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
 
 
 def surface(entity: sapien.Entity) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices [m] and faces of all that is drawn of `entity`, in its frame, [V, 3] and [T, 3]; empty where nothing is."""
+    """Vertices [m], [V, 3], and faces, [T, 3], of all that is drawn of `entity`, in its frame; empty if nothing is."""
     body = entity.find_component_by_type(sapien.render.RenderBodyComponent)
     points, faces, offset = [np.zeros((0, 3), np.float32)], [np.zeros((0, 3), np.int64)], 0
     for shape in body.render_shapes if body else ():
@@ -66,7 +69,7 @@ def surface(entity: sapien.Entity) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _primitive_size(shape: sapien.render.RenderShape) -> np.ndarray:
-    """By what SAPIEN scales the unit vertices that it gives of a box, sphere or cylinder [m], [3]."""
+    """The factors by which SAPIEN scales the unit vertices of a box, sphere or cylinder [m], [3]."""
     if isinstance(shape, sapien.render.RenderShapeBox):
         return np.asarray(shape.half_size)
     if isinstance(shape, sapien.render.RenderShapeSphere):
@@ -77,7 +80,7 @@ def _primitive_size(shape: sapien.render.RenderShape) -> np.ndarray:
 
 
 def thing_flames(entity: sapien.Entity, material: RenderMaterial) -> RenderShapeTriangleMesh | None:
-    """Flames for one thing, in its frame; None for a thing that is not drawn."""
+    """The flames of one thing, in its frame; None for a thing that is not drawn."""
     vertices, faces = surface(entity)
     if len(faces) == 0:
         return None
@@ -92,7 +95,7 @@ def thing_flames(entity: sapien.Entity, material: RenderMaterial) -> RenderShape
 
 
 def floor_flames(edge: float, seed: float, material: RenderMaterial) -> RenderShapeTriangleMesh:
-    """A burning patch of floor of `edge` [m]: scorch mark, then three flames."""
+    """A burning patch of floor with an `edge` [m]: a scorch mark and three flames."""
     turn = 6.28 * seed + np.array([0.0, 2.1, 4.2])
     place = np.column_stack([0.28 * edge * np.cos(turn), 0.28 * edge * np.sin(turn), np.zeros(3)])
     anchors = np.vstack([[0.0, 0.0, 0.006], place])  # [m] above the floor, against flicker between two equal depths
@@ -102,7 +105,7 @@ def floor_flames(edge: float, seed: float, material: RenderMaterial) -> RenderSh
 
 
 def smoke_column(ceiling: float, seed: float, material: RenderMaterial) -> RenderShapeTriangleMesh:
-    """Embers, then puffs that rise to `ceiling` [m] and fade."""
+    """A column of smoke: embers, and puffs that rise to `ceiling` [m] and fade."""
     seeds = (seed + np.arange(EMBERS + PUFFS) * GOLDEN) % 1
     turn, out = 6.28 * seeds * 3, 0.12 * seeds
     anchors = np.column_stack([out * np.cos(turn), out * np.sin(turn), np.zeros_like(out)])

@@ -6,13 +6,13 @@ import numpy as np
 import sapien
 
 NOISE_SIDE = 128  # [pixels]
-OCTAVES = 5
+OCTAVES = 5  # of the noise
 FIRST_CELLS = 4  # of the coarsest octave, per side
 FALL = 0.55  # amplitude of an octave relative to the one before
 
 
 def noise(side: int = NOISE_SIDE, seed: int = 0) -> np.ndarray:
-    """Tileable fractal value noise in 0..1, [side, side], float32: mean about 0.5."""
+    """Tileable fractal value noise in 0..1 with a mean of about 0.5, [side, side], float32."""
     draw = np.random.default_rng(seed)
     total, weight, cells, amplitude = np.zeros((side, side), np.float32), 0.0, FIRST_CELLS, 1.0
     for _ in range(OCTAVES):
@@ -32,18 +32,21 @@ def noise(side: int = NOISE_SIDE, seed: int = 0) -> np.ndarray:
 
 
 def noise_texture() -> sapien.render.RenderTexture2D:
-    """`noise` on the renderer, in all four channels."""
+    """The noise as a texture on the renderer, in all four channels."""
     grey = (noise() * 255 + 0.5).astype(np.uint8)
     return sapien.render.RenderTexture2D(np.repeat(grey[..., None], 4, -1), "R8G8B8A8Unorm", mipmap_levels=5)
 
 
 def ripples(side: int = NOISE_SIDE) -> np.ndarray:
-    """Tileable ripples of water: slope along x and along y about 0.5, height and other noise in 0..1, [side, side, 4], float32."""
+    """Tileable ripples of water, [side, side, 4], float32, each channel in 0..1.
+
+    The channels are the slopes along x and along y, about 0.5, the height, and another noise.
+    """
     height = noise(side, seed=1)
     slopes = [(np.roll(height, -1, axis) - np.roll(height, 1, axis)) * (side / 16.0) for axis in (1, 0)]
     return np.stack([*(np.clip(0.5 + 0.5 * s, 0.0, 1.0) for s in slopes), height, noise(side, seed=2)], -1)
 
 
 def ripple_texture() -> sapien.render.RenderTexture2D:
-    """`ripples` on the renderer."""
+    """The ripples as a texture on the renderer."""
     return sapien.render.RenderTexture2D((ripples() * 255 + 0.5).astype(np.uint8), "R8G8B8A8Unorm", mipmap_levels=5)

@@ -1,11 +1,12 @@
-"""The scores of the HAZARD challenge over episodes (benchmark rules 4), each with a bootstrap interval over episodes.
+"""The scores of the HAZARD challenge over episodes (docs/benchmark.md 4), each with a bootstrap interval over episodes.
 
-    Value  = mean over episodes of  value rescued / value of all targets at the start;  a target rescued damaged counts half
+    Value  = mean over episodes of  value rescued / value of all targets at the start;  a target rescued damaged counts
+           half
     Step   = sum over episodes of the frame of the last rescue / sum of targets rescued;  None when nothing is rescued
     Damage = targets rescued damaged / targets rescued, over all episodes together;  None when nothing is rescued
 
-Value and Damage are shares, 0 to 1; the paper prints them times 100. Read Step only beside Value: rescuing 1 of 15 quickly looks
-good in Step.
+Value and Damage are shares, 0 to 1; the paper prints them times 100. Read Step only beside Value: rescuing 1 of 15
+quickly looks good in Step.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.catalogue import DAMAGED_SHARE
+from hazard_ms.spec.catalogue import DAMAGED_SHARE
 
 RESAMPLES = 10_000  # of the bootstrap: the ends of a 95 % interval are then known to about 1 % of its width
 LEVEL = 0.95  # of the interval
@@ -24,7 +25,7 @@ LEVEL = 0.95  # of the interval
 
 @dataclass(frozen=True)
 class Fate:
-    """What became of one target."""
+    """The fate of one target. Raises ValueError where `rescued` and `frame` disagree."""
 
     name: str
     category: str
@@ -35,12 +36,14 @@ class Fate:
 
     def __post_init__(self) -> None:
         if self.rescued != (self.frame is not None):
-            raise ValueError(f"{self.name}: rescued is {self.rescued}, but the frame of its rescue is {self.frame}")
+            raise ValueError(
+                f"frame of {self.name} must be that of its rescue, got {self.frame} with rescued={self.rescued}"
+            )
 
 
 @dataclass(frozen=True)
 class Tally:
-    """What one episode adds to the scores."""
+    """The part of one episode in the scores."""
 
     value_rescued: float  # damaged ones at half
     value_total: float
@@ -50,9 +53,9 @@ class Tally:
 
     @classmethod
     def of(cls, fates: Sequence[Fate]) -> Tally:
-        """The tally of an episode whose targets met these fates."""
+        """The tally of an episode whose targets met these fates. Raises ValueError where there are no targets."""
         if not fates:
-            raise ValueError("an episode without targets has no score")
+            raise ValueError("fates must be those of at least one target, got none")
         saved = [f for f in fates if f.rescued]
         return cls(
             value_rescued=sum(f.value * (DAMAGED_SHARE if f.damaged else 1.0) for f in saved),
@@ -98,9 +101,9 @@ SCORES: dict[str, Callable[[Sequence[Tally]], float | None]] = {"value": value, 
 
 
 def scores(tallies: Sequence[Tally], seed: int = 0, resamples: int = RESAMPLES) -> dict[str, Score]:
-    """Value, Step and Damage of a set of episodes. `seed` of the bootstrap's draws."""
+    """Value, Step and Damage of episodes; `seed` is that of the bootstrap. Raises ValueError for no episodes."""
     if not tallies:
-        raise ValueError("there are no episodes to score")
+        raise ValueError("tallies must be those of at least one episode, got none")
     chosen = np.random.default_rng(seed).integers(len(tallies), size=(resamples, len(tallies)))
     drawn = _resampled(tallies, chosen)
     return {name: _interval(compute(tallies), drawn[name]) for name, compute in SCORES.items()}

@@ -1,4 +1,7 @@
-"""The result of one episode as JSON: what happened, with which versions, on what kind of machine, and how to run it again."""
+"""The result of one episode as JSON: what happened, with which versions and machine, and how to play it again.
+
+`FORMAT` goes up whenever a field changes its meaning or goes away; `EpisodeResult.read` refuses other formats.
+"""
 
 from __future__ import annotations
 
@@ -35,19 +38,24 @@ class DecisionRecord:
 
 @dataclass(frozen=True)
 class EpisodeResult:
-    """All about one episode that is worth keeping."""
+    """All about one episode that is worth keeping; it is written with the scores of the episode under "score".
+
+    `ended` is one of: what the task's goal says when it is achieved ("all rescued"); "failed", when it never can be;
+    "stopped", by the agent; "time", when the last frame has passed; "simulation error"; "too many decisions", for an
+    agent whose actions take no time; "frame reached", for a run that was asked to end at a frame.
+    """
 
     env_id: str
     agent: str
     seed: int
     scene: str
-    settings: dict[str, Any]  # keywords of gym.make
+    settings: dict[str, Any]  # keywords of gym.make; lighting and effects only where they are not the usual ones
     frames: int
     max_frames: int
-    ended: str  # why: all rescued | stopped | time | simulation error
+    ended: str  # why
     targets: tuple[Fate, ...]
     decisions: tuple[DecisionRecord, ...]
-    command: str  # that runs it again
+    command: str  # that plays it again
     wall_seconds: float = 0.0
     versions: dict[str, str] = field(default_factory=lambda: versions())
     machine: dict[str, Any] = field(default_factory=lambda: machine())
@@ -55,7 +63,7 @@ class EpisodeResult:
 
     @property
     def tally(self) -> Tally:
-        """What the episode adds to the scores."""
+        """The part of the episode in the scores."""
         return Tally.of(self.targets)
 
     def to_dict(self) -> dict[str, Any]:
@@ -70,10 +78,10 @@ class EpisodeResult:
 
     @classmethod
     def read(cls, path: Path) -> EpisodeResult:
-        """The result that `write` wrote. ValueError if another version's format stands there."""
+        """The result that `write` wrote. Raises ValueError for a file of another format."""
         row = json.loads(path.read_text())
         if row.get("format") != FORMAT:
-            raise ValueError(f"{path.name} has format {row.get('format')}; this version reads {FORMAT}")
+            raise ValueError(f"the format of {path.name} must be {FORMAT}, got {row.get('format')}")
         row.pop("score")
         row["targets"] = tuple(Fate(**t) for t in row["targets"])
         row["decisions"] = tuple(DecisionRecord(**d) for d in row["decisions"])
@@ -92,7 +100,7 @@ def versions() -> dict[str, str]:
 
 
 def machine() -> dict[str, Any]:
-    """What kind of machine this is; not whose."""
+    """The kind of this machine: system, cores and GPU, but not whose it is."""
     import torch
 
     gpu = torch.cuda.get_device_name(0) if torch.cuda.is_available() else None

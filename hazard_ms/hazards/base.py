@@ -12,23 +12,34 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import torch
 from torch import Tensor
 
+from hazard_ms.spec import Level, Quantity
+
 if TYPE_CHECKING:
-    from hazard_ms.world import World
+    from hazard_ms.simulation.world import World
 
 DTYPES = {"float": torch.float32, "int": torch.int64, "bool": torch.bool}
 
 
 def quantity(shape: str, unit: str, meaning: str, dtype: str = "float", fill: float = 0) -> Any:
-    """A field of a state. `shape` names its axes: E environments, B bodies, a number, or a name that the hazard's `sizes` has."""
+    """A field of a state.
+
+    `shape` names its axes: E environments, B bodies, a number, or a name that the hazard's `sizes` has. Raises
+    ValueError for other shapes and types of numbers.
+    """
     if not shape.split() or shape.split()[0] != "E":
-        raise ValueError(f"shape {shape!r} of the quantity {meaning!r} must begin with the axis E")
+        raise ValueError(f"shape of the quantity {meaning!r} must begin with the axis E, got {shape!r}")
     if dtype not in DTYPES:
-        raise ValueError(f"dtype {dtype!r} of the quantity {meaning!r} is none of {sorted(DTYPES)}")
-    return dataclasses.field(metadata={"shape": shape.split(), "unit": unit, "meaning": meaning, "dtype": dtype, "fill": fill})
+        raise ValueError(f"dtype of the quantity {meaning!r} must be one of {', '.join(DTYPES)}, got {dtype!r}")
+    return dataclasses.field(
+        metadata={"shape": shape.split(), "unit": unit, "meaning": meaning, "dtype": dtype, "fill": fill}
+    )
 
 
-def nobody(mask: Tensor) -> bool:
-    """Whether `mask` holds nowhere, so that work can be skipped. False on a GPU, where asking would make the host wait."""
+def none_set(mask: Tensor) -> bool:
+    """Whether `mask`, [...], holds nowhere, so that work can be skipped.
+
+    False on a GPU, where asking would make the host wait.
+    """
     return mask.device.type == "cpu" and not bool(mask.any())
 
 
@@ -45,25 +56,29 @@ class State:
         return cls(**made)
 
     def clear(self, rows: Tensor) -> None:
-        """Put the environments `rows` back to the fill values."""
+        """Put the environments `rows`, indices [R], back to the fill values."""
         for f in dataclasses.fields(self):  # type: ignore[arg-type]
             getattr(self, f.name)[rows] = f.metadata["fill"]
 
     def save(self) -> dict[str, Tensor]:
+        """Copies of all fields by name, [E, ...], in the units of the fields."""
         return {f.name: getattr(self, f.name).clone() for f in dataclasses.fields(self)}  # type: ignore[arg-type]
 
     def restore(self, saved: dict[str, Tensor], rows: Tensor | slice = slice(None)) -> None:
-        """Write `saved` (as `save` gave it, [len(rows), ...]) into the environments `rows`."""
+        """Write `saved`, as `save` gave it, [R, ...], into the environments `rows`, indices [R].
+
+        Raises ValueError for other fields than those of this state.
+        """
         names = {f.name for f in dataclasses.fields(self)}  # type: ignore[arg-type]
         if set(saved) != names:
-            raise ValueError(f"saved state has {sorted(saved)}, {type(self).__name__} needs {sorted(names)}")
+            raise ValueError(f"saved state of {type(self).__name__} must have {sorted(names)}, got {sorted(saved)}")
         for name in names:
             getattr(self, name)[rows] = saved[name].to(getattr(self, name))
 
 
 @dataclasses.dataclass
 class Push:
-    """What a hazard does to the bodies over the coming physics step, [E, B, 3], world frame; not to be changed in place.
+    """The push of a hazard on the bodies over the coming physics step, [E, B, 3], world frame; never changed in place.
 
     Mean force [N], and torque about the centre of mass [N m].
     """
@@ -77,7 +92,12 @@ class Hazard(abc.ABC):
 
     name: ClassVar[str]
     state_type: ClassVar[type[State]]
-    provides: ClassVar[dict[str, str]] = {}  # fields of the world that it writes: name -> its method (state, world, points)
+    level: ClassVar[Level]
+    fills: ClassVar[bool] = False  # it shows in the space between things: as water, haze or smoke
+    open_air: ClassVar[bool] = False  # it needs a scene in the open
+    tells: ClassVar[dict[str, Quantity]] = {}  # what each key of `agent_info` is
+    # fields of the world that it writes: name -> its method (state, world, points)
+    provides: ClassVar[dict[str, str]] = {}
     uses: ClassVar[tuple[str, ...]] = ()  # fields of the world that it reads, where another hazard provides them
 
     def sizes(self, world: World) -> dict[str, int]:
@@ -86,10 +106,13 @@ class Hazard(abc.ABC):
 
     @abc.abstractmethod
     def reset(self, state: Any, world: World, rows: Tensor) -> None:
-        """Start an episode in the environments `rows` (state is already at its fill values there); touch no other row."""
+        """Start an episode in the environments `rows`, indices [R], which have their fill values; touch no others."""
 
     def force(self, state: Any, world: World, dt: float) -> Push | None:
-        """What it does to the bodies over the coming physics step of `dt` seconds. Changes nothing. None: never any force."""
+        """The push on the bodies over the coming physics step of `dt` seconds; None: never any.
+
+        Changes nothing.
+        """
         return None
 
     @abc.abstractmethod
@@ -102,19 +125,27 @@ class Hazard(abc.ABC):
 
     @abc.abstractmethod
     def image(self, state: Any, world: World, points: Tensor) -> Tensor:
-        """The hazard's level at `points` [m], [E, P, 3], world frame -> [E, P]: temperature [C], water level [m]."""
+        """The hazard's level at `points` [m], [E, P, 3], world frame -> [E, P], in the unit of `level`."""
+
+    def threatens(self, target: Any, level: float, height: float) -> bool:
+        """Whether a thing is damaged where this hazard's level is `level`: what agents are told of the hazard.
+
+        `target` has the catalogue's properties `flammable`, `waterproof` and `ignition_temperature` [C], as
+        `hazard_ms.sensing.target_table.Target` has them; `height`: of its middle above the floor [m]. By default never.
+        """
+        return False
 
     def forbids(self, state: Any, world: World, points: Tensor) -> Tensor:
-        """Where an agent that the hazard affects must not go: [E, P] of `points` [m], [E, P, 3]. By default nowhere."""
+        """Whether an agent that the hazard affects must avoid `points` [m], [E, P, 3]: [E, P]. By default none."""
         return torch.zeros(points.shape[:2], dtype=torch.bool, device=points.device)
 
     def slow(self, state: Any, world: World) -> Tensor:
-        """What is left of the motion of an agent that the hazard affects, [E, 3].
+        """The motion that is left to an agent that the hazard affects, [E, 3].
 
         The share of its own velocity, and the velocity x, y [m/s] that comes on top. By default all of it, and nothing.
         """
         return torch.eye(3, device=world.device)[:1].expand(world.num_envs, 3)
 
     def agent_info(self, state: Any, world: World) -> dict[str, Tensor]:
-        """What the hazard does to the agent, for `info`: name -> [E]."""
+        """The numbers of `info` about the agent, by name, [E] each; with units as the hazard declares."""
         return {}

@@ -1,24 +1,24 @@
-"""The presets of physics: one code path, different numbers (physics.md 0 and 1.5).
+"""The presets of physics: one code path, different numbers (docs/physics.md 0 and 1.5).
 
 paper    the equations of the paper; constants from the original's code where the text gives none
-shipped  what the original's code does, for comparison with published scores; its things weigh 1 kg, which is for the scenes to say
+shipped  what the original's code does, for comparison with published scores; its things weigh 1 kg, which is for the
+         scenes to say
 realistic  published engineering laws and material data, SI units and seconds, true masses
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from hazard_ms.hazards.base import Hazard
-from hazard_ms.hazards.blaze import Blaze
-from hazard_ms.hazards.fire import Fire
-from hazard_ms.hazards.flood import Flood
-from hazard_ms.hazards.water import Water
-from hazard_ms.hazards.wind import Wind
+from hazard_ms.hazards.fire.fire import Fire
+from hazard_ms.hazards.fire.realistic.blaze import Blaze
+from hazard_ms.hazards.flood.flood import Flood
+from hazard_ms.hazards.flood.water import Water
+from hazard_ms.hazards.wind.wind import Wind
+from hazard_ms.registry import HAZARDS, find, load
 
 FREQUENCIES = {  # frames and physics steps per second: a frame is one env step
     "paper": (30, 120),
-    "shipped": (100, 100),  # 0.01 s a frame, one physics step each [physics.md 0.1]
+    "shipped": (100, 100),  # 0.01 s a frame, one physics step each [docs/physics.md 0.1]
     "realistic": (30, 120),
 }
 PRESETS = tuple(FREQUENCIES)
@@ -31,11 +31,11 @@ _FIRE: dict[str, Fire | Blaze] = {
 
 _WIND = {
     "paper": Wind(),
-    "shipped": Wind(  # an impulse per 0.01 s [physics.md 0.1]
-        scale=1.0, gain=100.0, implicit=False, projected=False, fixed_length=False, sweeps_agent=11.18
+    "shipped": Wind(  # an impulse per 0.01 s [docs/physics.md 0.1]
+        scale=1.0, gain=100.0, implicit=False, projected=False, fixed_length=False, sweeping_share=0.2813746
     ),
     "realistic": Wind(
-        scale=4.8,  # 12 to 24 m/s at 10 m: Beaufort 6 to 9 [physics.md 4.4]
+        scale=4.8,  # 12 to 24 m/s at 10 m: Beaufort 6 to 9 [docs/physics.md 4.4]
         gain=1.0,
         crossflow=True,
         turbulence=0.0,
@@ -43,10 +43,10 @@ _WIND = {
         resistances=False,
         shaped=True,
         pressure=True,
-        roughness=0.03,  # open ground [physics.md 3.3]
+        roughness=0.03,  # open ground [docs/physics.md 3.3]
         gust_intensity=0.172,  # 1 / ln(10 m / 0.03 m)
         sheltered=True,
-        sweeps_agent=39.7,  # 115 kg, friction 0.6, Cd A 0.7 m^2 [physics.md 3.2, 3.3]
+        sweeping_share=1.0,  # the agent drifts at the speed at which its robot really slides [docs/physics.md 3.3]
     ),
 }
 
@@ -54,10 +54,11 @@ _FLOOD = {
     "paper": Flood(),
     "shipped": Flood(gain=1.0, slabs=True, spares_waterproof=False, damage_fraction=0.0),
     "realistic": Flood(
-        rise_rate=0.03,  # 1 cm in 10 frames of 1/30 s: an open front door with 0.5 m of water outside [physics.md 3.2]
+        # 1 cm in 10 frames of 1/30 s: an open front door with 0.5 m of water outside [docs/physics.md 3.2]
+        rise_rate=0.03,
         current=0.5724341,  # of the front: rise_rate / tan(slope) [m/s]
         gain=1.0,
-        water=Water(added_mass=0.5),  # sphere 0.5, cube 0.67 [physics.md 3.2]
+        water=Water(added_mass=0.5),  # sphere 0.5, cube 0.67 [docs/physics.md 3.2]
         drag_coefficient=0.0,
         damage_time=1.0,
         electronic_time=0.1,
@@ -68,25 +69,30 @@ _FLOOD = {
 
 
 def fire(preset: str) -> Fire | Blaze:
-    """The fire of `preset`."""
+    """The fire of `preset`. Raises ValueError for an unknown preset."""
     return _FIRE[known(preset)]
 
 
 def flood(preset: str) -> Flood:
-    """The flood of `preset`, `realistic` among them: SI units and seconds, soaking, an agent that can be carried off."""
+    """The flood of `preset`. Raises ValueError for an unknown preset."""
     return _FLOOD[known(preset, tuple(_FLOOD))]
 
 
 def wind(preset: str) -> Wind:
-    """The wind of `preset`."""
+    """The wind of `preset`. Raises ValueError for an unknown preset."""
     return _WIND[known(preset, tuple(_WIND))]
 
 
 def known(preset: str, presets: tuple[str, ...] = PRESETS) -> str:
-    """`preset` itself; ValueError unless it is one of `presets`."""
+    """The name of a preset, if it is one of `presets`. Raises ValueError for others."""
     if preset not in presets:
-        raise ValueError(f"no preset of physics is called {preset!r}; there are {', '.join(presets)}")
+        raise ValueError(f"physics must be one of {', '.join(presets)}, got {preset!r}")
     return preset
 
 
-HAZARDS: dict[str, Callable[[str], Hazard]] = {"fire": fire, "flood": flood, "wind": wind}  # every hazard by name: preset -> hazard
+def hazard(name: str, preset: str) -> Hazard:
+    """The registered hazard called `name` with the parameters of `preset`. Raises ValueError for an unknown one."""
+    made = load(find(HAZARDS, name, "hazard").maker)(preset)
+    if not isinstance(made, Hazard):
+        raise ValueError(f"the maker of {name!r} must give a Hazard, got {type(made).__name__}")
+    return made

@@ -1,10 +1,13 @@
-"""Turned boxes, as functions of kernels: `axes` is the matrix whose columns are a body's own axes, `extent` its edges along them [m]."""
+"""Turned boxes, as functions of kernels (Warp).
+
+`axes` is always the matrix whose columns are a body's own axes in the world frame, `extent` the edges along them [m].
+"""
 
 from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.launching import OPTIONS
+from hazard_ms.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 
@@ -16,24 +19,26 @@ def axes_of(rotation: wp.vec4) -> wp.mat33:
     wx, wy, wz = w * x, w * y, w * z
     xx, xy, xz = 2.0 * x * x, 2.0 * x * y, 2.0 * x * z
     yy, yz, zz = 2.0 * y * y, 2.0 * y * z, 2.0 * z * z
-    return wp.mat33(1.0 - (yy + zz), xy - wz, xz + wy, xy + wz, 1.0 - (xx + zz), yz - wx, xz - wy, yz + wx, 1.0 - (xx + yy))
+    return wp.mat33(
+        1.0 - (yy + zz), xy - wz, xz + wy, xy + wz, 1.0 - (xx + zz), yz - wx, xz - wy, yz + wx, 1.0 - (xx + yy)
+    )
 
 
 @wp.func
 def to_body(axes: wp.mat33, vector: wp.vec3) -> wp.vec3:
-    """A vector of the world's frame along the body's own axes."""
+    """Take a vector from the world's frame to the body's."""
     return wp.transpose(axes) * vector
 
 
 @wp.func
 def face_areas(extent: wp.vec3) -> wp.vec3:
-    """Areas [m^2] of a box's faces across its axes, from its edges [m]."""
+    """Areas [m^2] of the faces across a box's axes, from its edges [m]."""
     return wp.vec3(extent[1] * extent[2], extent[0] * extent[2], extent[0] * extent[1])
 
 
 @wp.func
 def spans(axes: wp.mat33, extent: wp.vec3) -> wp.vec3:
-    """Edges [m] of the box along the world's axes around a box of `extent` [m]."""
+    """Edges [m] of the box along the world's axes that encloses a turned box with edges `extent` [m]."""
     a = wp.mat33(
         wp.abs(axes[0, 0]),
         wp.abs(axes[0, 1]),
@@ -50,11 +55,11 @@ def spans(axes: wp.mat33, extent: wp.vec3) -> wp.vec3:
 
 @wp.func
 def base_of(centre: wp.vec3, axes: wp.mat33, extent: wp.vec3) -> wp.vec3:
-    """Middle of the base [m] of a box whose `centre` is given."""
+    """Middle of the base [m] of a box with this `centre` [m]."""
     return centre - axes * wp.vec3(0.0, 0.0, 0.5 * extent[2])
 
 
 @wp.func
 def centre_of(base: wp.vec3, axes: wp.mat33, extent: wp.vec3) -> wp.vec3:
-    """Centre [m] of a box the middle of whose `base` is given."""
+    """Centre [m] of a box with this middle of its `base` [m]."""
     return base + axes * wp.vec3(0.0, 0.0, 0.5 * extent[2])

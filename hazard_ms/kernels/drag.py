@@ -1,14 +1,14 @@
-"""Drag of oriented boxes and balls in a flow: quadratic, per face, implicit. For any fluid; nothing here knows water or air.
+"""Drag of oriented boxes and balls in a flow, for any fluid: quadratic, per face, implicit (Warp).
 
-    along each axis i of the body    F_i = rho Cd A_i |s_i| s_i / 2 / (1 + k_i |s_i| dt),   k_i = rho Cd A_i / (2 m)
-    turning about it                 T_i = -c_i |w_i| w_i / (1 + c_i |w_i| dt / I_i),       c_i = rho b_i (b_j^4 + b_k^4) / 64
+    along each axis i    F_i = rho Cd A_i |s_i| s_i / 2 / (1 + k_i |s_i| dt),   k_i = rho Cd A_i / (2 m)
+    turning about it     T_i = -c_i |w_i| w_i / (1 + c_i |w_i| dt / I_i),       c_i = rho b_i (b_j^4 + b_k^4) / 64
 
-s = flow - velocity is the slip, A_i the area of the face across the axis, b the edges. F is the exact mean of quadratic drag over a
-step of constant flow: no step is too long, no body too light, and the slip never changes its sign. With other forces at work, s_i
-(not |s_i|) is the slip that they would leave at the end of the step. T is the box form of MuJoCo's
-inertia model (its documentation, "Fluid forces"). Limits: no lift, no shading of one body by another.
+s = flow - velocity is the slip, A_i the area of the face across the axis, b the edges. F is the exact mean of quadratic
+drag over a step of constant flow: no step is too long and no body too light, and the slip never changes its sign. With
+other forces at work, s_i (not |s_i|) is the slip that they would leave at the end of the step. T is the box form of
+MuJoCo's inertia model (its documentation, "Fluid forces"). Limits: no lift, no shading of one body by another.
 
-Functions of kernels, for one body; `axes`: see hazard_ms.kernels.boxes.
+The functions are for one body; `axes` is explained in hazard_ms.kernels.boxes.
 """
 
 from __future__ import annotations
@@ -16,26 +16,26 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.kernels.boxes import to_body
-from hazard_ms.launching import OPTIONS
+from hazard_ms.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 
-_NOTHING = wp.constant(1e-12)  # [kg], [kg m^2]: keeps 0 / 0 away where there is no body
+_TINY = wp.constant(1e-12)  # least mass [kg] and moment of inertia [kg m^2], so that 0 / 0 cannot occur
 
 
 @wp.func
 def drag(slip: wp.vec3, axes: wp.mat33, pull: wp.vec3, mass: float, dt: float, ball: bool, change: wp.vec3) -> wp.vec3:
-    """Mean force [N], world frame, over a step of `dt` [s].
+    """Mean drag force [N], world frame, over a step of `dt` [s].
 
     Args:
         slip: Velocity of the fluid relative to the body [m/s], world frame.
-        axes: The body's axes.
+        axes: Axes of the body.
         pull: rho Cd A / 2 of each face [kg/m].
-        mass: [kg].
+        mass: Mass of the body [kg].
         dt: Length of the physics step [s].
-        ball: It is dragged straight along the slip: the speed is that of the whole slip, not of one axis.
-        change: Of the slip by all other forces within the step [m/s], own axes: with it, a body that falls through the fluid ends at
-            its true terminal velocity, however long the step.
+        ball: Whether drag acts along the slip, with the speed of the whole slip instead of one axis.
+        change: Change of the slip by all other forces within the step [m/s], body frame. With it, a body that falls
+            through the fluid ends at its true terminal velocity, however long the step.
     """
     along = to_body(axes, slip)
     speed = wp.vec3(wp.abs(along[0]), wp.abs(along[1]), wp.abs(along[2]))
@@ -43,7 +43,7 @@ def drag(slip: wp.vec3, axes: wp.mat33, pull: wp.vec3, mass: float, dt: float, b
         whole = wp.length(along)
         speed = wp.vec3(whole, whole, whole)
     push = wp.cw_mul(speed, pull)
-    held = push * (dt / wp.max(mass, _NOTHING)) + wp.vec3(1.0, 1.0, 1.0)
+    held = push * (dt / wp.max(mass, _TINY)) + wp.vec3(1.0, 1.0, 1.0)
     return axes * wp.cw_div(wp.cw_mul(push, along + change), held)
 
 
@@ -51,26 +51,29 @@ def drag(slip: wp.vec3, axes: wp.mat33, pull: wp.vec3, mass: float, dt: float, b
 def inertia_of(extent: wp.vec3, mass: float) -> wp.vec3:
     """Moments of inertia [kg m^2] of a homogeneous box about its axes."""
     squared = wp.cw_mul(extent, extent)
-    own = _of_others(squared) * (mass / 12.0)
-    return wp.vec3(wp.max(own[0], _NOTHING), wp.max(own[1], _NOTHING), wp.max(own[2], _NOTHING))
+    own = _sum_of_others(squared) * (mass / 12.0)
+    return wp.vec3(wp.max(own[0], _TINY), wp.max(own[1], _TINY), wp.max(own[2], _TINY))
 
 
 @wp.func
-def spin_drag(spin: wp.vec3, axes: wp.mat33, extent: wp.vec3, mass: float, density: float, dt: float, rate: float) -> wp.vec3:
-    """Mean torque [N m], world frame, by which a fluid slows the turning of a box of homogeneous mass over a step of `dt` [s].
+def spin_drag(
+    spin: wp.vec3, axes: wp.mat33, extent: wp.vec3, mass: float, density: float, dt: float, rate: float
+) -> wp.vec3:
+    """Mean torque [N m], world frame, by which a fluid slows a turning homogeneous box over a step of `dt` [s].
 
     Args:
         spin: Angular velocity [rad/s], world frame.
-        axes: The body's axes.
-        extent: Edges [m].
-        mass: [kg].
-        density: Of the fluid [kg/m^3], times the part of the body that is in it.
+        axes: Axes of the body.
+        extent: Edges of the box [m].
+        mass: Mass of the body [kg].
+        density: Density of the fluid [kg/m^3], times the immersed share of the body.
         dt: Length of the physics step [s].
-        rate: Of linear damping besides [1/s].
+        rate: Rate of an additional linear damping [1/s].
     """
     turn, inertia = to_body(axes, spin), inertia_of(extent, mass)
     squared = wp.cw_mul(extent, extent)
-    across = wp.cw_mul(_of_others(wp.cw_mul(squared, squared)), extent) * (1.0 / 64.0)  # drag of turning over the density [m^5]
+    # drag of turning over the density [m^5]
+    across = wp.cw_mul(_sum_of_others(wp.cw_mul(squared, squared)), extent) * (1.0 / 64.0)
     fast = wp.vec3(wp.abs(turn[0]), wp.abs(turn[1]), wp.abs(turn[2]))
     slowing = wp.cw_div(wp.cw_mul(fast, across) * density, inertia) + wp.vec3(rate, rate, rate)  # [1/s]
     left = slowing * dt + wp.vec3(1.0, 1.0, 1.0)
@@ -78,6 +81,6 @@ def spin_drag(spin: wp.vec3, axes: wp.mat33, extent: wp.vec3, mass: float, densi
 
 
 @wp.func
-def _of_others(amount: wp.vec3) -> wp.vec3:
+def _sum_of_others(amount: wp.vec3) -> wp.vec3:
     """For each of three axes, the sum over the two others."""
     return wp.vec3(amount[1] + amount[2], amount[0] + amount[2], amount[0] + amount[1])

@@ -1,14 +1,19 @@
-"""The gallery: every task at four moments, rasterised and ray-traced, outside and through the robot's eyes, in three lights; all places."""
+"""The gallery: pictures of every task at several moments and of all places, rasterised and ray-traced.
+
+They are taken from outside and through the robot's eyes, by day, in the evening and at night.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from hazard_ms.pictures.camera import Image
+from hazard_ms.effects.raytracing.still import Image
+from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.pictures.files import save
-from hazard_ms.pictures.order import RenderOrder
-from hazard_ms.pictures.stage import Stage
+from hazard_ms.pictures.frozen_episode import FrozenEpisode
+from hazard_ms.pictures.options import IDLE, RenderOptions
 
 SIZE, HEAD_SIZE = (480, 320), (320, 320)  # of pictures from the corner, and through the robot's eyes [pixels]
 QUALITY = 76  # of JPEG: all pictures together stay below 1.5 MB
@@ -20,7 +25,7 @@ class Show(NamedTuple):
 
     env_id: str
     seed: int
-    light: str
+    lighting: str
     frames: tuple[int, ...]
     camera: str
     about: str
@@ -28,13 +33,34 @@ class Show(NamedTuple):
 
 
 SHOWS = (
-    Show("HazardFire-v1", 3, "day", (150, 400, 700, 1100), "third", "Fire spreads over floor and furniture, and chars what it burns."),
+    Show(
+        "HazardFire-v1",
+        3,
+        "day",
+        (150, 400, 700, 1100),
+        "third",
+        "Fire spreads over floor and furniture, and chars what it burns.",
+    ),
     Show("HazardFire-v1", 3, "night", (700,), "third", "The same fire at night."),
     Show("HazardFire-v1", 3, "evening", (700,), "head", "The same fire in the evening, as the robot sees it."),
-    Show("HazardFlood-v1", 5, "day", (120, 350, 700, 1200), "third", "Water comes in from one wall, rises, and lifts what floats."),
+    Show(
+        "HazardFlood-v1",
+        5,
+        "day",
+        (120, 350, 700, 1200),
+        "third",
+        "Water comes in from one wall, rises, and lifts what floats.",
+    ),
     Show("HazardFlood-v1", 5, "evening", (350,), "third", "The same flood in the evening."),
     Show("HazardFlood-v1", 5, "day", (350,), "head", "The same flood, as the robot sees it."),
-    Show("HazardWind-v1", 3, "day", (30, 150, 400, 900), "third", "Wind blows things over the street, with leaves, paper and dust."),
+    Show(
+        "HazardWind-v1",
+        3,
+        "day",
+        (30, 150, 400, 900),
+        "third",
+        "Wind blows things over the street, with leaves, paper and dust.",
+    ),
     Show("HazardWind-v1", 3, "evening", (400,), "third", "The same street in the evening."),
     Show("HazardWind-v1", 3, "night", (400,), "third", "The same street at night, by its lamps."),
     Show("HazardWind-v1", 3, "day", (150,), "head", "The same street, as the robot sees it."),
@@ -48,7 +74,10 @@ SHOWS = (
 
 
 def make(folder: Path, samples: int, shows: tuple[Show, ...] = SHOWS) -> Path:
-    """Make the pictures of `shows` and their page in `folder`, ray-traced with `samples` per pixel. Returns the page."""
+    """Make the pictures of `shows` and their page in `folder`, ray-traced with `samples` per pixel.
+
+    Returns the page.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     lines = [
         "# Gallery",
@@ -57,28 +86,35 @@ def make(folder: Path, samples: int, shows: tuple[Show, ...] = SHOWS) -> Path:
         "",
     ]
     for show in shows:
-        lines += [f"## {show.env_id}, {show.light}", "", show.about, "", "| frame | rasterised | ray-traced |", "|---|---|---|"]
-        order = RenderOrder(output=Path(PAGE).with_suffix(".jpg"), env_id=show.env_id, seed=show.seed, scene=show.scene, light=show.light)
-        with Stage(order) as stage:
-            for frame in show.frames:
-                stage.play(frame)
-                names = [_keep(folder, show, frame, shader, _picture(stage, show, shader, samples)) for shader in ("default", "rt-fast")]
-                lines.append(f"| {frame} | " + " | ".join(f"![{show.about}]({name})" for name in names) + " |")
-        lines.append("")
+        lines += [f"## {show.env_id}, {show.lighting}", "", show.about, ""]
+        lines += ["| frame | rasterised | ray-traced |", "|---|---|---|", *_rows(folder, show, samples), ""]
     page = folder / PAGE
     page.write_text("\n".join(lines), encoding="utf-8")
     return page
 
 
-def _picture(stage: Stage, show: Show, shader: str, samples: int) -> Image:
+def _rows(folder: Path, show: Show, samples: int) -> Iterator[str]:
+    """Take the pictures of one episode; yields the table's row of each frame."""
+    episode = EpisodeOptions(env_id=show.env_id, seed=show.seed, scene=show.scene, lighting=show.lighting, agent=IDLE)
+    with FrozenEpisode(RenderOptions(output=Path(PAGE).with_suffix(".jpg"), episode=episode)) as frozen:
+        for frame in show.frames:
+            frozen.play(frame)
+            names = [
+                _keep(folder, show, frame, shader, _picture(frozen, show, shader, samples))
+                for shader in ("default", "rt-fast")
+            ]
+            yield f"| {frame} | " + " | ".join(f"![{show.about}]({name})" for name in names) + " |"
+
+
+def _picture(frozen: FrozenEpisode, show: Show, shader: str, samples: int) -> Image:
     size = HEAD_SIZE if show.camera == "head" else SIZE
-    return stage.picture(stage.view(show.camera, *size), shader, samples)
+    return frozen.picture(frozen.view(show.camera, *size), shader, samples)
 
 
 def _keep(folder: Path, show: Show, frame: int, shader: str, picture: Image) -> str:
     """Write the picture; returns its name."""
     task = show.env_id.removeprefix("Hazard").partition("-")[0].lower()
     place = f"{show.scene.partition('/')[0]}_" if show.scene else ""
-    name = f"{task}_{place}{show.light}_{show.camera}_{frame:04d}_{shader.replace('default', 'raster')}.jpg"
+    name = f"{task}_{place}{show.lighting}_{show.camera}_{frame:04d}_{shader.replace('default', 'raster')}.jpg"
     save(folder / name, picture, QUALITY)
     return name

@@ -1,19 +1,35 @@
-"""The robots that can play, by the name that users give as `robot_uids`."""
+"""The robots that can play: `hazard_ms.registry.ROBOTS` names them, `robot_class` finds the class of each."""
 
 from __future__ import annotations
 
-from hazard_ms.robots.fetch import HazardFetch
-from hazard_ms.robots.g1 import HazardG1
-from hazard_ms.robots.planar import PlanarRobot
-from hazard_ms.robots.robot import Build, Robot
+from typing import Any
 
-ROBOTS: dict[str, type[PlanarRobot]] = {"fetch": HazardFetch, "g1": HazardG1}
-
-__all__ = ["ROBOTS", "Build", "HazardFetch", "HazardG1", "PlanarRobot", "Robot", "robot_uid"]
+from hazard_ms.checks import one_of
+from hazard_ms.registry import ROBOTS, load
 
 
-def robot_uid(name: str) -> str:
-    """ManiSkill's uid of the robot that users call `name`."""
-    if name not in ROBOTS:
-        raise ValueError(f"no robot is called {name!r}; there are {', '.join(ROBOTS)}")
-    return ROBOTS[name].uid
+def robot_name(value: Any) -> str:
+    """The name of a registered robot. `value` is that name, ManiSkill's uid of it, or a tuple of one of these.
+
+    Raises ValueError for an unknown name.
+    """
+    if isinstance(value, (tuple, list)) and len(value) == 1:
+        value = value[0]
+    by_uid = {entry.uid: name for name, entry in ROBOTS.items()}
+    return one_of(by_uid.get(value, value) if isinstance(value, str) else value, ROBOTS, "robot_uids")
+
+
+def robot_uid(value: Any) -> str:
+    """ManiSkill's uid of the robot `value` (see `robot_name`). Raises ValueError for an unknown name."""
+    return ROBOTS[robot_name(value)].uid
+
+
+def robot_class(value: Any) -> Any:
+    """The class of the robot `value` (see `robot_name`). Raises ValueError for an unknown name."""
+    return load(ROBOTS[robot_name(value)].robot)
+
+
+def skill_control_mode(value: Any) -> str:
+    """The `control_mode` of gym.make that skills need of the robot `value`. Raises ValueError for an unknown name."""
+    mode: str = robot_class(value).skill_control_mode
+    return mode

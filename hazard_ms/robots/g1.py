@@ -1,8 +1,9 @@
-"""Unitree's G1: a humanoid with two hands and a camera in its head, after ManiSkill's own, on a base that moves in the plane.
+"""Unitree's G1: a humanoid with two hands and a camera in its head, on a base that moves in the plane.
 
-It walks as on rails: the legs carry it, but do not step. They crouch, and the upper body bends at the hips, so that its short arms
-reach the floor: 0.33 m down and 63 degrees forward at most, within the limits of its joints. An action of skills moves, beside
-the base, one arm; torso, crouch and bend belong to that arm. Which hand is in use, see HandsController.
+It derives from ManiSkill's own. It walks as on rails: the legs carry it, but do not step. They crouch, and the upper
+body bends at the hips, so that its short arms reach the floor: 0.33 m down and 63 degrees forward at most, within the
+limits of its joints. An action of skills moves, beside the base, one arm; torso, crouch and bend belong to that arm.
+Which hand is in use, see HandsController.
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ import sapien
 import torch
 from mani_skill.agents.base_agent import Keyframe
 from mani_skill.agents.controllers import PDJointPosControllerConfig
-from mani_skill.agents.registration import register_agent
 from mani_skill.agents.robots.unitree_g1.g1_upper_body import UnitreeG1UpperBodyWithHeadCamera
 from mani_skill.sensors.camera import CameraConfig
 from numpy.typing import NDArray
@@ -24,14 +24,17 @@ from torch import Tensor
 
 from hazard_ms.robots.g1_controllers import LEFT, RIGHT, HandsController, HandsControllerConfig, LegsControllerConfig
 from hazard_ms.robots.g1_description import DOWN, LEG_JOINTS, g1_description
-from hazard_ms.robots.planar import FORWARD_STEP, HEAD_FOV, TURN_STEP, PlanarRobot, drive_share, turned
-from hazard_ms.robots.robot import Build
+from hazard_ms.robots.planar import FORWARD_STEP, HEAD_FOV, TURN_STEP, PlanarRobot, turned
+from hazard_ms.spec import Build
 
-BASE_FORCE = 15.0  # per frame rate [N/Hz] and [N m/Hz]; as Fetch's for its weight: 33 kg reach full speed within two to four frames
+# per frame rate [N/Hz] and [N m/Hz]; as Fetch's for its weight: 33 kg reach full speed within two to four frames
+BASE_FORCE = 15.0
 BASE_DAMPING = 2e4  # [N s/m] and [N m s/rad]; holds the base's speed while the upper body swings
-CROUCH = 0.2  # way of the crouch that counts as a radian of an arm joint [m/rad]: 0.6 m/s when a skill moves it at 30 Hz
+# way of the crouch that counts as a radian of an arm joint [m/rad]: 0.6 m/s when a skill moves it at 30 Hz
+CROUCH = 0.2
 TWIST = 0.8  # most that skills turn the torso to a side [rad]; the joint could turn by 2.6
-EYES = sapien.Pose([0.07, 0.0, 0.46], [np.cos(np.pi / 12), 0.0, np.sin(np.pi / 12), 0.0])  # in the head, 30 degrees down as ManiSkill's
+# in the head, 30 degrees down as ManiSkill's
+EYES = sapien.Pose([0.07, 0.0, 0.46], [np.cos(np.pi / 12), 0.0, np.sin(np.pi / 12), 0.0])
 
 BODY = ("torso_joint", "crouch_joint", "bend_joint")
 ARM = ("shoulder_pitch", "shoulder_roll", "shoulder_yaw", "elbow_pitch", "elbow_roll")
@@ -39,11 +42,14 @@ ARMS = tuple([f"{side}_{part}_joint" for part in ARM] for side in ("right", "lef
 FINGERS = ("zero", "one", "two", "three", "four", "five", "six")
 GRIP = (0.0, -0.6, -0.8, 0.9, 0.9, 0.9, 0.9)  # the right hand's fingers when shut [rad]; the left's mirrored
 MIRROR = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0, 1.0, -1.0])  # of the arm's joints from the right to the left
-SCALE = np.array([1.0, CROUCH, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])  # from joints as skills see them to those of the simulator
+# from joints as skills see them to those of the simulator
+SCALE = np.array([1.0, CROUCH, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 
-# Arm joints: torso turn, crouch, bend; shoulder pitch, roll, yaw; elbow; forearm roll. Here with the hands beside the thighs.
+# Arm joints: torso turn, crouch, bend; shoulder pitch, roll, yaw; elbow; forearm roll. Here with the hands beside the
+# thighs.
 TUCKED = np.array([0.0, 0.0, 0.0, 0.4, -0.12, 0.0, 1.1, 0.0])
-# The same with all joints in SAPIEN's order, left before right: base x, y, turn; crouch; bend; hip pitch; torso; shoulder pitch; knee;
+# The same with all joints in SAPIEN's order, left before right: base x, y, turn; crouch; bend; hip pitch; torso;
+# shoulder pitch; knee;
 # shoulder roll; ankle; shoulder yaw; elbow; forearm roll; seven fingers of each hand.
 REST = np.array([0.0] * 8 + [0.4, 0.4, 0, 0, 0.12, -0.12, 0, 0, 0, 0, 1.1, 1.1, 0, 0] + [0.0] * 14)
 
@@ -56,14 +62,17 @@ STRETCHED = (
 )
 
 
-@register_agent()
-class HazardG1(UnitreeG1UpperBodyWithHeadCamera, PlanarRobot):
+class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
     """G1 as a rescuer; `robot_uids="g1"` of the hazard environments."""
 
     uid = "hazard_g1"
     disable_self_collisions = True  # as Fetch's: arms pass close to the body
     keyframes = {"rest": Keyframe(pose=sapien.Pose(), qpos=REST)}
     build = Build(
+        mass=35.0,  # Unitree's specification of the G1, with its battery
+        width=0.13,  # both shins are as wide together and displace as much [measured on the installed URDF's meshes]
+        drag_area=0.31,  # frontal area 0.286 m^2 [measured on the same meshes], drag coefficient 1.1
+        friction=0.6,  # rubber soles on a dry floor [ours], as Fetch's wheels
         forward_step=FORWARD_STEP,
         turn_step=TURN_STEP,
         arm_step=0.1,
@@ -101,7 +110,9 @@ class HazardG1(UnitreeG1UpperBodyWithHeadCamera, PlanarRobot):
         step = np.array([0.2, 0.2 * CROUCH, 0.2] + [0.2] * 10)  # [rad] and [m], as ManiSkill's
         modes = {
             "pd_joint_pos": PDJointPosControllerConfig(names, None, None, normalize_action=False, **gains),
-            "pd_joint_delta_pos": PDJointPosControllerConfig(names, (-step).tolist(), step.tolist(), use_delta=True, **gains),
+            "pd_joint_delta_pos": PDJointPosControllerConfig(
+                names, (-step).tolist(), step.tolist(), use_delta=True, **gains
+            ),
         }
         return {name: self._parts(body) for name, body in modes.items()}
 
@@ -109,7 +120,9 @@ class HazardG1(UnitreeG1UpperBodyWithHeadCamera, PlanarRobot):
         """All controllers of a control mode; `body` moves torso, crouch, bend and arms."""
         fingers = [f"{side}_{finger}_joint" for side in ("right", "left") for finger in FINGERS]
         free: dict[str, Any] = dict(lower=None, upper=None, normalize_action=False)
-        hands = HandsControllerConfig(fingers, stiffness=10.0, damping=1.0, force_limit=5.0, grip=(*GRIP, *(-g for g in GRIP)), **free)
+        hands = HandsControllerConfig(
+            fingers, stiffness=10.0, damping=1.0, force_limit=5.0, grip=(*GRIP, *(-g for g in GRIP)), **free
+        )
         legs = LegsControllerConfig(list(LEG_JOINTS), stiffness=4e3, damping=130.0, drive_mode="acceleration", **free)
         return {
             "body": body,
@@ -133,52 +146,52 @@ class HazardG1(UnitreeG1UpperBodyWithHeadCamera, PlanarRobot):
 
     @property
     def stretched(self) -> tuple[NDArray[np.float64], ...]:
-        """See Robot; first from where the arm is: of the many ways of so many joints, the nearest is the quickest."""
+        """Postures to search from [rad], of shape [J]; the first is the present one, which is the quickest to leave."""
         return (self.arm(), *STRETCHED)
 
     def gripper_pose(self) -> tuple[Tensor, Tensor]:
-        """See Robot."""
         right, left = (tcp.pose for tcp in self._tcps)
         first = (self._hand_controller.used == RIGHT)[:, None]
         return torch.where(first, right.p, left.p), torch.where(first, right.q, left.q)
 
     def grip_closed(self) -> Tensor:
-        """See Robot."""
         return self._hand_controller.closed()
 
     def use_hand(self, point: NDArray[np.float64], attempt: int = 0) -> None:
-        """See Robot; the hand on the point's side, and the other one at every second attempt."""
+        """Choose the hand on the side of `point` [m], world frame, [3], and the other one at every second attempt."""
         x, y, heading = self.base()
         to_the_left = (point[1] - y) * np.cos(heading) - (point[0] - x) * np.sin(heading) > 0.0
         self._hand_controller.use(LEFT if bool(to_the_left) != bool(attempt % 2) else RIGHT)
 
     def bag_position(self) -> Tensor:
-        """See Robot; it goes down with the hips."""
+        """Mouth of the bag [m], world frame, [E, 3]; it goes down with the hips."""
         position, heading = self.base_pose()
         crouch = self.robot.get_qpos()[:, self._arms[RIGHT][1], None]
         return position + turned(position.new_tensor(self.bag) + crouch * position.new_tensor(DOWN), heading)
 
     def arm(self) -> NDArray[np.float64]:
-        """See Robot."""
         used = self._used
         return self.all_joints()[self._arms[used]] / self._signs(used)
 
     @cached_property
     def arm_limits(self) -> NDArray[np.float64]:
-        """See Robot."""
         limits = self.joint_limits([*BODY, *ARMS[RIGHT]], np.pi) / SCALE[:, None]
         limits[0] = -TWIST, TWIST
         return limits
 
-    def kinematics(self, arm: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """See Robot."""
+    def kinematics(
+        self, arm: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         used, joints = self._used, self.all_joints()
         joints[self._arms[used]] = arm * self._signs(used)
         hand, turn, jacobian = self.hand_kinematics(joints, self._hands[used], self._arms[used])
         return hand, turn, jacobian * self._signs(used)
 
     def action(self, forward: float, turn: float, arm: NDArray[np.float64], open_hand: bool) -> NDArray[np.float32]:
-        """See Robot; the other arm hangs beside the body, its hand open."""
+        """The environment's action, [D], for `forward` [m], `turn` [rad] and the arm in use at `arm` [rad], shape [J].
+
+        The other arm hangs beside the body, its hand open. Raises ValueError in another control mode.
+        """
         used = self._used
         goal = np.clip(arm, self.arm_limits[:, 0], self.arm_limits[:, 1])
         both = [TUCKED[3:] * MIRROR[3:] ** side for side in (RIGHT, LEFT)]
@@ -186,7 +199,7 @@ class HazardG1(UnitreeG1UpperBodyWithHeadCamera, PlanarRobot):
         hands = np.ones(2)
         hands[used] = 1.0 if open_hand else -1.0
         body = np.concatenate([(goal * SCALE)[:3], *both])
-        return self.make_action({"body": body, "hands": hands, "legs": [], "base": drive_share(forward, turn)})
+        return self.make_action({"body": body, "hands": hands, "legs": [], "base": self.drive_share(forward, turn)})
 
     @property
     def _hand_controller(self) -> HandsController:

@@ -1,6 +1,7 @@
 """Two controllers of the G1: hands that are open or shut, and legs that follow the hips down and up.
 
-The legs' angles are those of two bars, thigh and shin, between the hips' axis and an ankle that stays where it is on the floor.
+The legs' angles are those of two bars, thigh and shin, between the hips' axis and an ankle that stays where it is on
+the floor.
 """
 
 from __future__ import annotations
@@ -23,7 +24,10 @@ RIGHT, LEFT = 0, 1  # the hands, in this order wherever there are two
 
 
 def leg_angles(crouch: Tensor) -> Tensor:
-    """Hip pitch, knee and ankle pitch [rad], [E, 3], with the hips `crouch` [m] down their way, [E], and the foot flat on its place."""
+    """Hip pitch, knee and ankle pitch [rad], [E, 3], with the hips `crouch` [m], [E], down their way.
+
+    The foot stays flat on its place.
+    """
     back, height = -DOWN[0] * crouch, STANDING + DOWN[2] * crouch
     span = torch.hypot(back, height)
     tilt = torch.atan2(back, height)
@@ -107,11 +111,11 @@ class HandsController(PDJointPosController):
         self.used[0] = torch.where(self.shut[0, self.used[0]], self.used[0], hand)
 
     def get_state(self) -> dict[str, Tensor]:
-        """Which hand is in use, and which are shut."""
+        """The controller's state: the hand in use, [E, 1], and whether each hand is shut, [E, 2]."""
         return {"used": self.used[:, None].float(), "shut": self.shut.float()}
 
     def set_state(self, state: dict[str, Tensor] | None) -> None:
-        """As `get_state` gave it."""
+        """Restore the state that `get_state` gave."""
         if state is not None:
             self.used = state["used"][:, 0].to(self.used)
             self.shut = state["shut"] > 0.5
@@ -119,7 +123,10 @@ class HandsController(PDJointPosController):
 
 @dataclass
 class HandsControllerConfig(PDJointPosControllerConfig):
-    """`joint_names`: the right hand's fingers, then the left's, in the same order; `grip`: where they are when shut, open is 0 [rad]."""
+    """`joint_names`: the right hand's fingers, then the left's, in the same order.
+
+    `grip`: their joints when shut [rad]; 0 is open.
+    """
 
     grip: tuple[float, ...] = ()
     controller_cls = HandsController

@@ -1,32 +1,35 @@
 """The G1's description (URDF), derived at run time from that of the installed ManiSkill: we ship no files of others.
 
-ManiSkill's upper body stands on legs that are fixed. Ours gets, below the pelvis, a base that moves in the plane and legs that crouch:
+ManiSkill's upper body stands on legs that are fixed. Ours gets, below the pelvis, a base that moves in the plane and
+legs that crouch:
 
     root - x - y - turn - base - crouch - hips - bend - pelvis (torso, arms and head as they were)
                                           hips - hip pitch - knee - ankle pitch, of both legs
 
-and collision bodies for legs and pelvis, which the installed description lacks. The file is kept in the user's cache under a hash of
-its text, so another ManiSkill makes another file.
+and collision bodies for legs and pelvis, which the installed description lacks. The file is kept in the user's cache
+under a hash of its text, so another ManiSkill makes another file.
 """
 
 from __future__ import annotations
 
-import hashlib
-import tempfile
 from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from hazard_ms.rendering import bare_robot, home, write_whole
+from hazard_ms.machine.cache import kept_folder
+from hazard_ms.robots.without_visuals import without_visuals
 
-LEG_JOINTS = tuple(f"{side}_{part}_joint" for side in ("left", "right") for part in ("hip_pitch", "knee", "ankle_pitch"))
+LEG_JOINTS = tuple(
+    f"{side}_{part}_joint" for side in ("left", "right") for part in ("hip_pitch", "knee", "ankle_pitch")
+)
 HIP = 0.1027  # the hips' axis lies this far below the pelvis's origin [m] (the installed URDF)
 HIP_HEIGHT = 0.6523  # of the hips' axis above the floor, standing [m] (the installed URDF: sole to axis)
 DOWN = (-0.28, 0.0, -0.96)  # the way of the hips in a crouch: back, too, so that ankles stay within their limits [ours]
 DEEPEST = 0.34  # the hips go this far along it [m] [ours]
 BOW = 1.1  # the upper body bends forward this far [rad] [ours]; upright thighs and the hips' limit would allow 2.0
-LEGS = (0.20, 0.02, 0.62)  # cylinder for both legs: radius, lower and upper end above the floor [m] [ours]; the feet are 0.20 long
+# cylinder for both legs: radius, lower and upper end above the floor [m] [ours]; the feet are 0.20 long
+LEGS = (0.20, 0.02, 0.62)
 PELVIS = (0.16, 0.20)  # cylinder around pelvis and hips: radius and length [m] [ours]
 FAR = 1000.0  # the base may go anywhere [m]
 SMALL_MASS = 0.2  # of links that only connect joints [kg], besides the robot's 33 kg [ours]
@@ -38,15 +41,18 @@ class UnknownDescriptionError(RuntimeError):
 
 @cache
 def g1_description(installed: Path, bare: bool = False) -> Path:
-    """Our G1, made of the `installed` URDF; meshes stay where they are. `bare`: without its looks, for where nothing draws."""
+    """Our G1, made of the `installed` URDF; meshes stay where they are.
+
+    `bare`: without its looks, for where nothing draws.
+    """
     robot = ElementTree.parse(installed).getroot()
     for mesh in robot.iter("mesh"):
         mesh.set("filename", str((installed.parent / mesh.get("filename", "")).resolve()))
     _free_the_legs(robot)
     _put_on_a_base(robot)
     text = ElementTree.tostring(robot, encoding="unicode")
-    made = _kept(text, installed.name)
-    return bare_robot(made) if bare else made
+    made = kept_folder("robots", {installed.name: text}) / installed.name
+    return without_visuals(made) if bare else made
 
 
 def _free_the_legs(robot: Element) -> None:
@@ -54,7 +60,9 @@ def _free_the_legs(robot: Element) -> None:
     joints = {joint.get("name", ""): joint for joint in robot.findall("joint")}
     missing = [name for name in LEG_JOINTS if name not in joints or joints[name].find("limit") is None]
     if missing:
-        raise UnknownDescriptionError(f"ManiSkill's G1 has no {', '.join(missing)}; hazard_ms knows the one of ManiSkill 3.0.1")
+        raise UnknownDescriptionError(
+            f"ManiSkill's G1 has no {', '.join(missing)}; hazard_ms knows the one of ManiSkill 3.0.1"
+        )
     for name in LEG_JOINTS:
         joint = joints[name]
         joint.set("type", "revolute")
@@ -122,15 +130,3 @@ def _cylinder(radius: float, length: float, height: float) -> Element:
     SubElement(collision, "origin", xyz=f"0 0 {height}", rpy="0 0 0")
     SubElement(SubElement(collision, "geometry"), "cylinder", radius=str(radius), length=str(length))
     return collision
-
-
-def _kept(text: str, name: str) -> Path:
-    """The file with this text, in the user's cache, else in a temporary folder."""
-    folder = home() / f"robot-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        write_whole(folder / name, text)
-    except OSError:
-        folder = Path(tempfile.mkdtemp(prefix="hazard_ms-robot-"))
-        write_whole(folder / name, text)
-    return folder / name

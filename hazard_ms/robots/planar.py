@@ -1,7 +1,7 @@
-"""Robots whose base is moved by three joints (x, y, turn), so that it neither tips nor sinks: what they have in common.
+"""A base class of robots whose base is moved by three joints (x, y, turn), so that it neither tips nor sinks.
 
-A base is driven by a velocity controller with the benchmark's limits per frame, whatever the length of a frame. A robot names its
-joints and its resting posture; a mixin for agents of ManiSkill.
+A base is driven by a velocity controller with the benchmark's limits per frame, whatever the length of a frame. A robot
+names its joints and its resting posture; a mixin for agents of ManiSkill.
 """
 
 from __future__ import annotations
@@ -16,23 +16,28 @@ from mani_skill.agents.controllers import PDBaseForwardVelControllerConfig
 from numpy.typing import NDArray
 from torch import Tensor
 
+from hazard_ms.checks import one_of
 from hazard_ms.robots.robot import Robot
 
 FORWARD_STEP = 1.0 / 62.0  # walking speed of the benchmark [m per frame]
 TURN_STEP = float(np.deg2rad(6.0))  # turning speed of the benchmark [rad per frame]
 HEAD_FOV = 2.0 * np.pi / 3.0  # vertical field of view of the benchmark's head camera [rad]
-BASE_JOINTS = ("root_x_axis_joint", "root_y_axis_joint", "root_z_rotation_joint")  # the first three joints, as ManiSkill calls them
+# the first three joints, as ManiSkill calls them
+BASE_JOINTS = ("root_x_axis_joint", "root_y_axis_joint", "root_z_rotation_joint")
 LOOK_AHEAD = 3.0  # frames within which the base surely stops
-RIM = 48  # points of the base's rim that are kept out of forbidden floor: 0.04 m apart, so that no corner of it slips between
+# points of the base's rim that are kept out of forbidden floor: 0.04 m apart, so that no corner of it slips between
+RIM = 48
 
 
 class PlanarRobot(Robot):
-    """The part of the contract that only the base decides, and kinematics from the robot's own description."""
+    """The part of the robots' contract that their base decides, and kinematics from a robot's own description."""
 
     uid: str  # ManiSkill's name of this kind of robot
     robot: Any  # ManiSkill's articulation
     controller: Any  # the controller of the present control mode
     control_mode: str
+    supported_control_modes: list[str]
+    _default_control_mode: str
     single_action_space: Any
     device: torch.device
     _control_freq: int
@@ -41,28 +46,36 @@ class PlanarRobot(Robot):
     ride_height: float  # of the description's root above the floor [m]
     bag: tuple[float, float, float]  # mouth of the bag in the base's frame [m]
 
+    def set_control_mode(self, control_mode: str | None = None) -> None:
+        """Switch to `control_mode`; None: back to that of the start.
+
+        Raises ValueError for a mode that the robot does not have.
+        """
+        wanted = self._default_control_mode if control_mode is None else control_mode
+        super().set_control_mode(one_of(wanted, self.supported_control_modes, "control_mode"))  # type: ignore[misc]
+
     def base_controller(self, damping: float, force: float) -> PDBaseForwardVelControllerConfig:
         """The base's controller: `damping` [N s/m] and [N m s/rad], `force` per frame rate [N/Hz] and [N m/Hz]."""
         return PDBaseForwardVelControllerConfig(
             list(BASE_JOINTS),
-            lower=[-FORWARD_STEP * self._control_freq, -TURN_STEP * self._control_freq],
-            upper=[FORWARD_STEP * self._control_freq, TURN_STEP * self._control_freq],
+            lower=[-self.build.forward_step * self._control_freq, -self.build.turn_step * self._control_freq],
+            upper=[self.build.forward_step * self._control_freq, self.build.turn_step * self._control_freq],
             damping=damping,
             force_limit=force * self._control_freq,
         )
 
     def joint_numbers(self, names: list[str]) -> list[int]:
-        """Where the joints of these `names` stand among all joints."""
+        """Indices of the joints of these `names` among all joints."""
         every = [joint.name for joint in self.robot.active_joints]
         return [every.index(name) for name in names]
 
     def joint_limits(self, names: list[str], most: float) -> NDArray[np.float64]:
-        """Lower and upper limit of the joints of these `names` [rad] or [m], [J, 2], and `most` to both sides at most."""
+        """Lower and upper limits of the joints of these `names` [rad] or [m], [J, 2], within -`most` and `most`."""
         joints = {joint.name: joint for joint in self.robot.active_joints}
         return np.clip(np.array([joints[name].limits[0].tolist() for name in names]), -most, most)
 
     def place(self, rows: Tensor, position: Tensor, heading: Tensor) -> None:
-        """Stand still and tucked, see Robot."""
+        """Stand still and tucked, as the contract says, with all joints held where they are."""
         qpos = torch.as_tensor(self.rest, dtype=torch.float32, device=self.device).repeat(len(rows), 1)
         qpos[:, :2] = position.to(qpos)
         qpos[:, 2] = heading.to(qpos)
@@ -73,17 +86,15 @@ class PlanarRobot(Robot):
         self.robot.set_joint_drive_targets(qpos[:, 3:], held, torch.arange(3, qpos.shape[1], device=self.device))
 
     def base_pose(self) -> tuple[Tensor, Tensor]:
-        """See Robot."""
         qpos = self.robot.get_qpos()
         return torch.cat([qpos[:, :2], torch.zeros_like(qpos[:, :1])], dim=-1), qpos[:, 2].clone()
 
     def bag_position(self) -> Tensor:
-        """See Robot."""
         position, heading = self.base_pose()
         return position + turned(position.new_tensor(self.bag).expand_as(position), heading)
 
     def keep_out(self, forbidden: Callable[[Tensor], Tensor]) -> Tensor:
-        """See Robot; looks LOOK_AHEAD frames ahead of the front half of the base's rim, and of its middle."""
+        """Take back a drive onto forbidden floor; looks LOOK_AHEAD frames ahead of the front of the base's rim."""
         position, heading = self.base_pose()
         velocity = self._drive()
         around = torch.arange(RIM, device=position.device) * (2.0 * np.pi / RIM)
@@ -98,11 +109,10 @@ class PlanarRobot(Robot):
         return stop
 
     def carry(self, slowed: Callable[[Tensor], Tensor]) -> None:
-        """See Robot."""
         self._set_drive(slowed(self._drive()))
 
     def _drive(self) -> Tensor:
-        """Velocity at which the base is to drive [m/s], [E, 2]."""
+        """Velocity at which the base is to drive [m/s], world frame, [E, 2]."""
         return torch.stack([j.drive_velocity_target.reshape(-1) for j in self.robot.active_joints[:2]], dim=-1)
 
     def _set_drive(self, velocity: Tensor) -> None:
@@ -112,7 +122,10 @@ class PlanarRobot(Robot):
     def hand_kinematics(
         self, joints: NDArray[np.float64], number: int, moving: list[int]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Were all joints at `joints`: position and rotation matrix of link `number`, and its Jacobian for the joints `moving`."""
+        """Pose of link `number`, and how the J joints `moving` move it, if all joints were at `joints` [rad] or [m].
+
+        Returns its position [m], [3], its rotation matrix, [3, 3], and its Jacobian, [6, J], all in the world frame.
+        """
         self._model.compute_forward_kinematics(joints)
         pose = self._model.get_link_pose(number).to_transformation_matrix()
         self._model.compute_full_jacobian(joints)
@@ -122,34 +135,36 @@ class PlanarRobot(Robot):
         return pose[:3, 3] + np.array([0.0, 0.0, self.ride_height]), turn, jacobian
 
     def make_action(self, parts: dict[str, Any]) -> NDArray[np.float32]:
-        """The env's action of what each controller is told; ValueError where the environment has other controllers."""
+        """The environment's action, [D], from the action of each controller by its name.
+
+        Raises ValueError where the environment has another control mode than skills need.
+        """
         if self.control_mode != self.skill_control_mode:
-            raise ValueError(f"skills need control_mode={self.skill_control_mode!r}; the environment has {self.control_mode!r}")
+            raise ValueError(f"control_mode must be {self.skill_control_mode!r} for skills, got {self.control_mode!r}")
         action = np.zeros(self.single_action_space.shape, dtype=np.float32)
         for name, (start, end) in self.controller.action_mapping.items():
             action[start:end] = parts[name]
         return action
 
+    def drive_share(self, forward: float, turn: float) -> NDArray[np.float64]:
+        """Action of the base's controller, -1 to 1, [2], that drives `forward` [m] and `turn` [rad] in one frame."""
+        return np.clip([forward / self.build.forward_step, turn / self.build.turn_step], -1.0, 1.0)
+
     def all_joints(self) -> NDArray[np.float64]:
-        """All joints of the first environment [rad] or [m]."""
+        """Positions of all joints of the first environment [rad] or [m], [Joints]."""
         return self.robot.get_qpos()[0].cpu().numpy().astype(np.float64)
 
     def make_model(self) -> None:
-        """Prepare `hand_kinematics`; to be called once, when the robot is built."""
+        """Prepare the model for `hand_kinematics`. Call it once, when the robot is built."""
         self._model = self.robot._objs[0].create_pinocchio_model()
 
     def link_number(self, link: Any) -> int:
-        """Where `link` stands among the robot's links."""
+        """Index of `link` among the robot's links."""
         return int(self.robot._objs[0].links.index(link._objs[0]))
 
 
-def drive_share(forward: float, turn: float) -> NDArray[np.float64]:
-    """What the base's controller is told to drive `forward` [m] and `turn` [rad] within one frame, within its limits."""
-    return np.clip([forward / FORWARD_STEP, turn / TURN_STEP], -1.0, 1.0)
-
-
 def turned(vector: Tensor, heading: Tensor) -> Tensor:
-    """`vector` [E, 3] turned about z by `heading` [rad], [E]."""
+    """The `vector`, [E, 3], turned about z by `heading` [rad], [E], in the units of `vector`."""
     c, s = heading.cos(), heading.sin()
     x, y, z = vector.unbind(-1)
     return torch.stack([c * x - s * y, s * x + c * y, z], dim=-1)

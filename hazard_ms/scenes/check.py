@@ -1,7 +1,7 @@
-"""What is wrong with a scene: things inside each other, targets out of reach, sizes and masses that nothing real has.
+"""Finds what is wrong with a scene: things inside each other, targets out of reach, impossible sizes and masses.
 
-For generated scenes, for those that others wrote, indoors and in the open. Whether things stay where they are, only the simulator
-knows: see hazard_ms.settling.
+It checks generated scenes and those that others wrote, indoors and in the open. Whether things stay where they are,
+only the simulator knows: see `hazard_ms.simulation.rest_check`.
 """
 
 from __future__ import annotations
@@ -11,25 +11,38 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hazard_ms.assets import asset
-from hazard_ms.catalogue import CATEGORIES
+from hazard_ms.assets.index import asset
 from hazard_ms.scenes import schema
 from hazard_ms.scenes.boxes import Box, box_of
-from hazard_ms.scenes.floor import CELL, FLAT, Grid, boxes_of, cell_of, cells, connected, free_floor, free_for, halls, partitions
-from hazard_ms.scenes.scatter import REACH, ROBOT, TALLEST
+from hazard_ms.scenes.floor import (
+    FLOOR_CELL,
+    RUG_HEIGHT,
+    Grid,
+    boxes_of,
+    cell_of,
+    cells,
+    connected,
+    free_floor,
+    free_for,
+    halls,
+    partitions,
+)
+from hazard_ms.scenes.generate.scatter import MAX_TOP_HEIGHT, REACH_DISTANCE, ROBOT_RADIUS
 from hazard_ms.scenes.solids import Corners, corners_of, gap
 from hazard_ms.spec import Body, Fixture, SceneSpec
+from hazard_ms.spec.catalogue import CATEGORIES
 
 DEEP = 0.002  # how far boxes may reach into each other: what stands on a thing sinks in a little [m] [ours]
 ON = 0.02  # between a surface and what stands on it [m] [ours]
 BODY_SIZES = (0.002, 1.5)  # longest edge of things that move: shirt button, shopping bag on wheels [m] [ours]
 BODY_MASSES = (0.0005, 60.0)  # shirt button, full suitcase [kg] [ours]
 FIXTURE_SIZES = (0.05, 30.0)  # longest edge of things that do not move: switch, house [m] [ours]
-DENSITIES = (0.02, 3.0)  # mass over the volume of the box, as a multiple of the category's density: hollow, cast [-] [ours]
+# mass over the volume of the box, as a multiple of the category's density: hollow, cast [-] [ours]
+DENSITIES = (0.02, 3.0)
 
 
 def check(spec: SceneSpec) -> list[str]:
-    """Everything that is wrong with `spec`, in words; empty when nothing is."""
+    """Everything that is wrong with a scene, in words; empty if nothing is."""
     try:
         schema.check(spec)
     except ValueError as error:
@@ -46,7 +59,7 @@ def _missing(spec: SceneSpec) -> Iterator[str]:
         try:
             asset(t.asset)
         except ValueError:
-            yield f"{t.name} has the model {t.asset!r}, which is not among the assets"
+            yield f"asset of {t.name} must be one of the assets, got {t.asset!r}"
 
 
 def _sizes(spec: SceneSpec) -> Iterator[str]:
@@ -56,21 +69,24 @@ def _sizes(spec: SceneSpec) -> Iterator[str]:
         size = np.array(kind.extent) * t.scale
         low, high = BODY_SIZES if isinstance(t, Body) else FIXTURE_SIZES
         if not low <= size.max() <= high:
-            yield f"{t.name} is {size.max():.3f} m long; {low} to {high} m is allowed"
+            yield f"length of {t.name} must be {low} to {high} m, got {size.max():.3f}"
         if isinstance(t, Body):
             mass = kind.mass * math.prod(t.scale) if t.mass is None else t.mass
             ratio = mass / float(size.prod()) / CATEGORIES[t.category].density
             if not BODY_MASSES[0] <= mass <= BODY_MASSES[1]:
-                yield f"{t.name} weighs {mass:.4f} kg; {BODY_MASSES[0]} to {BODY_MASSES[1]} kg is allowed"
+                yield f"mass of {t.name} must be {BODY_MASSES[0]} to {BODY_MASSES[1]} kg, got {mass:.4f}"
             elif not DENSITIES[0] <= ratio <= DENSITIES[1]:
-                yield f"{t.name} weighs {mass:.4f} kg, {ratio:.3f} times what its size suggests; {DENSITIES} is allowed"
+                low, high = DENSITIES
+                yield f"mass of {t.name} must be {low} to {high} times the usual for its size, got {ratio:.3f} times"
 
 
 def _inside(spec: SceneSpec) -> Iterator[str]:
     """Things that reach through the floor, the walls or the ceiling, or lie outside of the ground."""
     room = spec.room
     low = np.array([-room.beyond, -room.beyond, 0.0])
-    high = np.array([room.size[0] + room.beyond, room.size[1] + room.beyond, math.inf if room.open_air else room.height])
+    high = np.array(
+        [room.size[0] + room.beyond, room.size[1] + room.beyond, math.inf if room.open_air else room.height]
+    )
     for t in spec.things:
         if room.open_air and isinstance(t, Fixture):
             continue  # houses and trees stand around the place
@@ -81,7 +97,7 @@ def _inside(spec: SceneSpec) -> Iterator[str]:
 
 def _apart(spec: SceneSpec) -> Iterator[str]:
     """Things that are inside each other. What stands on a surface of another, in a shelf say, may be inside its box."""
-    things = [t for t in spec.things if not (isinstance(t, Fixture) and asset(t.asset).extent[2] < FLAT)]
+    things = [t for t in spec.things if not (isinstance(t, Fixture) and asset(t.asset).extent[2] < RUG_HEIGHT)]
     solid = [corners_of(t) for t in things]
     walls = [_corners(b) for b in partitions(spec.room)]
     middle = np.array([c.mean(0) for c in solid]).reshape(-1, 3)
@@ -110,7 +126,7 @@ def _stands_on(upper: Body | Fixture, lower: Body | Fixture) -> bool:
 
 def _ways(spec: SceneSpec) -> Iterator[str]:
     """Whether the robot fits where it starts and gets near every target and container, at a height that it reaches."""
-    reached = connected(free_floor(spec, ROBOT), spec.agent_start.position)
+    reached = connected(free_floor(spec, ROBOT_RADIUS), spec.agent_start.position)
     if not reached.any():
         yield f"the robot does not fit where it starts, at {spec.agent_start.position}"
         return
@@ -118,10 +134,11 @@ def _ways(spec: SceneSpec) -> Iterator[str]:
     for t in wanted:
         box = box_of(t, asset(t.asset).extent)
         away = _away(spec, box, reached)
-        if away > REACH + CELL:
-            yield f"the robot gets no nearer than {away:.2f} m to {t.name}; at most {REACH} m is allowed"
-        elif isinstance(t, Body) and not -DEEP <= (box.low + box.high) / 2 <= TALLEST + CELL:
-            yield f"{t.name} is {(box.low + box.high) / 2:.2f} m above the floor; 0 to {TALLEST} m is allowed"
+        if away > REACH_DISTANCE + FLOOR_CELL:
+            yield f"the robot must get to within {REACH_DISTANCE} m of {t.name}, got {away:.2f}"
+        elif isinstance(t, Body) and not -DEEP <= (box.low + box.high) / 2 <= MAX_TOP_HEIGHT + FLOOR_CELL:
+            middle = (box.low + box.high) / 2
+            yield f"height of {t.name} above the floor must be 0 to {MAX_TOP_HEIGHT} m, got {middle:.2f}"
 
 
 def _away(spec: SceneSpec, box: Box, reached: Grid) -> float:
@@ -135,7 +152,7 @@ def _away(spec: SceneSpec, box: Box, reached: Grid) -> float:
 
 def _fires(spec: SceneSpec) -> Iterator[str]:
     """Fires under things or walls."""
-    bare = free_for(spec.room, *boxes_of(spec), CELL)
+    bare = free_for(spec.room, *boxes_of(spec), FLOOR_CELL)
     x, y = cells(spec.room.size)
     for fire in spec.fires:
         cell = np.unravel_index(np.argmin(np.hypot(x - fire[0], y - fire[1])), bare.shape)

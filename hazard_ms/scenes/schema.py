@@ -1,7 +1,8 @@
-"""Scenes as JSON, and back: one schema, read off the dataclasses of hazard_ms.spec, so that a new field needs no line here.
+"""Scenes as JSON, and back, by one schema that follows from the dataclasses of `hazard_ms.spec`.
 
-Written canonically (keys in the order of the fields, shortest exact numbers), so that equal scenes are equal bytes. What is read
-is checked: unknown and missing keys, kinds and ranges of numbers, lengths, names. Errors name the place, `bodies[3].mass` say.
+They are written canonically (keys in the order of the fields, shortest exact numbers), so that equal scenes are equal
+bytes. All that is read is checked: unknown and missing keys, types and ranges of numbers, lengths, names. Errors name
+the place, for example `bodies[3].mass`.
 """
 
 from __future__ import annotations
@@ -16,9 +17,11 @@ import typing
 from collections import Counter
 from typing import Any, NoReturn
 
-from hazard_ms.catalogue import CATEGORIES
-from hazard_ms.scenes.shell import WALLS, shell
+from hazard_ms.checks import one_of
+from hazard_ms.scenes.shell import shell
+from hazard_ms.scenes.walls import WALLS
 from hazard_ms.spec import Body, Fixture, SceneSpec
+from hazard_ms.spec.catalogue import CATEGORIES
 
 FORMAT = 1  # goes up when older files can no longer be read
 LARGEST_FILE = 4_000_000  # [characters]; a scene of 100 things has 30,000
@@ -27,25 +30,31 @@ MOST_THINGS = 2000  # of any list
 FARTHEST = 1000.0  # any number's absolute value, in its unit
 STRONGEST_WIND = 70.0  # [m/s] a tropical cyclone of category 5
 LONGEST_NUMBER = 30  # of a whole number [characters]
-NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.:\-]*(/[A-Za-z0-9][A-Za-z0-9_.:\-]*)*")  # no part begins with a dot: no path upwards
+ROOM_SIZES, ROOM_HEIGHTS = (1.0, 100.0), (1.5, 20.0)  # least and most [m] [ours]
+SURROUNDINGS = (0.0, 100.0)  # how far things can be carried around a place in the open [m] [ours]
+# no part begins with a dot: no path upwards
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.:\-]*(/[A-Za-z0-9][A-Za-z0-9_.:\-]*)*")
 
 
 def to_json(spec: SceneSpec) -> str:
-    """`spec` as text."""
-    return json.dumps({"format": FORMAT, **dataclasses.asdict(spec)}, indent=1, allow_nan=False) + "\n"
+    """The scene as JSON text."""
+    data = {"format": FORMAT, **dataclasses.asdict(spec)}
+    if not spec.parameters:
+        del data["parameters"]  # few scenes have any
+    return json.dumps(data, indent=1, allow_nan=False) + "\n"
 
 
 def from_json(text: str | bytes) -> SceneSpec:
-    """The scene that `text` holds. Raises ValueError naming what is wrong with it, and what is allowed."""
+    """The scene that `text` holds. Raises ValueError that names what is wrong with it and what is allowed."""
     if len(text) > LARGEST_FILE:
-        raise ValueError(f"a scene of {len(text)} characters; at most {LARGEST_FILE} are allowed")
+        raise ValueError(f"a scene must have at most {LARGEST_FILE} characters, got {len(text)}")
     try:
         data = json.loads(text, parse_constant=_not_finite, parse_int=whole_number, object_pairs_hook=unique_keys)
     except (RecursionError, UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise ValueError(f"a scene that is no JSON: {error}") from None
+        raise ValueError(f"a scene must be valid JSON: {error}") from None
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         found = data.get("format") if isinstance(data, dict) else data
-        raise ValueError(f"format: {found!r:.100} is not the format {FORMAT}")
+        raise ValueError(f"format must be {FORMAT}, got {found!r:.100}")
     del data["format"]
     spec = _read(SceneSpec, data, "scene")
     check(spec)
@@ -53,59 +62,59 @@ def from_json(text: str | bytes) -> SceneSpec:
 
 
 def check(spec: SceneSpec) -> None:
-    """Raise ValueError naming the first thing in `spec` that no scene may have."""
+    """Check that a scene is one that can be played. Raises ValueError that names the first thing that is not."""
     things: list[Body | Fixture] = [*spec.fixtures, *spec.bodies]
     names = Counter(t.name for t in things)
     for t in things:
         if names[t.name] > 1:
-            raise ValueError(f"{spec.name}: {names[t.name]} things are called {t.name!r}; names must differ")
-        _category(t.category, f"{spec.name}: category of {t.name}")
+            raise ValueError(f"{spec.name}: names of things must differ, got {t.name!r} {names[t.name]} times")
+        one_of(t.category, CATEGORIES, f"{spec.name}: category of {t.name}")
         if abs(math.hypot(*t.rotation) - 1.0) > 1e-3:
-            raise ValueError(f"{spec.name}: rotation {t.rotation} of {t.name} is no unit quaternion")
+            raise ValueError(f"{spec.name}: rotation of {t.name} must be a unit quaternion, got {t.rotation}")
         if min(t.scale) <= 0.0:
-            raise ValueError(f"{spec.name}: scale {t.scale} of {t.name}; only positive numbers are allowed")
+            raise ValueError(f"{spec.name}: scale of {t.name} must be above 0 on every axis, got {t.scale}")
     for b in spec.bodies:
         if b.mass is not None and b.mass <= 0.0:
-            raise ValueError(f"{spec.name}: mass {b.mass} of {b.name}; None or a positive number is allowed")
+            raise ValueError(f"{spec.name}: mass of {b.name} must be None or above 0 kg, got {b.mass}")
         for what, number in (("wind resistance", b.wind_resistance), ("friction", b.friction)):
             if number is not None and number < 0.0:
-                raise ValueError(f"{spec.name}: {what} {number} of {b.name}; None or a number from 0 is allowed")
+                raise ValueError(f"{spec.name}: {what} of {b.name} must be None or at least 0, got {number}")
     for c in spec.target_categories:
-        _category(c, f"{spec.name}: target category")
-    if spec.flood_side not in WALLS:
-        raise ValueError(f"{spec.name}: flood side {spec.flood_side!r}; allowed: {', '.join(WALLS)}")
+        one_of(c, CATEGORIES, f"{spec.name}: target category")
+    one_of(spec.flood_side, WALLS, f"{spec.name}: flood_side")
     if math.hypot(*spec.wind) > STRONGEST_WIND:
-        raise ValueError(f"{spec.name}: wind {spec.wind} m/s; at most {STRONGEST_WIND} m/s is allowed")
+        raise ValueError(f"{spec.name}: wind must be at most {STRONGEST_WIND} m/s, got {spec.wind}")
     _check_room(spec)
 
 
 def _check_room(spec: SceneSpec) -> None:
     room = spec.room
-    if not (1.0 <= min(room.size) and max(room.size) <= 100.0 and 1.5 <= room.height <= 20.0 and 0.0 <= room.beyond <= 100.0):
-        raise ValueError(
-            f"{spec.name}: room of {room.size} m, {room.height} m high, {room.beyond} m around; 1 to 100, 1.5 to 20, 0 to 100 m are allowed"
-        )
-    shell(room)  # refuses openings that do not fit and materials that are none
+    for what, value, (low, high) in (
+        ("size of the room", room.size[0], ROOM_SIZES),
+        ("size of the room", room.size[1], ROOM_SIZES),
+        ("height of the room", room.height, ROOM_HEIGHTS),
+        ("beyond of the room", room.beyond, SURROUNDINGS),
+    ):
+        if not low <= value <= high:
+            raise ValueError(f"{spec.name}: {what} must be {low:g} to {high:g} m, got {value}")
+    shell(room)  # refuses openings that do not fit, and unknown materials
     for what, (x, y) in (("agent start", spec.agent_start.position), *(("fire", f) for f in spec.fires)):
         if not (0.0 <= x <= room.size[0] and 0.0 <= y <= room.size[1]):
-            raise ValueError(f"{spec.name}: {what} at ({x}, {y}) is outside of the room of {room.size} m")
-
-
-def _category(name: str, where: str) -> None:
-    if name not in CATEGORIES:
-        raise ValueError(f"{where} is {name!r}; allowed: {', '.join(CATEGORIES)}")
+            raise ValueError(f"{spec.name}: {what} must be within the room of {room.size} m, got ({x}, {y})")
 
 
 @functools.lru_cache(maxsize=64)
 def _fields(kind: type) -> dict[str, tuple[Any, bool]]:
-    """Fields of a dataclass: their types, and whether they must be given."""
+    """The fields of a dataclass: their types, and whether they must be given."""
     hints = typing.get_type_hints(kind)
     missing = dataclasses.MISSING
-    return {f.name: (hints[f.name], f.default is missing and f.default_factory is missing) for f in dataclasses.fields(kind)}
+    return {
+        f.name: (hints[f.name], f.default is missing and f.default_factory is missing) for f in dataclasses.fields(kind)
+    }
 
 
 def _read(kind: Any, value: Any, where: str) -> Any:
-    """`value`, as json gave it, as a `kind`."""
+    """The value that json gave, as a `kind`."""
     if dataclasses.is_dataclass(kind):
         return _read_object(kind, value, where)
     if isinstance(kind, types.UnionType) or typing.get_origin(kind) is typing.Union:
@@ -119,57 +128,58 @@ def _read(kind: Any, value: Any, where: str) -> Any:
         return value
     if kind is str and isinstance(value, str):
         if len(value) > LONGEST_TEXT or not NAME.fullmatch(value):
-            raise ValueError(f"{where}: {value!r:.100} is no name of letters, digits and _ . : - /, {LONGEST_TEXT} at most")
+            raise ValueError(
+                f"{where} must be a name of at most {LONGEST_TEXT} letters, digits and _ . : - /, got {value!r:.100}"
+            )
         return value
-    raise ValueError(f"{where}: {value!r:.100} is no {getattr(kind, '__name__', kind)}")
+    raise ValueError(f"{where} must be a {getattr(kind, '__name__', kind)}, got {value!r:.100}")
 
 
 def _read_object(kind: Any, value: Any, where: str) -> Any:
     fields = _fields(kind)
     if not isinstance(value, dict):
-        raise ValueError(f"{where}: {value!r:.100} is no object with the keys {', '.join(fields)}")
-    unknown = [k for k in value if k not in fields]
-    if unknown:
-        raise ValueError(f"{where}: unknown key {unknown[0]!r:.100}; allowed: {', '.join(fields)}")
+        raise ValueError(f"{where} must be an object with the keys {', '.join(fields)}, got {value!r:.100}")
+    for key in value:
+        one_of(key, fields, f"key of {where}")
     absent = [k for k, (_, must) in fields.items() if must and k not in value]
     if absent:
-        raise ValueError(f"{where}: lacks {', '.join(absent)}")
+        raise ValueError(f"{where} must have {', '.join(absent)}, got {', '.join(value) or 'nothing'}")
     return kind(**{k: _read(fields[k][0], v, f"{where}.{k}") for k, v in value.items()})
 
 
 def _read_list(kinds: tuple[Any, ...], value: Any, where: str) -> tuple[Any, ...]:
     if not isinstance(value, list):
-        raise ValueError(f"{where}: {value!r:.100} is no list")
+        raise ValueError(f"{where} must be a list, got {value!r:.100}")
     if kinds[-1] is Ellipsis:
         if len(value) > MOST_THINGS:
-            raise ValueError(f"{where}: {len(value)} entries; at most {MOST_THINGS} are allowed")
+            raise ValueError(f"{where} must have at most {MOST_THINGS} entries, got {len(value)}")
         kinds = (kinds[0],) * len(value)
     if len(kinds) != len(value):
-        raise ValueError(f"{where}: {len(value)} entries; {len(kinds)} are needed")
+        raise ValueError(f"{where} must have {len(kinds)} entries, got {len(value)}")
     return tuple(_read(k, v, f"{where}[{i}]") for i, (k, v) in enumerate(zip(kinds, value, strict=True)))
 
 
 def _number(value: Any, where: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not -FARTHEST <= value <= FARTHEST:
-        raise ValueError(f"{where}: {value!r:.100} is no number between {-FARTHEST} and {FARTHEST}")
+        raise ValueError(f"{where} must be a number from {-FARTHEST} to {FARTHEST}, got {value!r:.100}")
     return float(value)
 
 
 def _not_finite(word: str) -> NoReturn:
-    raise ValueError(f"{word} is no number that a scene may hold")
+    raise ValueError(f"numbers must be finite, got {word}")
 
 
 def whole_number(digits: str) -> int:
-    """A whole number as JSON has it; one that is absurdly long is refused."""
+    """The whole number that JSON writes with `digits`. Raises ValueError for one that is absurdly long."""
     if len(digits) > LONGEST_NUMBER:
-        raise ValueError(f"a whole number of {len(digits)} digits; at most {LONGEST_NUMBER} are allowed")
+        raise ValueError(f"a whole number must have at most {LONGEST_NUMBER} digits, got {len(digits)}")
     return int(digits)
 
 
 def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object; a key that stands in it twice is refused."""
+    """An object of JSON. Raises ValueError for a key that stands in it twice."""
     made = dict(pairs)
     if len(made) != len(pairs):
         twice = next(k for k, _ in pairs if sum(k == other for other, _ in pairs) > 1)
-        raise ValueError(f"the key {twice!r:.100} stands twice in one object")
+        raise ValueError(f"keys of an object must differ, got {twice!r:.100} twice")
     return made

@@ -1,11 +1,12 @@
-"""Boxes turned in any way, as corners: how far apart two of them are. All lengths in metres."""
+"""Boxes turned in any way, as corners, and the distance between two of them. All lengths are in metres."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.assets import asset
+from hazard_ms.assets.index import asset
+from hazard_ms.scenes.boxes import matrix_of
 from hazard_ms.spec import Body, Fixture
 
 Corners = NDArray[np.float64]  # [8, 3]; corner 4 i + 2 j + k is at the ends i, j, k of the box's own axes
@@ -15,20 +16,12 @@ _UNIT = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (
 
 def corners_of(thing: Body | Fixture) -> Corners:
     """The corners of the box around a thing, turned like it, in the world [m], [8, 3]."""
-    w, x, y, z = thing.rotation
-    turn = np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
     size = np.array(asset(thing.asset).extent) * thing.scale
-    return np.asarray((_UNIT * size) @ turn.T + thing.position)
+    return np.asarray((_UNIT * size) @ matrix_of(thing.rotation).T + thing.position)
 
 
 def gap(a: Corners, b: Corners) -> float:
-    """How far two boxes are apart along the axis that parts them best [m]; negative: how deep they are inside each other."""
+    """The distance of two boxes, [8, 3] each, along the axis that parts them best [m]; negative if they overlap."""
     edges = [box[[4, 2, 1]] - box[0] for box in (a, b)]
     axes = np.concatenate([*edges, np.cross(edges[0][:, None], edges[1][None]).reshape(-1, 3)])
     length = np.linalg.norm(axes, axis=1)

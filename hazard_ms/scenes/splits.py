@@ -1,4 +1,4 @@
-"""Names of scenes, which split of which family holds them, and the scene of each name: the one list of all scenes."""
+"""The one list of all scenes: their names, the splits and families that hold them, and the scene of each name."""
 
 from __future__ import annotations
 
@@ -6,15 +6,16 @@ import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from hazard_ms.scenes import indoor, streets
+from hazard_ms.checks import one_of
+from hazard_ms.scenes.generate import indoor, outdoor
 from hazard_ms.spec import SceneSpec
 
-SCENES = 25  # of every place, HAZARD 4.1
+SCENES = 25  # of every place [HAZARD, section 4.1]
 
 
 @dataclass(frozen=True)
 class Family:
-    """Scenes of one sort: the places of each split, and what makes a scene from its place, its name and its split."""
+    """Scenes of one sort: the places of each split, and the maker of a scene from its place, its name and its split."""
 
     places: dict[str, tuple[str, ...]]
     make: Callable[[str, str, str], SceneSpec]
@@ -30,7 +31,7 @@ FAMILIES: dict[str, Family] = {
         },
         indoor.make,
     ),
-    "outdoor": Family({"train": ("street", "crossing", "park"), "test": ("parking",)}, streets.make),
+    "outdoor": Family({"train": ("street", "crossing", "park"), "test": ("parking",)}, outdoor.make),
 }
 
 
@@ -40,36 +41,33 @@ def families() -> tuple[str, ...]:
 
 
 def split_names(family: str = "indoor") -> tuple[str, ...]:
-    """Names of the splits of a family."""
+    """Names of the splits of a family. Raises ValueError for unknown families."""
     return tuple(_family(family).places)
 
 
 def scene_names(split: str, family: str = "indoor") -> tuple[str, ...]:
-    """Names of the scenes of a split: "kitchen_a/00", ..."""
+    """Names of the scenes of a split, "kitchen_a/00" and so on. Raises ValueError for unknown splits and families."""
     places = _family(family).places
-    if split not in places:
-        raise ValueError(f"no split is called {split!r}; there are {', '.join(places)}")
+    one_of(split, places, f"split of {family} scenes")
     return tuple(f"{place}/{n:02d}" for place in places[split] for n in range(SCENES))
 
 
 def all_scene_names(family: str = "indoor") -> tuple[str, ...]:
-    """Names of all scenes of a family."""
+    """Names of all scenes of a family. Raises ValueError for unknown families."""
     return tuple(name for split in split_names(family) for name in scene_names(split, family))
 
 
 @functools.lru_cache(maxsize=512)
 def scene(name: str) -> SceneSpec:
-    """The scene called `name`, of whichever family: always the same."""
+    """The scene called `name`, of whichever family: always the same. Raises ValueError for unknown names."""
     for family in FAMILIES:
         for split in split_names(family):
             if name in scene_names(split, family):
                 return FAMILIES[family].make(name.split("/")[0], name, split)
     places = [place for f in FAMILIES.values() for split in f.places.values() for place in split]
     known = ", ".join(f"{place}/00 to {place}/{SCENES - 1:02d}" for place in places)
-    raise ValueError(f"no scene is called {name!r}; there are {known}")
+    raise ValueError(f"scene must be one of {known}, got {name!r}")
 
 
 def _family(name: str) -> Family:
-    if name not in FAMILIES:
-        raise ValueError(f"no family of scenes is called {name!r}; there are {', '.join(FAMILIES)}")
-    return FAMILIES[name]
+    return FAMILIES[one_of(name, FAMILIES, "family of scenes")]

@@ -1,1 +1,1 @@
-"""What the agent senses: camera, hazard image, target table, semantic map."""
+"""The agent's senses: camera, hazard image, target table and semantic map."""

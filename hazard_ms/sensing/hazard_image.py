@@ -1,44 +1,49 @@
-"""The blurred hazard image: the level of a hazard at 16 x 16 points of the depth image, upsampled to nearest neighbours.
+"""The blurred hazard images: levels of the hazards at 16 x 16 points of the depth image, enlarged without smoothing.
 
-As in the original, a sample is the first pixel of its block, `[::H // 16]`. The original stores the natural logarithm of the
-temperature (its agents invert it with exp); ours holds degrees Celsius, and metres of water, unless `logarithm` is applied.
+As in the original, a sample is the first pixel of its block, `[::H // 16]`; images may have any size from 16 pixels a
+side, square or not. The original stores the natural logarithm of the temperature, which its agents undo with exp. Ours
+hold degrees Celsius, or metres of water, unless `logarithm` is applied.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
 
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.base import Hazard
 from hazard_ms.sensing.camera import points_of_depth
-from hazard_ms.world import World
 
-SIDE = 16  # samples along each side of the image (benchmark rules 2)
-COLDEST = 1.0  # below this the logarithm is that of 1 C [C]
+SIDE = 16  # samples along each side of the image (docs/benchmark.md 2)
+COLDEST = 1.0  # lower temperatures have the logarithm of this one [C]
 
 
 def sample_points(depth: Tensor, intrinsic: Tensor, cam2world: Tensor) -> Tensor:
-    """Points [m] at which the hazard is sampled, world frame, [E, 16, 16, 3]; arguments as for `points_of_depth`."""
+    """Points [m] at which hazards are sampled, world frame, [E, 16, 16, 3]; arguments as for `points_of_depth`.
+
+    Raises ValueError for images of fewer than 16 pixels a side.
+    """
     height, width = depth.shape[1:3]
-    if height < SIDE or height != width:
-        raise ValueError(f"the image is {height} x {width} pixels; it must be square with at least {SIDE} pixels a side")
-    points, _ = points_of_depth(depth, intrinsic, cam2world, stride=height // SIDE)
-    return points[:, :SIDE, :SIDE]
+    if min(height, width) < SIDE:
+        raise ValueError(f"an image must be at least {SIDE} pixels high and wide, got {height} x {width}")
+    return points_of_depth(depth, intrinsic, cam2world, samples=(SIDE, SIDE))[0]
 
 
-def hazard_image(hazard: Hazard, state: Any, world: World, points: Tensor) -> Tensor:
-    """Level of `hazard` at `points` [E, 16, 16, 3]: temperature [C] or water level [m], [E, 16, 16]."""
-    return hazard.image(state, world, points.flatten(1, 2)).reshape(points.shape[:-1])
+def hazard_images(levels: Callable[[Tensor], Tensor], points: Tensor) -> Tensor:
+    """Levels of K hazards at `points` [m], world frame, [E, 16, 16, 3]: [E, K, 16, 16], each in its hazard's unit.
+
+    `levels` gives them for points in a row, [E, P, 3] -> [E, K, P], as `Episode.levels` does.
+    """
+    return levels(points.flatten(1, 2)).unflatten(-1, points.shape[1:3])
 
 
-def enlarge(image: Tensor, side: int) -> Tensor:
-    """`image` [E, 16, 16] at `side` x `side` pixels, each pixel as its nearest sample to the top left: [E, side, side]."""
-    index = torch.arange(side, device=image.device) * SIDE // side
-    return image[:, index][:, :, index]
+def enlarge(images: Tensor, height: int, width: int) -> Tensor:
+    """`images` [E, K, 16, 16] enlarged to [E, H, W, K] pixels, each with the value of the sample to its top left."""
+    rows = torch.arange(height, device=images.device) * SIDE // height
+    columns = torch.arange(width, device=images.device) * SIDE // width
+    return images[:, :, rows][..., columns].permute(0, 2, 3, 1).contiguous()
 
 
 def logarithm(temperature: Tensor) -> Tensor:
-    """Natural logarithm of a `temperature` [C], as the original's agents observe it."""
+    """Natural logarithm of a `temperature` [C], [...], as the original's agents observe it."""
     return torch.log(temperature.clamp(min=COLDEST))

@@ -1,4 +1,7 @@
-"""What an agent is told about the things to rescue: names, values, properties. Never where they are: that it must see."""
+"""Table of the things to rescue, as agents are told of them: names, values and properties.
+
+It never holds their places, which an agent must see for itself.
+"""
 
 from __future__ import annotations
 
@@ -7,17 +10,17 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from hazard_ms.catalogue import CATEGORIES
-from hazard_ms.world import World
+from hazard_ms.simulation.world import World
+from hazard_ms.spec.catalogue import CATEGORIES
 
-PROPERTIES = ("flammable", "waterproof", "ignition_temperature")  # attributes of the catalogue; the last in degrees Celsius
+PROPERTIES = ("flammable", "waterproof", "ignition_temperature")  # attributes of the catalogue; the last [C]
 
 
 @dataclass(frozen=True)
 class Target:
     """One thing to rescue, as the agent is told of it."""
 
-    index: int  # along B, as in the segmentation and in `SemanticMap.objects`
+    index: int  # index along B, as in the segmentation and in `SemanticMap.objects`
     name: str
     category: str
     value: float  # 1 or 5
@@ -26,23 +29,26 @@ class Target:
     ignition_temperature: float  # [C]
     rescued: bool = False
     held: bool = False
-    damaged: bool = False  # when it was last seen
+    damaged: bool = False  # whether it was damaged when last seen
 
 
 class TargetTable:
-    """The targets of E scenes, T columns: as many as `slots` says, else as the scene with the most has.
+    """The targets of E scenes, in T columns.
 
     index       [E, T]     index along B; -1 where the scene has fewer targets
-    value       [E, T]     1 or 5; 0 where there is none
+    value       [E, T]     1 or 5; 0 where there is no target
     properties  [E, T, 3]  flammable, waterproof (0 or 1), ignition temperature [C]
     """
 
     def __init__(self, world: World, slots: int | None = None) -> None:
-        """`slots`: T, so that observations have one shape in every scene; None: as many as the scene with the most needs."""
+        """Make the table of the targets of `world` with T = `slots` columns, so that all scenes give the same shape.
+
+        None: as many columns as the scene with the most targets needs. Raises ValueError for too few `slots`.
+        """
         rows = [row.nonzero()[:, 0] for row in world.target]
         most = max(len(row) for row in rows) if slots is None else slots
         if max(len(row) for row in rows) > most:
-            raise ValueError(f"a scene has {max(len(row) for row in rows)} targets; {most} slots are allowed")
+            raise ValueError(f"a scene must have at most {most} targets, got {max(len(row) for row in rows)}")
         self.names = tuple(tuple(world.names[e][int(b)] for b in row) for e, row in enumerate(rows))
         self.index = torch.full((world.num_envs, most), -1, dtype=torch.int64, device=world.device)
         for e, row in enumerate(rows):
@@ -53,14 +59,14 @@ class TargetTable:
         self.properties = torch.stack([self.of(world.lookup(name)) for name in PROPERTIES], dim=-1)
 
     def of(self, of_things: Tensor) -> Tensor:
-        """The targets' entries, [E, T, ...], of a quantity of all things, [E, B, ...]; 0 or False where there is no target."""
+        """Numbers of the targets, [E, T, ...], taken from those of all things, [E, B, ...]; 0 without a target."""
         rows = torch.arange(self.index.shape[0], device=self.index.device)[:, None]
         taken = of_things[rows, self._column]
         there = self.there.reshape(self.there.shape + (1,) * (taken.ndim - 2))
         return torch.where(there, taken, torch.zeros_like(taken))
 
     def observe(self, world: World) -> dict[str, Tensor]:
-        """The table as tensors of float32: value [E, T], properties [E, T, 3], held [E, T], rescued [E, T]."""
+        """The table as float32 tensors: value, held and rescued, [E, T] each; properties [E, T, 3], the last in [C]."""
         return {
             "value": self.value,
             "properties": self.properties,
@@ -69,7 +75,10 @@ class TargetTable:
         }
 
     def rows(self, world: World, env: int = 0, damaged: frozenset[int] | set[int] = frozenset()) -> tuple[Target, ...]:
-        """The targets of one scene. `damaged`: indices along B of those last seen damaged, `SemanticMap.seen_damaged`."""
+        """The targets of scene `env`.
+
+        `damaged` holds the indices along B of things that were damaged when last seen (`SemanticMap.seen_damaged`).
+        """
         made = []
         for b in self.index[env][self.there[env]].tolist():
             name = world.names[env][b]

@@ -1,4 +1,4 @@
-"""One look of the head camera of one environment, in numpy: what the semantic map is made from."""
+"""One look of the head camera of one environment, in numpy; semantic maps are made from such looks."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from hazard_ms.sensing.camera import metres
 
 @dataclass(frozen=True)
 class View:
-    """One look of the head camera. `level` is the 16 x 16 hazard image: temperature [C] or water level [m]."""
+    """One look of the head camera. `level` holds the hazard images of the task's K hazards, in the hazards' units."""
 
-    depth: NDArray[np.float32]  # [H, W], along the optical axis [m]; 0: nothing there
-    intrinsic: NDArray[np.float32]  # [3, 3], pixels
-    cam2world: NDArray[np.float32]  # [4, 4], of a camera that looks along its -z, y up
-    labels: NDArray[np.int64] | None = None  # [H, W], see hazard_ms.sensing.camera; None: no segmentation
-    level: NDArray[np.float32] | None = None  # [16, 16]
+    depth: NDArray[np.float32]  # [H, W], along the optical axis [m]; 0 where there is nothing
+    intrinsic: NDArray[np.float32]  # [3, 3] [pixels]
+    cam2world: NDArray[np.float32]  # [4, 4], of a camera that looks along its -z axis with y up
+    labels: NDArray[np.int64] | None = None  # [H, W], see hazard_ms.sensing.camera; None without a segmentation
+    level: NDArray[np.float32] | None = None  # [K, 16, 16]
 
     @classmethod
     def of(
@@ -31,18 +31,22 @@ class View:
         level: Tensor | None = None,
         env: int = 0,
     ) -> View:
-        """The view of one environment, of batched tensors as `camera` and `hazard_image` take and give them."""
+        """The view of environment `env` from the batched images of E environments.
+
+        `depth` [E, H, W] or [E, H, W, 1] in [m], or int16 in [mm]; `intrinsic` [E, 3, 3] in [pixels];
+        `cam2world` [E, 4, 4]; `labels` [E, H, W]; `level` [E, K, 16, 16].
+        """
         flat = depth[env, ..., 0] if depth.ndim == 4 else depth[env]
         return cls(
             metres(flat).cpu().numpy(),
             intrinsic[env].cpu().numpy(),
             cam2world[env].cpu().numpy(),
             None if labels is None else labels[env].cpu().numpy(),
-            None if level is None else level[env].cpu().numpy(),
+            None if level is None else level[env].reshape(-1, *level.shape[-2:]).cpu().numpy(),
         )
 
     def points(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> NDArray[np.float32]:
-        """Points of the world [m] at the pixels (`row`, `column`), [P] each: [P, 3]."""
+        """Points [m], world frame, [P, 3], that are seen at the pixels `row` [P], `column` [P]."""
         far = self.depth[row, column]
         k, pose = self.intrinsic, self.cam2world
         right = (column.astype(np.float32) + (0.5 - k[0, 2])) / k[0, 0] * far
@@ -50,9 +54,9 @@ class View:
         return np.stack([right, up, -far], axis=-1) @ pose[:3, :3].T + pose[:3, 3]
 
     def level_at(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> NDArray[np.float32] | None:
-        """Hazard level at pixels, [P]: that of the sample to the top left."""
+        """Levels of the hazards at pixels, [P] each: [K, P], in their units; those of the sample to the top left."""
         if self.level is None:
             return None
         height, width = self.depth.shape
-        samples_y, samples_x = self.level.shape
-        return self.level[row * samples_y // height, column * samples_x // width]
+        _, samples_y, samples_x = self.level.shape
+        return self.level[:, row * samples_y // height, column * samples_x // width]

@@ -1,1 +1,1 @@
-"""What an agent can do: skills are generators that yield low-level actions until they are done, and return a Result."""
+"""Skills of agents: generators that yield low-level actions until they are done, and return a Result."""

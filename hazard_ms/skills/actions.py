@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Result
-from hazard_ms.skills.grasping import pick_up
-from hazard_ms.skills.motion import turn_by, wrap
-from hazard_ms.skills.stage import Skill, Stage
-from hazard_ms.skills.stowing import drop
-from hazard_ms.skills.walking import WALK_FRAMES, walk_to
+from hazard_ms.skills.motor.grasping import pick_up
+from hazard_ms.skills.motor.motion import turn_by, wrap
+from hazard_ms.skills.motor.stowing import drop
+from hazard_ms.skills.motor.walking import WALK_FRAMES, walk_to
 
-LOOKS = 12  # of a look around (benchmark rules 3)
+LOOKS = 12  # number of looks when looking around (docs/benchmark.md 3)
 
 
 def explore(stage: Stage) -> Skill:
-    """Turn once around in twelve turns of 30 degrees, looking each time."""
+    """Turn once around in twelve turns of 30 degrees, with a look after each."""
     used = 0
     start = stage.robot.base()[2]
     for look in range(1, LOOKS + 1):
@@ -32,7 +32,7 @@ def stop(stage: Stage) -> Skill:
 
 
 def skill(stage: Stage, action: Action) -> Skill:
-    """The generator that does `action`. ValueError where it names nothing that there is."""
+    """The generator that does `action`. Raises ValueError if it names a thing that the scene does not have."""
     index = None if action.target is None else stage.world.index(0, action.target)
     if action.verb == EXPLORE:
         return explore(stage)

@@ -1,4 +1,4 @@
-"""What passes between agent and world at a decision: a `Decision` comes, an `Action` goes, a `Result` tells how it went."""
+"""Everything that passes between agent and world: a `Decision` comes, an `Action` goes, a `Result` follows."""
 
 from __future__ import annotations
 
@@ -17,18 +17,22 @@ NEED_TARGET = (WALK_TO, WALK_ONE_STEP, PICK_UP)
 
 @dataclass(frozen=True)
 class Action:
-    """A verb and the name of the thing that it is done to. `drop` takes a container, or None: the bag, or the ground."""
+    """A verb and the name of the thing that it is done to.
+
+    `drop` takes a container, or None: the bag, or the ground. Raises ValueError for an unknown verb, and for a target
+    that the verb does not take.
+    """
 
     verb: str
     target: str | None = None
 
     def __post_init__(self) -> None:
         if self.verb not in VERBS:
-            raise ValueError(f"no action is called {self.verb!r}; there are {', '.join(VERBS)}")
+            raise ValueError(f"verb must be one of {', '.join(VERBS)}, got {self.verb!r}")
         if self.target is not None and not isinstance(self.target, str):
-            raise ValueError(f"the target of {self.verb} is {self.target!r}; it must be the name of a thing, or None")
+            raise ValueError(f"the target of {self.verb} must be the name of a thing, or None, got {self.target!r}")
         if self.verb in NEED_TARGET and self.target is None:
-            raise ValueError(f"{self.verb} needs the name of a thing as its target")
+            raise ValueError(f"the target of {self.verb} must be the name of a thing, got None")
 
     def __str__(self) -> str:
         return self.verb if self.target is None else f"{self.verb} {self.target}"
@@ -36,7 +40,7 @@ class Action:
 
 @dataclass(frozen=True)
 class Result:
-    """How an action went: whether it worked, why not, and how many frames it took."""
+    """The outcome of an action: whether it worked, why not, and how many frames it took."""
 
     ok: bool
     reason: str = ""  # empty when ok
@@ -45,12 +49,12 @@ class Result:
 
 @dataclass(frozen=True)
 class Images:
-    """What the head camera saw last, H x W. `segmentation`: labels of `hazard_ms.sensing.camera`; None: withheld."""
+    """The last images of the head camera, H x W. `segmentation`: labels of `sensing.camera`; None: withheld."""
 
     rgb: NDArray[np.uint8]  # [H, W, 3]
     depth: NDArray[np.float32]  # [H, W], along the optical axis [m]; 0: nothing there
     segmentation: NDArray[np.int64] | None  # [H, W]
-    hazard: NDArray[np.float32]  # [16, 16], temperature [C] or water level [m]
+    hazard: NDArray[np.float32]  # [K, 16, 16], levels of the task's K hazards in their order, in their units
 
 
 @dataclass(frozen=True)
@@ -64,7 +68,7 @@ class Decision:
     held: str | None  # name of the thing in the hand
     targets: tuple[Target, ...]  # what is known of the things to rescue
     containers: tuple[str, ...]  # carts, in wind; empty where the safe place is the bag
-    map: SemanticMap  # what has been seen so far
+    map: SemanticMap  # what has been seen so far; it cannot be written to
     images: Images | None  # None where nothing renders
     available: tuple[Action, ...]  # what can be tried now
     names: tuple[str, ...]  # of the things that `map.objects` and the segmentation refer to by index
@@ -72,14 +76,14 @@ class Decision:
     last_result: Result | None = None
 
     def index(self, name: str) -> int:
-        """Index of the thing called `name` in `map.objects`."""
+        """Index of the thing called `name` in `map.objects`. Raises ValueError if nothing has that name."""
         if name not in self.names:
-            raise ValueError(f"nothing is called {name!r}; there are {', '.join(self.names)}")
+            raise ValueError(f"a thing must be one of {', '.join(self.names)}, got {name!r}")
         return self.names.index(name)
 
     def target(self, name: str) -> Target:
-        """What is known of the target called `name`."""
+        """The target called `name`. Raises ValueError if no target has that name."""
         for row in self.targets:
             if row.name == name:
                 return row
-        raise ValueError(f"{name!r} is no target; targets are {', '.join(t.name for t in self.targets)}")
+        raise ValueError(f"a target must be one of {', '.join(t.name for t in self.targets)}, got {name!r}")

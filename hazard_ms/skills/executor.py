@@ -1,4 +1,4 @@
-"""SkillEnv: the environment at the level of decisions. An action is a verb and a target; it takes as many frames as it needs."""
+"""SkillEnv, the environment at the level of decisions: an action is a verb and a target, and takes many frames."""
 
 from __future__ import annotations
 
@@ -10,39 +10,73 @@ import numpy as np
 import torch
 
 from hazard_ms.env import HazardEnv
+from hazard_ms.robots import robot_name, skill_control_mode
 from hazard_ms.sensing.semantic_map import SemanticMap, cells_for
 from hazard_ms.skills.actions import skill
-from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision, Images, Result
+from hazard_ms.skills.brief import Brief, HazardBrief, random_seed
+from hazard_ms.skills.context import LowLevel, Skill, Stage
+from hazard_ms.skills.decision import (
+    DROP,
+    EXPLORE,
+    PICK_UP,
+    STOP,
+    WALK_ONE_STEP,
+    WALK_TO,
+    Action,
+    Decision,
+    Images,
+    Result,
+)
 from hazard_ms.skills.failures import EPISODE_OVER
-from hazard_ms.skills.stage import LowLevel, Skill, Stage
-from hazard_ms.spec import Body, Fixture
-
-CART = "cart"  # category of the containers of a task whose safe place is a cart
+from hazard_ms.wrappers import is_bare
 
 
 class SkillEnv:
     """Runs actions of the benchmark in a hazard environment with one scene. Low-level skills run too: `run(skill)`.
 
-    `watch` is called after every frame with the low-level action: for videos and recorders.
+    Wrappers of the environment, such as ManiSkill's RecordEpisode, see every frame. Without any, frames are quicker:
+    they leave out the observation.
+
+    `watch` is called after every frame with the low-level action, for films and recorders. At `until_frame` an action
+    is broken off, and `step` says that the episode is truncated: for pictures of a frame.
     """
 
     def __init__(self, env: gym.Env, watch: Callable[[LowLevel], None] | None = None) -> None:
         base = env.unwrapped
         if not isinstance(base, HazardEnv):
-            raise ValueError(f"skills run in a HazardEnv; this is a {type(base).__name__}")
+            raise ValueError(f"the environment of skills must be a HazardEnv, got {type(base).__name__}")
         if base.num_envs != 1:
-            raise ValueError(f"num_envs is {base.num_envs}; skills run in an environment with num_envs=1")
+            raise ValueError(f"num_envs must be 1 for skills, got {base.num_envs}")
         wanted = base.agent.skill_control_mode
         if base.agent.control_mode != wanted:
-            raise ValueError(f"control_mode is {base.agent.control_mode!r}; skills of this robot need {wanted!r}")
+            given = base.agent.control_mode
+            raise ValueError(f"gym.make's control_mode must be {wanted!r} for skills of this robot, got {given!r}")
         if not base.observer.renders:
-            raise ValueError("nothing renders here; skills look through the head camera: see `hazard-ms doctor`")
+            raise ValueError(
+                "a renderer is needed for skills, which look through the head camera: see `hazard-ms doctor`"
+            )
         self.env = env
+        self._bare = is_bare(env)
         self._limit = None if env.spec is None else env.spec.max_episode_steps
         self.base = base
         self.watch = watch
+        self.until_frame: int | None = None
         self.stage: Stage
         self._over = True
+
+    @classmethod
+    def make(cls, env_id: str, **keywords: Any) -> SkillEnv:
+        """A new environment for skills, made with `keywords` of gym.make, in the control mode that skills need.
+
+        Raises ValueError for keywords that are not allowed, and where nothing renders.
+        """
+        mode = skill_control_mode(keywords.get("robot_uids", "fetch"))
+        made = gym.make(env_id, **{"obs_mode": "none", "control_mode": mode, **keywords})
+        try:
+            return cls(made)
+        except ValueError:
+            made.close()
+            raise
 
     @property
     def max_frames(self) -> int:
@@ -54,12 +88,35 @@ class SkillEnv:
         """Frames since the start of the episode."""
         return int(self.base.world.frame[0])
 
+    @property
+    def seen(self) -> SemanticMap:
+        """The map of what has been seen so far; every look brings it up to date."""
+        return self._seen
+
+    def brief(self) -> Brief:
+        """Everything that an agent is told before the episode: nothing that shows which scene it is."""
+        base = self.base
+        briefs = (HazardBrief(h.name, h.level.title, h.level.unit, h.threatens) for h in base.task.hazards)
+        return Brief(
+            task=base.task.name,
+            text=base.task.text,
+            targets=base.observer.table.rows(base.world),
+            containers=self._containers(),
+            safe_place=base.task.safe_place.name,
+            hazards=tuple(briefs),
+            max_frames=self.max_frames,
+            frame_seconds=float(base.control_timestep),
+            robot=robot_name(base.agent.uid),
+            random_seed=random_seed(int(base.world.chance.seed[0])),
+        )
+
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Decision, dict[str, Any]]:
         """Start an episode, as the environment's own reset, with a first look."""
         _, info = self.env.reset(seed=seed, options=options)
         world = self.base.world
         start = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))
-        self._seen = SemanticMap(start, world.movable[0].cpu().numpy(), cells=cells_for(self.base.specs[0].room.size))
+        cells, hazards = cells_for(self.base.specs[0].room.size), len(self.base.task.hazards)
+        self._seen = SemanticMap(start, world.movable[0].cpu().numpy(), cells=cells, hazards=hazards)
         self.stage = Stage(self.base, self._seen, self.look)
         self._images: Images | None = None
         self._last: tuple[Action | None, Result | None] = (None, None)
@@ -69,14 +126,17 @@ class SkillEnv:
         return self.decision(), info
 
     def step(self, action: Action) -> tuple[Decision, float, bool, bool, dict[str, Any]]:
-        """Do `action` to its end. Returns the next decision, the reward summed over its frames, and how the episode stands.
+        """Do `action` to its end.
 
-        Raises ValueError for what is no action, or names nothing that there is; the episode is then as it was before.
+        Returns the next decision, the reward summed over its frames, whether the episode is terminated, whether it is
+        truncated, and info, with the `Result` of the action as "result".
+
+        Raises ValueError for anything but an Action, and for names that nothing has; the episode is left unchanged.
         """
         if self._over:
-            raise ValueError("the episode is over; call reset first")
+            raise ValueError("the episode must be running, but it is over: call reset first")
         if not isinstance(action, Action):
-            raise ValueError(f"{action!r} is no Action; give Action(verb, target)")
+            raise ValueError(f"an action must be an Action(verb, target), got {action!r}")
         self._check(action)
         doing = skill(self.stage, action)
         self._reward = 0.0
@@ -85,8 +145,8 @@ class SkillEnv:
             self._seen.forget(self.base.world.index(0, action.target))
         self._last = (action, result)
         info = self.base.get_info()
-        terminated = action.verb == STOP or bool(info["success"][0])
-        truncated = self._out_of_time()
+        terminated = action.verb == STOP or bool(info["success"][0]) or bool(info["fail"][0])
+        truncated = self._broken_off()
         self._over = terminated or truncated
         if not bool(info["sim_error"][0]):
             self.look()
@@ -97,10 +157,10 @@ class SkillEnv:
         if action.target is None:
             return
         if action.verb in (EXPLORE, STOP):
-            raise ValueError(f"the target of {action.verb} is {action.target!r}; none is allowed")
+            raise ValueError(f"the target of {action.verb} must be None, got {action.target!r}")
         if action.verb == DROP and action.target not in self._containers():
-            allowed = ", ".join(["none", *self._containers()])
-            raise ValueError(f"the target of drop is {action.target!r}; allowed: {allowed}")
+            allowed = ", ".join(["None", *self._containers()])
+            raise ValueError(f"the target of drop must be one of {allowed}, got {action.target!r}")
 
     def close(self) -> None:
         """Close the environment."""
@@ -112,12 +172,11 @@ class SkillEnv:
         try:
             action = next(doing)
             while True:
-                if self._out_of_time():
+                if self._broken_off():
                     doing.close()
                     return Result(False, EPISODE_OVER, frames)
-                info = self.base.advance(action)
+                self._reward += self._frame(action)
                 frames += 1
-                self._reward += float(self.base.get_reward(None, torch.as_tensor(action)[None], info)[0])
                 if self.watch is not None:
                     self.watch(action)
                 action = next(doing)
@@ -125,8 +184,16 @@ class SkillEnv:
             result: Result = ended.value
             return result
 
-    def _out_of_time(self) -> bool:
-        return self.frame >= self.max_frames or bool(self.base.episode.sim_error[0])
+    def _frame(self, action: LowLevel) -> float:
+        """Let one frame pass, and return its reward; wrappers of others see every frame, as recorders must."""
+        if not self._bare:
+            return float(self.env.step(action)[1])
+        info = self.base.advance(action)
+        return float(self.base.get_reward(None, torch.as_tensor(action)[None], info)[0])
+
+    def _broken_off(self) -> bool:
+        last = self.max_frames if self.until_frame is None else min(self.until_frame, self.max_frames)
+        return self.frame >= last or bool(self.base.episode.sim_error[0])
 
     def look(self) -> None:
         """Look through the head camera and enter what is seen into the map."""
@@ -138,11 +205,11 @@ class SkillEnv:
             self._seen.forget(index)
         self._seen.update(view, self.frame, where, gone, base.episode.damage.damaged[0].cpu().numpy())
         self._seen.mark_free(where, base.agent.build.radius)
-        hazard = np.zeros((1, 1), np.float32) if view.level is None else view.level
+        hazard = np.zeros((len(base.task.hazards), 1, 1), np.float32) if view.level is None else view.level
         self._images = Images(rgb.cpu().numpy().copy(), view.depth, view.labels, hazard)
 
     def decision(self) -> Decision:
-        """All that an agent may know now."""
+        """All that an agent may know now; the map is a copy that cannot be written to."""
         world, stage = self.base.world, self.stage
         x, y, heading = stage.robot.base()
         held = world.names[0][stage.held] if stage.held >= 0 else None
@@ -155,7 +222,7 @@ class SkillEnv:
             held=held,
             targets=self.base.observer.table.rows(world, 0, self._seen.seen_damaged),
             containers=containers,
-            map=self._seen,
+            map=self._seen.frozen(),
             images=self._images,
             available=self._available(held, containers),
             names=world.names[0],
@@ -164,11 +231,8 @@ class SkillEnv:
         )
 
     def _containers(self) -> tuple[str, ...]:
-        if self.base.task.safe_place != CART:
-            return ()
-        spec = self.base.specs[0]
-        things: tuple[Body | Fixture, ...] = (*spec.bodies, *spec.fixtures)
-        return tuple(t.name for t in things if t.category == CART)
+        categories = self.base.task.safe_place.containers
+        return tuple(thing.name for thing in self.base.specs[0].things if thing.category in categories)
 
     def _available(self, held: str | None, containers: tuple[str, ...]) -> tuple[Action, ...]:
         """What makes sense to try: things that are known, and of these only targets can be picked up."""

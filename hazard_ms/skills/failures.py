@@ -1,9 +1,9 @@
-"""Why a skill did not work: the stable codes that a Result carries."""
+"""Reasons for which a skill did not work: the stable codes that a Result carries."""
 
 from __future__ import annotations
 
 UNKNOWN = "target_unknown"  # neither in view nor in memory
-NO_PATH = "no_path"  # nothing passable leads near it
+NO_PATH = "no_path"  # no passable path leads near it
 MAX_FRAMES = "max_frames"  # the budget of frames is spent
 BLOCKED = "blocked"  # something stands in the way that the map does not show
 NOT_A_TARGET = "not_a_target"

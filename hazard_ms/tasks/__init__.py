@@ -1,27 +1,27 @@
-"""Tasks by the name under which gymnasium knows them: preset of physics -> task."""
+"""Tasks by their registered names."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import dataclasses
+import inspect
+from collections.abc import Sequence
 
+from hazard_ms.registry import TASKS, find, load
 from hazard_ms.spec import Task
-from hazard_ms.tasks.compound import NAME, hazard_compound
-from hazard_ms.tasks.fire import hazard_fire
-from hazard_ms.tasks.flood import hazard_flood
-from hazard_ms.tasks.wind import hazard_wind
-
-TASKS: dict[str, Callable[[str], Task]] = {
-    "HazardFire-v1": hazard_fire,
-    "HazardFlood-v1": hazard_flood,
-    "HazardWind-v1": hazard_wind,
-    NAME: hazard_compound,
-}
 
 
 def task_of(name: str, physics: str, hazards: Sequence[str] | None = None) -> Task:
-    """The task called `name`; `hazards` only for HazardCompound-v1."""
-    if hazards is None:
-        return TASKS[name](physics)
-    if name != NAME:
-        raise ValueError(f"hazards is {hazards!r} for {name}; it is allowed for {NAME} only")
-    return hazard_compound(physics, tuple(hazards) if isinstance(hazards, list) else hazards)
+    """The registered task called `name` with the `physics` of a preset, and with `hazards` if they can be chosen.
+
+    Raises ValueError for an unknown name or preset, and for `hazards` of a task that has its own.
+    """
+    entry = find(TASKS, name, "task")
+    maker = load(entry.maker)
+    if hazards is not None and "hazards" not in inspect.signature(maker).parameters:
+        raise ValueError(
+            f"hazards must be None for {name}, which has its own (HazardCompound-v1 has not), got {hazards!r}"
+        )
+    made = maker(physics) if hazards is None else maker(physics, hazards=hazards)
+    if not isinstance(made, Task):
+        raise ValueError(f"the maker of {name!r} must give a Task, got {type(made).__name__}")
+    return dataclasses.replace(made, name=name, max_frames=entry.max_frames)

@@ -1,36 +1,44 @@
-"""Hazards that act together: any of fire, flood and wind in one rescue. With wind it is played in the open, with carts; else in rooms.
+"""Compound rescue: any of the registered hazards act together.
 
-Water puts fires out and keeps what it has wetted from burning; wind drives fire over the ground (hazard_ms.hazards.together).
+It is played in the open with carts if one of the hazards needs that, else in rooms with the bag. A hazard that tells
+others something (`provides`) advances before those that use it (`uses`): water puts fires out and keeps what it has
+wetted from burning, and wind drives fire over the ground (hazard_ms.hazards.fire.coupling).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hazard_ms import MAX_FRAMES
-from hazard_ms.hazards.presets import HAZARDS
-from hazard_ms.scenes import splits
+from hazard_ms.hazards.base import Hazard
+from hazard_ms.hazards.presets import hazard
+from hazard_ms.registry import HAZARDS
 from hazard_ms.spec import Task
+from hazard_ms.tasks.rescue import rescue
 
-NAME = "HazardCompound-v1"
-ORDER = ("flood", "wind", "fire")  # those that tell others something come first
-USUAL = ("flood", "fire")
+DEFAULT = ("flood", "fire")  # hazards of the task unless others are asked for
 
 
-def hazard_compound(physics: str = "paper", hazards: Sequence[str] = USUAL) -> Task:
+def hazard_compound(physics: str = "paper", hazards: Sequence[str] = DEFAULT) -> Task:
     """The task HazardCompound-v1 with these `hazards`, each with the physics of a preset.
 
-    Raises ValueError for none, unknown ones, and the same one twice.
+    Raises ValueError for no hazards, unknown ones, the same one twice, and ones that use each other's fields.
     """
-    if isinstance(hazards, str) or not hazards or len(set(hazards)) < len(hazards) or set(hazards) - set(ORDER):
-        raise ValueError(f"hazards is {hazards!r}; some of {', '.join(ORDER)}, each once, are allowed")
-    family = "outdoor" if "wind" in hazards else "indoor"
-    return Task(
-        name=NAME,
-        scenes=lambda split: splits.scene_names(split, family),
-        build=splits.scene,
-        hazards=tuple(HAZARDS[name](physics) for name in ORDER if name in hazards),
-        max_frames=MAX_FRAMES[NAME],
-        splits=splits.split_names(family),
-        safe_place="cart" if "wind" in hazards else "bag",
-    )
+    known = isinstance(hazards, (list, tuple)) and all(isinstance(h, str) and h in HAZARDS for h in hazards)
+    if not known or not hazards or len(set(hazards)) < len(hazards):
+        raise ValueError(f"hazards must be some of {', '.join(HAZARDS)}, each once, got {hazards!r}")
+    return rescue(in_order([hazard(name, physics) for name in HAZARDS if name in hazards]))
+
+
+def in_order(hazards: Sequence[Hazard]) -> tuple[Hazard, ...]:
+    """`hazards` in such an order that each comes after those whose fields it uses, and otherwise unchanged.
+
+    Raises ValueError for hazards that use each other's fields.
+    """
+    left, done = list(hazards), list[Hazard]()
+    while left:
+        ready = [h for h in left if not any(set(h.uses) & set(other.provides) for other in left if other is not h)]
+        if not ready:
+            raise ValueError(f"hazards must not use each other's fields in a circle, got {[h.name for h in left]}")
+        done.append(ready[0])
+        left.remove(ready[0])
+    return tuple(done)

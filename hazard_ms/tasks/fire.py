@@ -1,22 +1,12 @@
-"""Fire rescue: bring the targets into the bag before the fire, spreading over the floor and from thing to thing, damages them."""
+"""Fire rescue: bring the targets into the bag before the fire, which spreads over the floor and from thing to thing."""
 
 from __future__ import annotations
 
-from hazard_ms import MAX_FRAMES
 from hazard_ms.hazards.presets import fire
-from hazard_ms.scenes import splits
 from hazard_ms.spec import Task
-
-NAME = "HazardFire-v1"
+from hazard_ms.tasks.rescue import rescue
 
 
 def hazard_fire(physics: str = "paper") -> Task:
-    """The task HazardFire-v1 with the physics of a preset."""
-    return Task(
-        name=NAME,
-        scenes=splits.scene_names,
-        build=splits.scene,
-        hazards=(fire(physics),),
-        max_frames=MAX_FRAMES[NAME],
-        splits=splits.split_names(),
-    )
+    """The task HazardFire-v1 with the physics of a preset. Raises ValueError for an unknown preset."""
+    return rescue([fire(physics)])

@@ -1,1 +1,1 @@
-"""Every case of the physics specification that this code covers, with its expected number: `hazard-ms validate`."""
+"""Every case of docs/physics.md that this code covers, with its expected number: `hazard-ms validate`."""

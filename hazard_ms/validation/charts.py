@@ -1,4 +1,4 @@
-"""Line charts of what the physics gives beside what it must give."""
+"""Line charts of results of the physics beside the numbers that they must match."""
 
 from __future__ import annotations
 
@@ -10,7 +10,20 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.evaluation.drawing import ACCENT, BLUE, EDGE, GOLD, GOOD, NIGHT, SOFT, TEXT, Colour, dot, text_width, write
+from hazard_ms.pictures.drawing import (
+    ACCENT,
+    BLUE,
+    EDGE,
+    GOLD,
+    GOOD,
+    NIGHT,
+    SOFT,
+    TEXT,
+    Colour,
+    dot,
+    text_width,
+    write,
+)
 
 WIDTH, HEIGHT = 880, 520  # [pixels]
 LEFT, RIGHT, TOP, BOTTOM = 84, 24, 84, 62  # margins [pixels]
@@ -53,7 +66,9 @@ def draw(chart: Chart) -> NDArray[np.uint8]:
     """The chart, RGB [H, W, 3]."""
     image = np.empty((HEIGHT, WIDTH, 3), np.uint8)
     image[:] = NIGHT
-    every_x, every_y = (np.concatenate([np.asarray(getattr(line, k), float) for line in chart.lines]) for k in ("x", "y"))
+    every_x, every_y = (
+        np.concatenate([np.asarray(getattr(line, k), float) for line in chart.lines]) for k in ("x", "y")
+    )
     (x0, x1), (y0, y1) = (every_x.min(), every_x.max()), (min(every_y.min(), 0.0), every_y.max() * 1.05)
 
     def at(x: float, y: float) -> tuple[int, int]:

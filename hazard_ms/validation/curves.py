@@ -1,4 +1,4 @@
-"""The curves that the page of `hazard-ms validate` shows: what the code gives, and points of exact solutions or publications."""
+"""The curves on the page of `hazard-ms validate`: results of the code, and points of exact or published solutions."""
 
 from __future__ import annotations
 
@@ -8,17 +8,19 @@ from collections.abc import Iterator
 import numpy as np
 import torch
 
-from hazard_ms.hazards import burning, fuels
-from hazard_ms.hazards.blaze import Blaze
-from hazard_ms.validation import blaze_cases, fire_cases, flood_cases, wind_cases
+from hazard_ms.hazards.fire.realistic import burning, fuels
+from hazard_ms.hazards.fire.realistic.blaze import Blaze
+from hazard_ms.validation import fire_cases, flood_cases
 from hazard_ms.validation.charts import Chart, Line
-from hazard_ms.validation.fire_room import room_world
+from hazard_ms.validation.experiments import blaze as blaze_experiments
+from hazard_ms.validation.experiments import fire, flood, wind
+from hazard_ms.validation.experiments.fire_room import room_world
 
 
 def fire_charts() -> Iterator[Chart]:
-    """Those of fire."""
+    """The curves of both fires."""
     apart = sorted(fire_cases.F1)
-    code = Line("shipped preset", apart, [fire_cases.equilibrium(fire_cases.SHIPPED, d) for d in apart])
+    code = Line("shipped preset", apart, [fire.equilibrium(fire.SHIPPED, d) for d in apart])
     table = Line("table of the original (F-1)", apart, [fire_cases.F1[d] for d in apart], points=True)
     yield Chart("fire_equilibrium", "Temperature beside one flame in the end", "distance [m]", "C", (code, table))
     age = torch.arange(0.0, 1200.0, 2.0)
@@ -29,7 +31,7 @@ def fire_charts() -> Iterator[Chart]:
         for n, r in zip(names, rows, strict=True)
     )
     yield Chart("fire_release", "Heat release of furniture", "time since ignition [s]", "kW", tuple(lines))
-    seen = blaze_cases.filling()
+    seen = blaze_experiments.filling()
     guide = Line("FDS Correlation Guide", (10, 20, 30), (0.35, 0.65, 0.93), points=True)
     zone = Line("this code", (0, *seen), (0.0, *seen.values()))
     yield Chart("fire_layer", "Depth of the smoke layer, 410 kW in a hall (N-7)", "time [s]", "m", (zone, guide))
@@ -37,49 +39,68 @@ def fire_charts() -> Iterator[Chart]:
 
 
 def _room() -> Chart:
-    """A living room with a sofa 1 m from a waste basket: height of the smoke, and what a person may bear."""
-    blaze = Blaze(lapse=1.0, every=1)
-    world = room_world([("sofa", (2.5, 2.0, 0.0))], [(2.0, 2.0)], size=(5.0, 4.0), agent=(4.5, 3.5), extent=(0.9, 0.8, 0.8))
+    """A room with a sofa 0.5 m from a burning waste basket: height and temperature of the smoke, and heat release."""
+    blaze = Blaze(time_scale=1.0, every=1)
+    world = room_world(
+        [("sofa", (2.5, 2.0, 0.0))], [(2.0, 2.0)], size=(5.0, 4.0), agent=(4.5, 3.5), extent=(0.9, 0.8, 0.8)
+    )
     state = blaze.state_type.allocate({"E": 1, "B": world.num_bodies, **blaze.sizes(world)}, "cpu")
     blaze.reset(state, world, torch.arange(1))
     seen = []
     for step in range(1200):
         world.chance.tick()
         blaze.advance(state, world, 0.5)
-        seen.append((step / 2, float(state.smoke_height), float(state.smoke_temperature) / 100, float(state.heat_release) / 1000))
+        seen.append(
+            (
+                step / 2,
+                float(state.smoke_height),
+                float(state.smoke_temperature) / 100,
+                float(state.heat_release) / 1000,
+            )
+        )
     t, height, warmth, power = (list(v) for v in zip(*seen, strict=True))
-    lines = Line("smoke height [m]", t, height), Line("smoke temperature [100 C]", t, warmth), Line("heat release [MW]", t, power)
+    lines = (
+        Line("smoke height [m]", t, height),
+        Line("smoke temperature [100 C]", t, warmth),
+        Line("heat release [MW]", t, power),
+    )
     return Chart("fire_room", "A sofa 0.5 m from a burning waste basket, 5 x 4 m, doors closed", "time [s]", "", lines)
 
 
 def flood_charts() -> Iterator[Chart]:
-    """Those of floods."""
-    seen = flood_cases.heaving()
+    """The curves of floods."""
+    seen = flood.heaving()
     t = (np.arange(len(seen[0.5])) * 0.01).tolist()
     lines = tuple(Line(f"s = {s}", t, (100 * z).tolist()) for s, z in seen.items())
-    yield Chart("flood_heave", "Heaving of boxes released 1 cm off their level, in SAPIEN (L-13)", "time [s]", "cm", lines)
+    yield Chart(
+        "flood_heave", "Heaving of boxes released 1 cm off their level, in SAPIEN (L-13)", "time [s]", "cm", lines
+    )
     fine = np.linspace(0.0, 1.0, 101)
     exact = Line("v tanh(g' t / v)", fine.tolist(), [1.3670 * math.tanh(4.905 * x / 1.3670) for x in fine])
-    made = flood_cases.sinking()
+    made = flood.sinking()
     body = Line("SAPIEN", list(made), [v for v, _ in made.values()], points=True)
     yield Chart("flood_sinking", "Sinking of a cube of 2000 kg/m3 (L-15)", "time [s]", "m/s", (exact, body))
     angles = sorted(flood_cases.ARMS)
     beam, upright = (0.2, 0.3, 0.1), (0.0, 1.0, 0.0)
-    code = [1000 * abs(float(flood_cases.wet(beam, upright, a, 0.0).arm[0, 0])) for a in range(0, 27)]
+    code = [1000 * abs(float(flood.wet(beam, upright, a, 0.0).arm[0, 0])) for a in range(0, 27)]
     table = Line("wall-sided formula", angles, [1000 * flood_cases.ARMS[a] for a in angles], points=True)
     yield Chart(
-        "flood_righting", "Righting arm of a beam (L-22)", "angle [degrees]", "mm", (Line("this code", list(range(27)), code), table)
+        "flood_righting",
+        "Righting arm of a beam (L-22)",
+        "angle [degrees]",
+        "mm",
+        (Line("this code", list(range(27)), code), table),
     )
 
 
 def wind_charts() -> Iterator[Chart]:
-    """Those of wind."""
+    """The curves of wind."""
     fine = np.linspace(0.0, 10.0, 101)
     exact = Line("U - U / (1 + k U t)", fine.tolist(), [3.7 - 3.7 / (1 + 0.147 * 3.7 * x) for x in fine])
-    made = wind_cases.carried(wind_cases.LAW)
+    made = wind.carried(wind.LAW)
     body = Line("SAPIEN", list(made), [v for v, _ in made.values()], points=True)
     yield Chart("wind_free", "A free body in a wind of 3.7 m/s (W-1)", "time [s]", "m/s", (exact, body))
-    gusts = 1 + 0.2 * wind_cases.gust_series(5.0)[:1200, :2]
+    gusts = 1 + 0.2 * wind.gust_series(5.0)[:1200, :2]
     t = (np.arange(1200) * 0.1).tolist()
     yield Chart(
         "wind_gusts",
@@ -88,6 +109,3 @@ def wind_charts() -> Iterator[Chart]:
         "u / U",
         tuple(Line(f"street {k}", t, gusts[:, k].tolist()) for k in range(2)),
     )
-
-
-CHARTS = {"fire": fire_charts, "flood": flood_charts, "wind": wind_charts}

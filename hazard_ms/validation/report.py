@@ -2,38 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import cv2
 
-from hazard_ms.checks import one_of
-from hazard_ms.validation import blaze_cases, fire_cases, flood_cases, wind_cases
-from hazard_ms.validation.cases import Case, Result, check
+from hazard_ms.hazards.case import Case
+from hazard_ms.registry import HAZARDS, find, load
 from hazard_ms.validation.charts import Chart, draw
-from hazard_ms.validation.curves import CHARTS
+from hazard_ms.validation.outcome import Outcome, check
 
-CASES: dict[str, tuple[Callable[[], Iterator[Case]], ...]] = {
-    "fire": (fire_cases.cases, blaze_cases.cases),
-    "flood": (flood_cases.cases,),
-    "wind": (wind_cases.cases,),
-}
 PAGE = "validation.md"
 PICTURES = "validation"  # the folder of pictures beside the page
 ABOUT = """\
 # Validation of the physics
 
-Written by `hazard-ms validate -o docs`; do not edit. Expected numbers are exact solutions, tables of the original benchmark's code, or
-publications (NIST FDS Correlation Guide, CFAST, NFPA, ISO 13571, Quintiere and Harkleroad): no number is computed by the code that it
-checks. Motion is that of the real simulator. Cases of unsteady water in several rooms (L-26 to L-29) are not covered: this
-code has no such model. Letters: I integrator, F fire of the original, N and 3.1 realistic fire, L flood, W wind.
+Written by `hazard-ms validate -o docs`; do not edit. Expected numbers are exact solutions, tables of the original
+benchmark's code, or publications (NIST FDS Correlation Guide, CFAST, NFPA, ISO 13571, Quintiere and Harkleroad): no
+number is computed by the code that it checks. Motion is that of the real simulator. Cases of unsteady water in several
+rooms (L-26 to L-29) are not covered: this code has no such model.
+Letters: I integrator, F fire of the original, N and 3.1 realistic fire, L flood, W wind.
 """
 
 
 def chosen(hazard: str | None, quick: bool = False) -> list[tuple[str, Case]]:
-    """The cases of `hazard`, or of all; `quick`: without those that take more than a second or two. With the hazard's name."""
-    names = list(CASES) if hazard is None else [one_of(hazard, CASES, "hazard")]
-    return [(name, case) for name in names for part in CASES[name] for case in part() if not (quick and case.slow)]
+    """The cases of `hazard`, or of every registered one, each with the hazard's name.
+
+    `quick`: without those that take more than a second or two. Raises ValueError for an unknown hazard.
+    """
+    names = list(HAZARDS) if hazard is None else [find(HAZARDS, hazard, "hazard").name]
+    every = ((name, case) for name in names for part in HAZARDS[name].cases for case in load(part)())
+    return [(name, case) for name, case in every if not (quick and case.slow)]
 
 
 def number(value: float) -> str:
@@ -42,13 +41,13 @@ def number(value: float) -> str:
 
 
 def tolerance(case: Case) -> str:
-    """As people read it."""
+    """The tolerance of a case in words."""
     if not case.tolerance:
         return "exact"
     return f"± {case.tolerance:.3g}" if case.absolute else f"± {100 * case.tolerance:.3g} %"
 
 
-def line(result: Result) -> str:
+def line(result: Outcome) -> str:
     """One result as a line of text."""
     case = result.case
     verdict = "pass" if result.passed else "FAIL"
@@ -56,7 +55,7 @@ def line(result: Result) -> str:
     return f"{verdict}  {case.id:10} {case.what:64} {values}"
 
 
-def run(cases: Iterable[Case], say: Callable[[str], None] = print) -> list[Result]:
+def run(cases: Iterable[Case], say: Callable[[str], None] = print) -> list[Outcome]:
     """Check all of `cases`, telling each as it ends."""
     results = []
     for case in cases:
@@ -65,24 +64,32 @@ def run(cases: Iterable[Case], say: Callable[[str], None] = print) -> list[Resul
     return results
 
 
-def page(results: dict[str, list[Result]], charts: dict[str, list[Chart]]) -> str:
+def charts_of(hazard: str) -> list[Chart]:
+    """The curves of `hazard` for the page, if it has any."""
+    make = HAZARDS[hazard].charts
+    return [] if make is None else list(load(make)())
+
+
+def page(results: dict[str, list[Outcome]], charts: dict[str, list[Chart]]) -> str:
     """The page, Markdown."""
     parts = [ABOUT]
     for name, found in results.items():
         parts.append(f"\n## {name.capitalize()}: {sum(r.passed for r in found)} of {len(found)} cases pass\n")
         parts += [f"![{c.title}]({PICTURES}/{c.file}.png)\n" for c in charts[name]]
-        parts.append("| case | what | expected | got | unit | tolerance | |\n| --- | --- | ---: | ---: | --- | ---: | --- |")
+        parts.append(
+            "| case | what | expected | got | unit | tolerance | |\n| --- | --- | ---: | ---: | --- | ---: | --- |"
+        )
         for r in found:
             cells = (r.case.id, r.case.what, number(r.case.expected), number(r.got), r.case.unit, tolerance(r.case))
             parts.append(f"| {' | '.join(cells)} | {'pass' if r.passed else '**FAIL**'} |")
     return "\n".join(parts) + "\n"
 
 
-def write(folder: Path, results: dict[str, list[Result]]) -> Path:
+def write(folder: Path, results: dict[str, list[Outcome]]) -> Path:
     """Write page and pictures into `folder`; returns the page."""
     pictures = folder / PICTURES
     pictures.mkdir(parents=True, exist_ok=True)
-    charts = {name: list(CHARTS[name]()) for name in results}
+    charts = {name: charts_of(name) for name in results}
     for chart in (c for some in charts.values() for c in some):
         cv2.imwrite(str(pictures / f"{chart.file}.png"), cv2.cvtColor(draw(chart), cv2.COLOR_RGB2BGR))
     target = folder / PAGE
@@ -91,10 +98,13 @@ def write(folder: Path, results: dict[str, list[Result]]) -> Path:
 
 
 def validate(hazard: str | None, quick: bool, folder: Path | None) -> int:
-    """Run, print, write; 1 when a case fails, else 0."""
+    """Run the cases of `hazard`, or of all, print them, and write the page into `folder` if one is given.
+
+    Returns 1 if a case fails, else 0. Raises ValueError for an unknown hazard, and for a file as the folder.
+    """
     if folder is not None and folder.exists() and not folder.is_dir():
-        raise ValueError(f"the output is {str(folder)!r}, a file; a folder is allowed")
-    results: dict[str, list[Result]] = {}
+        raise ValueError(f"output must be a folder, got the file {str(folder)!r}")
+    results: dict[str, list[Outcome]] = {}
     for name, case in chosen(hazard, quick):
         results.setdefault(name, []).extend(run([case]))
     every = [r for found in results.values() for r in found]

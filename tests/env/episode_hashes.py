@@ -20,7 +20,7 @@ import numpy as np
 import torch
 
 import hazard_ms  # noqa: F401 registers the environments
-from tests.episodes import actions
+from tests.worlds.episodes import actions
 
 RECORD = Path(__file__).with_name("episode_hashes.json")
 TASKS = ("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1")

@@ -1,0 +1,76 @@
+"""Runs the conversion of a model in a process of its own, and draws the result."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from hazard_ms.assets.intake.model import Model
+from hazard_ms.assets.rows import Asset
+from hazard_ms.spec.catalogue import CATEGORIES
+
+TIME = 300.0  # of a conversion, at most [s]; 200,000 triangles take 50 [ours]
+
+
+def convert(model: Model, made: Path, size: float | None) -> dict[str, Any]:
+    """Convert a model into the folder `made`, in a process of its own, and return what was measured on it.
+
+    Raises ValueError with its message, or if it crashed or took too long.
+    """
+    order = {**dataclasses.asdict(model), "size": size, "kind": CATEGORIES[model.category].kind}
+    package = str(Path(__file__).resolve().parents[3])
+    path = os.pathsep.join(p for p in (package, os.environ.get("PYTHONPATH", "")) if p)
+    what = Path(model.parts[0].file).name
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", "hazard_ms.assets.intake.worker"],
+            input=json.dumps(order),
+            capture_output=True,
+            text=True,
+            cwd=made,
+            env={**os.environ, "PYTHONPATH": path},
+            timeout=TIME,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        raise ValueError(f"{what} must be converted within {TIME:.0f} s, got no result: simplify it first") from None
+    facts = made / "facts.json"
+    if done.returncode != 0 or not facts.is_file():
+        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+        raise ValueError(f"{what} could not be converted: the worker ended with {done.returncode}: {last:.300}")
+    found: dict[str, Any] = json.loads(facts.read_text())
+    facts.unlink()
+    if "refused" in found:
+        raise ValueError(f"{what}: {found['refused']}" if what not in found["refused"] else found["refused"])
+    return found
+
+
+def preview(row: dict[str, Any], made: Path) -> None:
+    """Draw the model of a row beside its files in the folder `made`, if this machine can draw."""
+    from hazard_ms.machine.render_backend import backend
+
+    if backend() == "none":
+        return
+    import cv2
+
+    from hazard_ms.assets.contact_sheet import Studio, captioned
+
+    shown = Asset(
+        row["id"],
+        row["kind"],
+        row["category"],
+        str(made / "model.glb"),
+        row["licence"],
+        row["author"],
+        row["source"],
+        row["changes"],
+        extent=tuple(row["extent"]),
+        mass=row["mass"],
+        faces=row["faces"],
+    )
+    cv2.imwrite(str(made / "preview.png"), captioned(Studio().picture(shown), shown)[..., ::-1])

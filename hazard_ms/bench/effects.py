@@ -1,0 +1,80 @@
+"""Measures what effects cost in a picture, as ratios to a picture without, for `hazard-ms bench --effects`.
+
+Full and fast have shader packs of their own: full is compared with SAPIEN's default pack, and so is fast, which
+replaces it where pictures must be cheap. Compare the ratios: times belong to the machine, and to what else it does.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from hazard_ms.checks import whole
+from hazard_ms.evaluation.options import EnvOptions
+
+MODES = ("off", "fast", "full")  # the first is what the others are compared with
+SIDE = 256  # of the picture [pixels]
+ADVANCED = 450  # the frame of the episode at which the hazard is looked at
+
+
+def costs(env_id: str, rounds: int, seed: int) -> dict[str, float]:
+    """Median time of a picture with rgb, depth and segmentation in each mode [s].
+
+    The modes are taken in turn `rounds` times. Raises ValueError for an unknown task and for too few rounds.
+    """
+    EnvOptions(env_id).check()
+    whole(rounds, 3, 10**5, "rounds")
+    made = {mode: _advanced(env_id, mode, seed) for mode in MODES}
+    spans: dict[str, list[float]] = {mode: [] for mode in MODES}
+    for _ in range(rounds):
+        for mode, env in made.items():
+            spans[mode].append(_picture(env.unwrapped))
+    for env in made.values():
+        env.close()
+    return {mode: float(np.median(times)) for mode, times in spans.items()}
+
+
+def report(env_id: str, rounds: int, seed: int) -> str:
+    """The table of `costs`."""
+    found = costs(env_id, rounds, seed)
+    lines = [f"{env_id}, {SIDE} pixels, rgb+depth+segmentation, frame {ADVANCED}, median of {rounds} pictures in turn"]
+    lines += [
+        f"  {mode:5s} {1000 * span:8.2f} ms  {span / found[MODES[0]]:5.2f} x {MODES[0]}" for mode, span in found.items()
+    ]
+    return "\n".join(lines)
+
+
+def _advanced(env_id: str, mode: str, seed: int) -> gym.Env:
+    """An environment whose hazard has gone on for ADVANCED frames."""
+    size = {"width": SIDE, "height": SIDE}
+    env: Any = gym.make(env_id, obs_mode="rgb+depth+segmentation", effects=mode, sensor_configs=size)
+    env.reset(seed=seed)
+    base = env.unwrapped
+    go_on(base, ADVANCED)
+    for _ in range(2):  # shaders are compiled at the first picture
+        _picture(base)
+    return env
+
+
+def go_on(base: Any, frames: int) -> None:
+    """Let the hazards of a HazardEnv go on for so many frames, while all things stay where they are.
+
+    That is quick, and the same on any machine.
+    """
+    for _ in range(frames):
+        base.world.chance.tick()
+        for hazard in base.task.hazards:
+            hazard.advance(base.episode.states[hazard.name], base.world, 1.0 / base.control_freq)
+
+
+def _picture(base: Any) -> float:
+    """Time for which a picture is made and fetched [s]."""
+    start = time.perf_counter()
+    base.observer.show()
+    base.scene.update_render(update_sensors=True, update_human_render_cameras=False)
+    base.capture_sensor_data()
+    base.get_sensor_images()
+    return time.perf_counter() - start

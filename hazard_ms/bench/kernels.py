@@ -1,0 +1,131 @@
+"""Measures what the kernels of hazards cost, in milliseconds of one thread.
+
+The sizes are those of docs/physics.md 4: 1,024 environments of 64 bodies.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial
+
+import torch
+
+from hazard_ms.hazards import presets
+from hazard_ms.hazards.flood.buoyancy import BALL
+from hazard_ms.hazards.presets import PRESETS
+from hazard_ms.simulation.world import World
+from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition, Room, SceneSpec
+from hazard_ms.validation.experiments import probes
+
+ENVIRONMENTS, BODIES = 1024, 64
+REPEATS = 10  # calls, of which the fastest counts
+STEP = 0.01  # [s]
+
+Kernel = Callable[[], object]
+
+
+def law_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
+    """Single laws, on bodies of all shapes in all attitudes near the surface."""
+    count = environments * bodies
+    chance = torch.Generator().manual_seed(0)
+
+    def random(*more: int) -> torch.Tensor:
+        return torch.rand(count, *more, generator=chance)
+
+    rotation = torch.nn.functional.normalize(random(4) - 0.5, dim=-1)
+    extent, velocity, mass = 0.1 + 0.2 * random(3), random(3) - 0.5, 0.1 + random()
+    kind, height, slope = (3 * random()).long(), 0.2 * (random() - 0.5), 0.05 * random(2)
+    return {
+        "flood: 3x3 columns": lambda: probes.immersion(height, slope, rotation, extent, kind),
+        "flood, wind: drag per face": lambda: probes.drag(velocity, rotation, extent, mass, kind == BALL, STEP),
+        "flood, wind: drag of turning": lambda: probes.spin_drag(velocity, rotation, extent, mass, 1000.0, STEP),
+    }
+
+
+def flood_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
+    """A whole step of each preset, and a frame, on bodies in all attitudes at the surface of a room of two parts."""
+    room = Room(
+        (8.0, 8.0), partitions=(Partition("wall", "x", 4.0),), openings=(Opening("doorway", "wall", 4.0, 1.0, 2.0),)
+    )
+    things = tuple(Body(f"box_{k}", "box", "", (0.1 * k, 1.0 + 0.1 * k, 0.0)) for k in range(bodies))
+    spec = SceneSpec("bench/room", room, (), things, ("box",), (), AgentStart((1.0, 1.0)))
+    world = World.of(
+        (spec,) * environments, [[(0.3, 0.2, 0.25)] * bodies] * environments, [[1.0] * bodies] * environments
+    )
+    chance = torch.Generator().manual_seed(0)
+    world.rotation[:] = torch.nn.functional.normalize(torch.rand(world.rotation.shape, generator=chance) - 0.5, dim=-1)
+    world.velocity[:] = torch.rand(world.velocity.shape, generator=chance) - 0.5
+    world.chance.frame[:] = 600
+    made: dict[str, Kernel] = {}
+    for name in PRESETS:
+        hazard = presets.flood(name)
+        state = hazard.state_type.allocate({"E": environments, "B": bodies, **hazard.sizes(world)}, "cpu")
+        hazard.reset(state, world, torch.arange(environments))
+        state.time[:] = 20.0
+        hazard.advance(state, world, STEP)
+        made[f"flood: force, {name}"] = partial(hazard.force, state, world, STEP)
+        made[f"flood: a frame, {name}"] = partial(hazard.advance, state, world, STEP)
+    return made
+
+
+def wind_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
+    """A whole step of each preset, and a frame, on bodies in all attitudes in a street with three carts and a hedge."""
+    carts = tuple(Fixture(f"cart_{k}", "cart", "", (4.0 * k + 2.0, 8.0, 0.0)) for k in range(3))
+    hedge = Fixture("hedge_1", "hedge", "", (8.0, 4.0, 0.0))
+    moving = tuple(Body(f"bag_{k}", "bag", "", (0.3 * k, 6.0, 0.0)) for k in range(max(1, bodies - 4)))
+    street = Room((16.0, 16.0), open_air=True, beyond=4.0)
+    spec = SceneSpec(
+        "bench/street", street, (*carts, hedge), moving, ("bag",), (), AgentStart((1.0, 1.0)), wind=(3.0, 2.0)
+    )
+    extents = [(0.3, 0.2, 0.25)] * len(moving) + [(0.54, 0.94, 1.03)] * 3 + [(5.0, 0.6, 1.4)]
+    world = World.of((spec,) * environments, [extents] * environments, [[1.0] * len(extents)] * environments)
+    chance = torch.Generator().manual_seed(0)
+    world.rotation[:] = torch.nn.functional.normalize(torch.rand(world.rotation.shape, generator=chance) - 0.5, dim=-1)
+    world.velocity[:] = torch.rand(world.velocity.shape, generator=chance) - 0.5
+    made: dict[str, Kernel] = {}
+    for name in PRESETS:
+        hazard = presets.wind(name)
+        state = hazard.state_type.allocate({"E": environments, "B": len(extents), **hazard.sizes(world)}, "cpu")
+        hazard.reset(state, world, torch.arange(environments))
+        world.chance.tick()
+        hazard.advance(state, world, STEP)
+        made[f"wind: force, {name}"] = partial(hazard.force, state, world, STEP)
+        made[f"wind: a frame, {name}"] = partial(hazard.advance, state, world, STEP)
+    return made
+
+
+KERNELS: tuple[Callable[[int, int], dict[str, Kernel]], ...] = (law_kernels, flood_kernels, wind_kernels)
+
+
+def milliseconds(kernel: Kernel, repeats: int = REPEATS) -> float:
+    """The least time of one call in this thread, after a first one [ms].
+
+    Other work on the machine is left out as far as possible.
+    """
+    kernel()
+    spans = []
+    for _ in range(repeats):
+        start = time.thread_time()
+        kernel()
+        spans.append(time.thread_time() - start)
+    return 1e3 * min(spans)
+
+
+def report(environments: int = ENVIRONMENTS, bodies: int = BODIES, repeats: int = REPEATS) -> str:
+    """A table of all kernels, one thread each. Raises ValueError for numbers that are not positive."""
+    for name, value in (("environments", environments), ("bodies", bodies), ("repeats", repeats)):
+        if not value > 0:
+            raise ValueError(f"{name} must be positive, got {value}")
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        found = {
+            name: milliseconds(kernel, repeats)
+            for make in KERNELS
+            for name, kernel in make(environments, bodies).items()
+        }
+    finally:
+        torch.set_num_threads(threads)
+    lines = [f"{environments} environments of {bodies} bodies, one thread, best of {repeats} calls"]
+    return "\n".join([*lines, *(f"  {name:34s} {ms:8.2f} ms" for name, ms in found.items())])

@@ -1,0 +1,110 @@
+"""The command `hazard-ms`.
+
+`hazard-ms --version` prints the version. Each sub-command imports what it needs when it is called, so that help is
+quick.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import tyro
+
+from hazard_ms import __version__
+from hazard_ms.cli.assets import AssetCommand
+from hazard_ms.cli.bench import bench
+from hazard_ms.cli.describe import describe
+from hazard_ms.cli.episodes import evaluate, play
+from hazard_ms.cli.pictures import gallery, render
+from hazard_ms.cli.scenes import SceneCommand
+from hazard_ms.cli.validate import validate
+
+DESCRIPTION = (
+    "Rescue tasks in fire, flood and wind. `hazard-ms COMMAND --help` describes a command, --version the version."
+)
+
+
+def doctor(json: bool = False, draw: bool = True) -> int:
+    """Find out why hazard_ms does not start or draw here; name one cause and one command.
+
+    Ends with 1 if something is at fault.
+
+    Args:
+        json: Print everything as JSON.
+        draw: Draw a picture (seconds) instead of only starting the renderer.
+    """
+    from hazard_ms.machine.doctor import collect, report
+
+    return report(collect(draw=draw), as_json=json)
+
+
+def version() -> int:
+    """Print the versions of hazard_ms and of what results depend on."""
+    import platform
+
+    from hazard_ms.machine.doctor import installed
+
+    print(f"hazard_ms {__version__}")
+    print(f"python {platform.python_version()}")
+    for name, number in sorted(installed().items()):
+        print(f"{name} {number}")
+    return 0
+
+
+def scenes(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[SceneCommand]]) -> int:
+    """Scenes: list, make, show, check, import."""
+    return int(done)
+
+
+def assets(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[AssetCommand]]) -> int:
+    """Models: add your own, list, remove, draw them all."""
+    return int(done)
+
+
+COMMANDS: dict[str, Callable[..., Any]] = {
+    "doctor": doctor,
+    "version": version,
+    "play": play,
+    "render": render,
+    "gallery": gallery,
+    "evaluate": evaluate,
+    "describe": describe,
+    "bench": bench,
+    "validate": validate,
+    "scenes": scenes,
+    "assets": assets,
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one sub-command. Returns its exit code: 2 for input that is not valid, which a line on stderr describes."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # frames of help texts where the locale knows ASCII only
+    try:
+        code = _run(words)
+        sys.stdout.flush()
+    except BrokenPipeError:  # who reads the output has read enough, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    return code
+
+
+def _run(words: list[str]) -> int:
+    if words == ["--version"]:
+        print(f"hazard_ms {__version__}")
+        return 0
+    try:
+        done = tyro.extras.subcommand_cli_from_dict(COMMANDS, prog="hazard-ms", description=DESCRIPTION, args=words)
+    except ValueError as error:  # its text says all: no trace of where it was noticed
+        print(f"hazard-ms: {error}", file=sys.stderr)
+        return 2
+    return int(done or 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,111 @@
+"""The part of the environment that builds scenes, robot and senses, and lets frames pass."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import torch
+from mani_skill.envs.sapien_env import BaseEnv
+from mani_skill.sensors.camera import CameraConfig
+from mani_skill.utils.structs.types import SimConfig
+from torch import Tensor
+
+from hazard_ms.episode.episode import Episode
+from hazard_ms.episode.grasp import Hand
+from hazard_ms.episode.situation import Situation
+from hazard_ms.hazards.presets import FREQUENCIES
+from hazard_ms.scenes.choice import SceneChoice
+from hazard_ms.sensing.display import Display
+from hazard_ms.sensing.labels import labels_of
+from hazard_ms.sensing.observations import Observer
+from hazard_ms.simulation import building
+from hazard_ms.simulation.lighting import Lighting
+from hazard_ms.simulation.viewpoint import corner_view
+from hazard_ms.simulation.world import World
+from hazard_ms.spec import SceneSpec, Task
+
+SPACING = 60.0  # between the scenes of a batch: nothing reaches a neighbour [m] [ours]
+
+
+class BuiltEnv(BaseEnv):
+    """Builds scenes, robot and senses in the order in which ManiSkill asks for them, and lets a frame pass."""
+
+    task: Task
+    choice: SceneChoice
+    physics: str
+    affects_agent: bool
+    effects_mode: str
+    lighting: str
+    specs: tuple[SceneSpec, ...] = ()
+    world: World
+    episode: Episode
+    situation: Situation
+    observer: Observer
+
+    @property
+    def _default_sim_config(self) -> SimConfig:
+        control, physics = FREQUENCIES[self.physics]
+        return SimConfig(sim_freq=physics, control_freq=control, spacing=SPACING)
+
+    @property
+    def _default_human_render_camera_configs(self) -> CameraConfig:
+        """Third person: from the corner of the room that is farthest from where the agent starts."""
+        spec = self.specs[0]
+        return CameraConfig("render_camera", corner_view(spec), 768, 512, fov=1.15, near=0.05, far=60.0)
+
+    def _load_agent(self, options: dict[str, Any]) -> None:
+        names = self.choice.names(options.get("scene"), self._episode_seed)
+        self.specs = tuple(self.task.build(name) for name in names)
+        super()._load_agent(options, building.pose_of((0.0, 0.0, 0.0), 0.0))
+
+    def _load_scene(self, options: dict[str, Any]) -> None:
+        self.lights: Lighting | None = None  # where nothing renders, nothing shines
+        self.actors = building.build_scenes(self.scene, self.specs)
+        self.bags = building.build_bags(self.scene, self.num_envs)
+        self.world = building.make_world(self.specs, self.device)
+        self.world.agent_build = self.agent.build
+        self.episode = Episode(self.world, self.task.hazards, self.task.safe_place)
+        self.situation = Situation(self.episode, self.agent, self.affects_agent)
+
+    def _load_lighting(self, options: dict[str, Any]) -> None:
+        self.lights = Lighting(self.scene, self.specs, self.lighting)
+
+    def _after_reconfigure(self, options: dict[str, Any]) -> None:
+        self.world.handles = building.connect(self.scene, self.specs, self.actors, self.device)
+        labels = labels_of(self.scene, self.actors, self.agent.robot, self.bags)
+        cameras = (self._sensors, self._human_render_cameras)
+        display = Display(self.situation, self.scene, self.bags, self.lights, cameras, self.effects_mode)
+        self.observer = Observer(self.situation, self.task.observations, display, self._sensors, labels)
+
+    def _initialize_episode(self, env_idx: Tensor, options: dict[str, Any]) -> None:
+        seeds = torch.as_tensor(np.asarray(self._episode_seed), device=self.device)
+        self.episode.begin(env_idx, seeds[env_idx])
+        starts = [self.specs[e].agent_start for e in env_idx.tolist()]
+        self.agent.place(env_idx, torch.tensor([s.position for s in starts]), torch.tensor([s.heading for s in starts]))
+        self.episode.see(self.agent)
+        self.episode.begin_hazards(env_idx)
+
+    def _before_control_step(self) -> None:
+        if self.affects_agent:
+            self.agent.carry(self.episode.slowed)
+            self.agent.keep_out(self.episode.forbidden)
+        if self.affects_agent and self.gpu_sim_enabled:
+            self.scene.px.gpu_apply_articulation_target_velocity()  # ManiSkill has sent the velocities already
+
+    def _before_simulation_step(self) -> None:
+        self.episode.push(self.sim_timestep)
+
+    def _after_control_step(self) -> None:
+        if self.gpu_sim_enabled:
+            self.scene._gpu_fetch_all()  # ManiSkill does it only after this
+        self.world.read()
+        self.episode.see(self.agent)
+        self.episode.watch(self.agent.robot.get_qpos())
+        self.episode.advance(self.control_timestep)
+        self.episode.use_hand(self.agent.gripper_pose(), self.agent.grip_closed(), self.agent.bag_position())
+
+    @property
+    def hand(self) -> Hand:
+        """The hand of each agent: whether and which thing it holds."""
+        return self.episode.hand

@@ -1,0 +1,246 @@
+"""The environment as users meet it: its keywords, a step, rewards, observations, states."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import torch
+from gymnasium.envs.registration import EnvSpec
+from mani_skill.utils.common import to_numpy
+from torch import Tensor
+
+from hazard_ms import checks
+from hazard_ms.env import keywords
+from hazard_ms.env.built import BuiltEnv
+from hazard_ms.env.spaces import bounded
+from hazard_ms.episode import rewards, snapshot
+from hazard_ms.hazards.base import none_set
+from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
+from hazard_ms.registry.announce import importable
+from hazard_ms.scenes.choice import SceneChoice, SceneTurns
+from hazard_ms.scenes.files import playing
+from hazard_ms.sensing.modes import finite
+from hazard_ms.sensing.observation_table import ObservationTable
+from hazard_ms.simulation.lighting import LIGHTINGS
+from hazard_ms.tasks import task_of
+
+EFFECTS = ("full", "fast", "off")
+
+
+class HazardEnv(BuiltEnv):
+    """A ManiSkill environment whose world changes by itself.
+
+    One step (a frame):
+        robot.set_action, kept out of what would destroy it
+        each physics step: world.read -> sum over hazards of hazard.force -> world.push (once) -> physics
+        then: world.read -> guard -> chance.tick -> each hazard.advance in order -> damage -> hand -> observation,
+            reward, info
+    """
+
+    SUPPORTED_REWARD_MODES = keywords.REWARD_MODES
+    SUPPORTED_RENDER_MODES = keywords.RENDER_MODES
+    metadata = {"render_modes": [*keywords.RENDER_MODES], "render_fps": 30}  # noqa: RUF012 gymnasium's name and type
+
+    _spec: EnvSpec | None = None
+
+    def __init__(
+        self,
+        *,
+        task: str = "HazardFire-v1",
+        split: str = "train",
+        scenes: Any = None,
+        physics: str = "paper",
+        hazards: Sequence[str] | None = None,
+        affects_agent: bool = False,
+        robot_uids: Any = "fetch",
+        deterministic: bool = True,
+        scene_every: int = 1,
+        effects: str = "full",
+        lighting: str = "day",
+        **maniskill_keywords: Any,
+    ) -> None:
+        """Every keyword of ManiSkill's BaseEnv works, and these.
+
+        Args:
+            task: Name of the task; gym.make fills it in.
+            split: Which scenes the seeds choose from.
+            scenes: JSON file of a scene, folder of them, or list of both: the seeds choose from these instead.
+            physics: Preset of the hazards.
+            hazards: Of HazardCompound-v1: some of the registered hazards.
+            affects_agent: Whether the hazards act on the robot.
+            robot_uids: The rescuer, by our name of it or by ManiSkill's; also a tuple of one.
+            deterministic: Rebuild the scene for every episode, so that a seed gives the same bits (about 1 s a reset).
+            scene_every: With `deterministic=False`, every so many resets without a seed draw a new scene; 0: none does.
+                What they draw follows from the last seed, so that a training run sees the same scenes again.
+            effects: How hazards look: full, fast or off. Never changes physics or labels.
+            lighting: day, evening, night, failing (lamps go out during the episode), random (by the seed). Never
+                changes physics or labels.
+            **maniskill_keywords: As in ManiSkill, but for these. num_envs: more than one needs a GPU. obs_mode: state
+                modes need no renderer. render_backend: auto (the default) picks a GPU, else the CPU, else none.
+                reconfiguration_freq: by default as `deterministic` and `scene_every` say, which it replaces.
+
+        Raises:
+            ValueError: For any name or number that is not allowed.
+        """
+        keywords.check_names(maniskill_keywords, HazardEnv.__init__)
+        self.physics = checks.one_of(physics, PRESETS, "physics")
+        self.task = playing(task_of(task, self.physics, hazards), scenes)
+        self._most_frames = self.task.max_frames
+        self.choice = SceneChoice(self.task, split)
+        self.affects_agent = checks.flag(affects_agent, "affects_agent")
+        self.deterministic = checks.flag(deterministic, "deterministic")
+        self.effects_mode = checks.one_of(effects, EFFECTS, "effects")
+        self.lighting = checks.one_of(lighting, LIGHTINGS, "lighting")
+        often = checks.whole(scene_every, 0, 2**31, "scene_every")
+        chosen = self.deterministic or maniskill_keywords.get("reconfiguration_freq") is not None
+        self.scene_turns = SceneTurns(0 if chosen else often)
+        given = keywords.for_maniskill(maniskill_keywords, robot_uids, self.effects_mode, self.deterministic)
+        self._draws = given["render_backend"] not in ("none", None)
+        self.metadata = {"render_modes": keywords.modes_offered(self._draws), "render_fps": FREQUENCIES[physics][0]}
+        super().__init__(**given)
+
+    @property
+    def spec(self) -> EnvSpec | None:
+        """The spec with which gymnasium made this; its id names our package, so that a tool can make it again."""
+        return self._spec
+
+    @spec.setter
+    def spec(self, spec: EnvSpec | None) -> None:
+        self._spec = spec if spec is None else importable(spec)
+
+    # ------------------------------------------------------------------ episode
+
+    def reset(self, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Start an episode.
+
+        `seed`: 0 to 2**32 - 1, or one per environment; `options`: {"scene": name or names, "env_idx": ...}.
+
+        Raises ValueError for seeds and options that are not allowed.
+        """
+        seed = checks.seeds(seed, self.num_envs)
+        options = checks.options(options, self.num_envs)
+        if "env_idx" in options:
+            options["env_idx"] = options["env_idx"].to(self.device)
+        whole = len(options.get("env_idx", range(self.num_envs))) == self.num_envs
+        if whole and self.scene_turns.next(seed is not None):
+            options["reconfigure"] = True
+        if "scene" in options:
+            self.choice.names(options["scene"], [0] * self.num_envs)
+            options["reconfigure"] = True
+        elif seed is not None and "env_idx" not in options and self._other_scenes(seed):
+            options["reconfigure"] = True
+        if seed is not None:
+            self._np_random = np.random.default_rng(seed)
+            self._np_random_seed = seed if isinstance(seed, int) else seed[0]
+        return super().reset(seed=seed, options=options)
+
+    def _other_scenes(self, seed: Any) -> bool:
+        """Whether these seeds choose other scenes than those that are built."""
+        self._set_main_rng(seed)
+        chosen = self.choice.names(None, np.resize(self._main_seed, self.num_envs))
+        return chosen != [s.name for s in self.specs]
+
+    def step(self, action: Any) -> tuple[Any, Tensor, Tensor, Tensor, dict[str, Any]]:
+        """Let one frame pass.
+
+        Raises ValueError for an action of a wrong type, shape or number; the episode is left unchanged.
+        """
+        action = checks.action(
+            action, self._orig_single_action_space, self.num_envs, self.agent.supported_control_modes
+        )
+        obs, reward, terminated, _, info = super().step(action)
+        if not none_set(self.episode.sim_error):
+            obs = finite(obs)
+        return (
+            obs,
+            torch.where(self.episode.sim_error, 0.0, reward),
+            terminated & ~self.episode.sim_error,
+            self.episode.sim_error.clone(),
+            info,
+        )
+
+    def advance(self, action: Any) -> dict[str, Any]:
+        """One frame like `step`, without observation and reward: what skills use between decisions. Returns info."""
+        action = checks.action(
+            action, self._orig_single_action_space, self.num_envs, self.agent.supported_control_modes
+        )
+        self._step_action(action)
+        self._elapsed_steps += 1
+        return self.get_info()
+
+    # ------------------------------------------------------------------ what the user gets
+
+    @property
+    def observation_table(self) -> ObservationTable:
+        """The meaning of each number of observations, and its range."""
+        levels = {hazard.name: hazard.level for hazard in self.task.hazards}
+        joints = self.agent.robot.active_joints
+        return ObservationTable(joints, self.task.observations, levels, self._most_frames)
+
+    def allow_frames(self, frames: int) -> None:
+        """Let episodes have up to `frames`, if that is more than the task has: a bound of observations."""
+        if frames > self._most_frames:
+            self._most_frames = frames
+            self.update_obs_space(self._init_raw_obs)
+
+    @cached_property
+    def single_observation_space(self) -> gym.Space[Any]:
+        """The space of one environment's observations, with true bounds."""
+        state = to_numpy(self._get_obs_state_dict({}))
+        return bounded(to_numpy(self._init_raw_obs), self.observation_table, state)
+
+    def evaluate(self) -> dict[str, Tensor]:
+        return rewards.evaluate(self.task.goal, self.situation)
+
+    def _get_obs_extra(self, info: dict[str, Any]) -> dict[str, Tensor]:
+        return self.observer.extra(hidden=self.obs_mode_struct.use_state)
+
+    def _get_obs_with_sensor_data(self, info: dict[str, Any], apply_texture_transforms: bool = True) -> dict[str, Any]:
+        self.observer.show()
+        obs = super()._get_obs_with_sensor_data(info, apply_texture_transforms)
+        for seen in obs["sensor_data"].values():
+            if "segmentation" in seen:
+                # as ManiSkill's own, whatever the shaders give
+                seen["segmentation"] = seen["segmentation"].to(torch.int16)
+        return self.observer.add_hazard_image(obs, in_extra=self.obs_mode == "pointcloud")
+
+    def render(self) -> Any:
+        """A picture of the present frame, as `render_mode` says. Raises ValueError where nothing renders."""
+        if not self._draws:
+            raise ValueError("render_backend must be auto, gpu or cpu for render(), got none: see `hazard-ms doctor`")
+        self.observer.show()
+        return super().render()
+
+    def label_table(self, env: int = 0) -> dict[int, tuple[str, str]]:
+        """Segmentation ids of scene `env`: id -> (name, category). They may differ from scene to scene."""
+        return self.observer.label_table(env)
+
+    def compute_dense_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:
+        return self.task.goal.dense(self.situation)
+
+    def compute_normalized_dense_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:
+        return self.task.goal.dense(self.situation) / self.task.goal.largest
+
+    def compute_sparse_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:
+        return self.task.goal.sparse(self.situation)
+
+    # ------------------------------------------------------------------ save and restore
+
+    def get_state_dict(self) -> dict[str, Any]:
+        """ManiSkill's simulation and controllers, and under "hazard_ms" hazards, damage, rescue, hand and chance."""
+        return {**super().get_state_dict(), "hazard_ms": snapshot.save(self.episode)}
+
+    def set_state_dict(self, state: dict[str, Any], env_idx: Tensor | None = None) -> None:
+        """Restore what `get_state_dict` gave: hazards, damage, chance exactly; bodies within docs/reliability.md M4."""
+        rows = torch.arange(self.num_envs, device=self.device) if env_idx is None else env_idx
+        plain = super().set_state_dict
+        snapshot.put_back(self.episode, self.agent, state, rows, lambda rest: plain(rest, env_idx))
+        self._elapsed_steps[rows] = self.world.frame[rows].to(self._elapsed_steps)
+
+    def set_state(self, state: Any, env_idx: Tensor | None = None) -> None:
+        """Restore a flat state, [E, D], as `get_state` gave it."""
+        self.set_state_dict(snapshot.unflatten(torch.as_tensor(state), self.get_state_dict()), env_idx)

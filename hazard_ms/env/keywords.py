@@ -1,0 +1,70 @@
+"""Checks the keywords that go on to ManiSkill, and adds to them what every hazard environment needs."""
+
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from mani_skill.envs.sapien_env import BaseEnv
+
+from hazard_ms import checks
+from hazard_ms.effects.raytracing.sensor import with_our_shaders
+from hazard_ms.effects.shaders.pack import shader_config
+from hazard_ms.machine.render_backend import backend
+from hazard_ms.robots import robot_uid
+from hazard_ms.sensing.modes import check_obs_mode, check_renderer
+
+KNOWN = (*inspect.signature(BaseEnv.__init__).parameters,)[1:]
+RENDER_MODES = ("human", "rgb_array", "sensors", "all")
+REWARD_MODES = ("normalized_dense", "dense", "sparse", "none")
+CAMERAS = ("sensor_configs", "human_render_camera_configs")
+MOST_ENVS = 2**20  # environments of a batch: any larger number is a slip of the pen [-] [ours]
+NEVER = 0  # reconfiguration_freq of a scene that stays
+
+
+def check_names(given: Iterable[str], ours: Callable[..., None]) -> None:
+    """Raise ValueError for keywords that neither `ours`, a constructor, nor ManiSkill's BaseEnv takes."""
+    parameters = inspect.signature(ours).parameters.values()
+    known = {*KNOWN, *(p.name for p in parameters if p.kind is p.KEYWORD_ONLY)} - {"task"}
+    for name in given:
+        checks.one_of(name, sorted(known), "a keyword of gym.make", shown=len(known))
+
+
+def modes_offered(draws: bool) -> list[str]:
+    """The render modes that are possible here: none where nothing `draws`, and a window only on a display."""
+    return [mode for mode in RENDER_MODES if draws and (mode != "human" or os.environ.get("DISPLAY"))]
+
+
+def for_maniskill(given: dict[str, Any], robot: Any, effects: str, deterministic: bool) -> dict[str, Any]:
+    """Keywords of ManiSkill's BaseEnv, from those that were `given`, complete and checked.
+
+    Raises ValueError for names and numbers that are not allowed.
+    """
+    num_envs = checks.whole(given.get("num_envs", 1), 1, MOST_ENVS, "num_envs")
+    sim, render = given.get("sim_backend", "auto"), given.get("render_backend", "auto")
+    checks.backends(num_envs, sim, render)
+    checks.one_of(given.get("reward_mode") or "none", REWARD_MODES, "reward_mode")
+    checks.render_mode(given.get("render_mode"), RENDER_MODES, os.environ.get("DISPLAY"))
+    checks.cameras(given.get("sensor_configs"))
+    if given.get("obs_mode") is not None:
+        check_obs_mode(given["obs_mode"])
+    chosen = backend() if render == "auto" else render
+    check_renderer(given.get("obs_mode"), chosen)
+    pack = {} if chosen in ("none", None) else {"shader_pack": shader_config(effects)}
+    cameras = {name: with_our_shaders({**pack, **(given.get(name) or {})}, num_envs, sim) for name in CAMERAS}
+    often = given.get("reconfiguration_freq")
+    if often is None:  # only an environment that is rebuilt for every episode is bit-exact (measured)
+        often = 1 if deterministic and num_envs == 1 else NEVER
+    return {
+        **given,
+        **cameras,
+        "num_envs": num_envs,
+        "sim_backend": sim,
+        "render_backend": chosen,
+        "sim_config": given.get("sim_config") or {},
+        "robot_uids": robot_uid(robot),
+        "reconfiguration_freq": checks.whole(often, 0, 2**31, "reconfiguration_freq"),
+        "enhanced_determinism": True,
+    }

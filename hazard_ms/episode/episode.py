@@ -1,0 +1,173 @@
+"""Course of the episodes of E environments: hazards, damage, the hand, rescues and the watchdog.
+
+It needs no simulator and no pictures. The environment calls it in the order that the environment's docstring states;
+a test without a simulator can do the same.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from hazard_ms.episode import grasp
+from hazard_ms.episode.records import Damage, Rescue
+from hazard_ms.episode.safe_places import BAG, Drop
+from hazard_ms.episode.watchdog import FlightRecorder, Limits
+from hazard_ms.hazards.base import Hazard, Push, State, none_set
+from hazard_ms.robots.robot import Robot
+from hazard_ms.simulation.world import World
+from hazard_ms.spec import SafePlace
+
+
+class Episode:
+    """All records of running episodes. Each is declared once, and cleared, saved and restored by its declaration."""
+
+    def __init__(self, world: World, hazards: tuple[Hazard, ...], safe_place: SafePlace = BAG) -> None:
+        self.world, self.hazards = world, hazards
+        self.safe_place, self._safe_now = safe_place, safe_place.rule(world)
+        sizes = {"E": world.num_envs, "B": world.num_bodies}
+        self.states: dict[str, Any] = {
+            h.name: h.state_type.allocate(sizes | h.sizes(world), world.device) for h in hazards
+        }
+        self.damage = Damage.allocate(sizes, world.device)
+        self.rescue = Rescue.allocate(sizes, world.device)
+        self.hand = grasp.Hand.allocate(sizes, world.device)
+        self.sim_error = torch.zeros(world.num_envs, dtype=torch.bool, device=world.device)
+        self.limits, self.recorder = Limits(world), FlightRecorder()
+        self._pushers = tuple(h for h in hazards if type(h).force is not Hazard.force)
+        world.fields = shared_fields(hazards, self.states, world)
+        self._frozen = torch.zeros_like(world.safe)  # bodies that the simulator keeps in place
+        self._start = (world.position.clone(), world.rotation.clone())
+
+    @property
+    def parts(self) -> dict[str, State]:
+        """Every record with declared quantities, by name."""
+        return {**self.states, "damage": self.damage, "rescue": self.rescue, "hand": self.hand}
+
+    def begin(self, rows: Tensor, seeds: Tensor) -> None:
+        """Put everything in the environments `rows` [R] back in its place, with new `seeds` [R].
+
+        Call `begin_hazards` after the robot's reset.
+        """
+        world = self.world
+        world.chance.restart(rows, seeds)
+        world.safe[rows] = world.away[rows] = world.held[rows] = False
+        self.sim_error[rows] = False
+        for part in self.parts.values():
+            part.clear(rows)
+        world.position[rows], world.rotation[rows] = self._start[0][rows], self._start[1][rows]
+        world.velocity[rows] = world.angular_velocity[rows] = 0.0
+        self.thaw(rows)
+        self.recorder.states.clear()
+        world.place(rows)
+
+    def begin_hazards(self, rows: Tensor) -> None:
+        """Start the hazards in the environments `rows` [R]; the agent must stand at its start."""
+        for hazard in self.hazards:
+            hazard.reset(self.states[hazard.name], self.world, rows)
+
+    def see(self, agent: Robot) -> None:
+        """Copy the place and heading of the `agent` into the world."""
+        self.world.agent_position[:], self.world.agent_heading[:] = agent.base_pose()
+
+    def push(self, dt: float) -> None:
+        """Read the bodies, sum the hazards' forces and send them; call it before each physics step of `dt` seconds."""
+        if not self._pushers:
+            return  # nothing reads the bodies between physics steps
+        world = self.world
+        world.read()
+        given = (h.force(self.states[h.name], world, dt) for h in self._pushers)
+        made: list[Push] = [p for p in given if p is not None]
+        if made:
+            torques = [p.torque for p in made if p.torque is not None]
+            live = (world.movable & ~world.safe & ~world.held)[..., None]
+            force = torch.stack([p.force for p in made]).sum(0) * live
+            world.push(force, torch.stack(torques).sum(0) * live if torques else None)
+
+    def watch(self, qpos: Tensor) -> None:
+        """Mark environments whose simulation broke, and write their last states; `qpos` [rad], [E, J]: joints."""
+        self.recorder.keep(self.world)
+        new = self.limits.broken(self.world, qpos) & ~self.sim_error
+        self.sim_error |= new
+        if not none_set(new):
+            for env in torch.nonzero(new).flatten().tolist():
+                path = self.recorder.dump(self.world, env)
+                logging.getLogger("hazard_ms").warning(
+                    "the simulation broke in %s; its last states: %s", self.world.specs[env].name, path
+                )
+
+    def advance(self, dt: float) -> None:
+        """Advance the clock and each hazard, in order, and record damage; call it after each frame of `dt` seconds."""
+        self.world.chance.tick()
+        for hazard in self.hazards:
+            hazard.advance(self.states[hazard.name], self.world, dt)
+        for hazard in self.hazards:
+            self.damage.add(hazard.damaged(self.states[hazard.name], self.world), self.world)
+
+    def use_hand(self, gripper: tuple[Tensor, Tensor], closed: Tensor, bag: Tensor) -> None:
+        """Let the hands take, carry and let go, and record rescues.
+
+        `gripper`: positions [m], [E, 3], and rotations, [E, 4]; `closed` [E]: commands; `bag`: its mouth [m], [E, 3].
+        """
+        world = self.world
+        dropped = grasp.update(self.hand, world, *gripper, closed)
+        now = self._safe_now(Drop(dropped, gripper[0], bag))
+        if self.safe_place.carried:
+            world.away |= now & world.exists
+        self.rescue.mark(world, now, self.damage)
+        self.freeze(gripper)
+
+    def thaw(self, rows: Tensor) -> None:
+        """Set all bodies of the environments `rows` [R] free in the simulator."""
+        if none_set(self._frozen[rows]):
+            return
+        self._frozen[rows] = False
+        world = self.world
+        world.freeze(self._frozen, world.base_of(world.position, world.rotation, world.extent), world.rotation)
+
+    def freeze(self, gripper: tuple[Tensor, Tensor]) -> None:
+        """Keep things in a hand or in the bag in their places; `gripper`: positions [m], [E, 3], rotations, [E, 4]."""
+        now = self.world.held | self.world.away
+        if none_set(now | self._frozen):
+            return
+        self._frozen = now
+        self.world.freeze(*grasp.places(self.hand, self.world, *gripper))
+
+    def forbidden(self, points: Tensor) -> Tensor:
+        """Whether a hazard would destroy the robot at each of the `points` [m], [E, P, 3]: bool [E, P]."""
+        return torch.stack([h.forbids(self.states[h.name], self.world, points) for h in self.hazards]).any(0)
+
+    def levels(self, points: Tensor) -> Tensor:
+        """Levels of the K hazards at `points` [m], world frame, [E, P, 3]: [E, K, P], each in its hazard's unit."""
+        return torch.stack([h.image(self.states[h.name], self.world, points) for h in self.hazards], dim=1)
+
+    def slowed(self, velocity: Tensor) -> Tensor:
+        """The agent's own `velocity` [m/s], [E, 2], after each hazard in turn has slowed it."""
+        for hazard in self.hazards:
+            left = hazard.slow(self.states[hazard.name], self.world)
+            velocity = left[:, :1] * velocity + left[:, 1:]
+        return velocity
+
+
+def shared_fields(
+    hazards: tuple[Hazard, ...], states: dict[str, Any], world: World
+) -> dict[str, Callable[[Tensor], Tensor]]:
+    """Functions of points [m], [E, P, 3], through which `hazards` tell each other their levels, by name.
+
+    Raises ValueError for a field with two writers, or whose reader comes before its writer.
+    """
+    fields: dict[str, Callable[[Tensor], Tensor]] = {}
+    for hazard in hazards:
+        for name, method in hazard.provides.items():
+            if name in fields:
+                raise ValueError(f"{name!r} must be written by one hazard, got a second: {hazard.name!r}")
+            early = [h.name for h in hazards[: hazards.index(hazard)] if name in h.uses]
+            if early:
+                raise ValueError(f"{hazard.name!r} must come before {early[0]!r}, which reads {name!r}, got it after")
+            fields[name] = partial(getattr(hazard, method), states[hazard.name], world)
+    return fields

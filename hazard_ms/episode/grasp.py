@@ -1,0 +1,101 @@
+"""The agent's hand: assisted grasp, as the original's humanoid had it.
+
+When the gripper closes within reach of a target, the target is held and follows the gripper. When the gripper opens,
+the target falls, or is rescued if the gripper is over the bag that the agent carries. The rule is the same for skills,
+policies and replays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from hazard_ms.hazards.base import State, none_set, quantity
+from hazard_ms.simulation.world import World, rotate
+
+# greatest distance from the gripper to the surface of the thing's box [m] [ours]; Fetch's fingers are 0.06 m long
+GRASP_REACH = 0.15
+PUT_AWAY_HEIGHT = -10.0  # height at which things in the bag wait, out of sight and out of reach [m]
+
+
+@dataclass
+class Hand(State):
+    """The hand of each agent: what it holds, and how."""
+
+    held: Tensor = quantity("E", "", "index of the held body, -1 for none", dtype="int", fill=-1)
+    closed: Tensor = quantity("E", "", "gripper was commanded shut in the last frame", dtype="bool")
+    offset: Tensor = quantity("E 3", "m", "base of the held body in the gripper's frame")
+    turn: Tensor = quantity("E 4", "", "rotation of the held body in the gripper's frame")
+
+
+def conjugate(rotation: Tensor) -> Tensor:
+    """The inverse of unit quaternions w x y z, [..., 4]."""
+    return rotation * rotation.new_tensor([1.0, -1.0, -1.0, -1.0])
+
+
+def multiply(a: Tensor, b: Tensor) -> Tensor:
+    """The product of quaternions w x y z, [..., 4]: the rotation b, then a."""
+    w = a[..., :1] * b[..., :1] - (a[..., 1:] * b[..., 1:]).sum(-1, keepdim=True)
+    v = a[..., :1] * b[..., 1:] + b[..., :1] * a[..., 1:] + torch.cross(a[..., 1:], b[..., 1:], dim=-1)
+    return torch.cat([w, v], dim=-1)
+
+
+def distance_to_boxes(world: World, point: Tensor) -> Tensor:
+    """Distance [m] from `point` [m], [E, 3], to the surface of every thing's box, [E, B]; 0 inside."""
+    local = rotate(conjugate(world.rotation), point[:, None] - world.position)
+    return (local.abs() - world.extent / 2).clamp(min=0).norm(dim=-1)
+
+
+def graspable(world: World, gripper: Tensor) -> Tensor:
+    """Index along B of the target that a hand takes if it shuts at `gripper` [m], [E, 3]: [E], -1 for none."""
+    distance = distance_to_boxes(world, gripper)
+    able = world.target & world.exists & ~world.safe & (distance <= GRASP_REACH)
+    nearest = torch.where(able, distance, torch.inf).argmin(dim=1)
+    return torch.where(able.any(dim=1), nearest, -1)
+
+
+def update(hand: Hand, world: World, gripper: Tensor, rotation: Tensor, closed: Tensor) -> Tensor:
+    """Take or let go, given the gripper's position [m], [E, 3], its `rotation` [E, 4] and its command `closed` [E].
+
+    Returns the index along B of what was let go, [E], -1 for none.
+    """
+    if none_set(closed != hand.closed):
+        return torch.full_like(hand.held, -1)  # nothing is taken or let go
+    dropped = torch.where(~closed & hand.closed, hand.held, -1)
+    hand.held = torch.where(dropped >= 0, -1, hand.held)
+    taken = torch.where(closed & ~hand.closed & (hand.held < 0), graspable(world, gripper), -1)
+    hand.held = torch.where(taken >= 0, taken, hand.held)
+    _remember(hand, world, gripper, rotation, taken)
+    hand.closed = closed.clone()
+    index = torch.arange(world.num_bodies, device=world.device)
+    world.held[:] = index == hand.held[:, None]
+    return dropped
+
+
+def _remember(hand: Hand, world: World, gripper: Tensor, rotation: Tensor, taken: Tensor) -> None:
+    """Record the poses of newly held bodies in the gripper's frame, drawn in until they touch the gripper."""
+    e = torch.arange(world.num_envs, device=world.device)
+    b = taken.clamp(min=0)
+    base = world.base_of(world.position[e, b], world.rotation[e, b], world.extent[e, b])
+    inverse = conjugate(rotation)
+    local = rotate(inverse, base - gripper)
+    gap = distance_to_boxes(world, gripper)[e, b]
+    centre = rotate(inverse, world.position[e, b] - gripper)
+    local = local - centre / centre.norm(dim=-1, keepdim=True).clamp(min=1e-6) * gap[:, None]
+    new = (taken >= 0)[:, None]
+    hand.offset = torch.where(new, local, hand.offset)
+    hand.turn = torch.where(new, multiply(inverse, world.rotation[e, b]), hand.turn)
+
+
+def places(hand: Hand, world: World, gripper: Tensor, rotation: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    """Bodies in a hand or in the bag, bool [E, B], and the bases [m], [E, B, 3], and rotations, [E, B, 4], of all."""
+    base = world.base_of(world.position, world.rotation, world.extent)
+    held = world.held[..., None]
+    base = torch.where(held, (gripper + rotate(rotation, hand.offset))[:, None], base)
+    turn = torch.where(held, multiply(rotation, hand.turn)[:, None], world.rotation)
+    parked = base.clone()
+    parked[..., 2] = PUT_AWAY_HEIGHT
+    base = torch.where(world.away[..., None], parked, base)
+    return world.held | world.away, base, turn

@@ -1,0 +1,26 @@
+"""The situation that the functions of a task read: everything as it is now, in all E environments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hazard_ms.episode.episode import Episode
+from hazard_ms.robots.robot import Robot
+from hazard_ms.simulation.world import World
+
+
+@dataclass(frozen=True)
+class Situation:
+    """The running episodes, and the robot that plays in them.
+
+    `affects_agent` tells whether the hazards act on the robot.
+    """
+
+    episode: Episode
+    agent: Robot
+    affects_agent: bool = False
+
+    @property
+    def world(self) -> World:
+        """All things of the scenes, as tensors."""
+        return self.episode.world

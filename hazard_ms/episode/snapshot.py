@@ -1,0 +1,120 @@
+"""Saves and restores everything that ManiSkill's own state leaves out: hazards, damage, rescues, hands and chance.
+
+All entries are tensors [E, N], so that ManiSkill can flatten, record and slice them. Seeds are stored as 16-bit words:
+a flat state is float32, which holds whole numbers exactly only up to 2**24.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from hazard_ms.episode.episode import Episode
+from hazard_ms.robots.robot import Robot
+
+WORD = 1 << 16  # number of values of a 16-bit word
+
+
+def save(episode: Episode) -> dict[str, Any]:
+    """All records as tensors [E, N], by name."""
+    world = episode.world
+    made: dict[str, Any] = {
+        name: {k: v.reshape(world.num_envs, -1) for k, v in part.save().items()} for name, part in episode.parts.items()
+    }
+    chance = world.chance
+    words = torch.stack([chance.seed % WORD, chance.seed // WORD], dim=1)
+    made["bodies"] = {
+        "asleep": world.handles.asleep() if world.handles else torch.zeros(world.num_envs, 0, dtype=torch.bool)
+    }
+    made["chance"] = {"seed": words, "frame": chance.frame[:, None].clone()}
+    return made
+
+
+def restore(episode: Episode, saved: dict[str, Any] | None, rows: Tensor) -> None:
+    """Write the records `saved` by `save`, [R, N], into the environments `rows` [R], and all that follows from them.
+
+    Raises ValueError for a state of another environment or scene, before anything is written.
+    """
+    if saved is None:
+        raise ValueError(
+            "the state must have an entry 'hazard_ms', as get_state_dict of this environment gives it, got none"
+        )
+    world, ready = episode.world, {}
+    for name, part in episode.parts.items():
+        now = part.save()
+        if set(saved.get(name, {})) != set(now):
+            raise ValueError(
+                f"the state's {name!r} must have {sorted(now)}, got {sorted(saved.get(name, {}))}: another environment"
+            )
+        sizes = {k: v[0].numel() for k, v in now.items()}
+        for k, size in sizes.items():
+            if torch.as_tensor(saved[name][k]).numel() != size * len(rows):
+                raise ValueError(
+                    f"the state's {name}.{k} must have {size} numbers for each of {len(rows)} environments, "
+                    f"got {torch.as_tensor(saved[name][k]).numel()} in all: another scene"
+                )
+        ready[name] = {k: torch.as_tensor(saved[name][k]).reshape(len(rows), *now[k].shape[1:]) for k in now}
+    episode.thaw(rows)
+    for name, part in episode.parts.items():
+        part.restore(ready[name], rows)
+    chance, words = world.chance, torch.as_tensor(saved["chance"]["seed"]).reshape(len(rows), 2).long()
+    chance.seed[rows] = (words[:, 0] + words[:, 1] * WORD).to(chance.seed)
+    chance.frame[rows] = torch.as_tensor(saved["chance"]["frame"]).reshape(len(rows)).to(chance.frame)
+    episode.sim_error[rows] = False  # only states of a sound simulation are restored
+    world.safe[rows] = episode.rescue.safe[rows]
+    world.away[rows] = episode.rescue.safe[rows] & episode.safe_place.carried
+    index = torch.arange(world.num_bodies, device=world.device)
+    world.held[rows] = index == episode.hand.held[rows][:, None]
+
+
+def put_back(
+    episode: Episode, agent: Robot, state: dict[str, Any], rows: Tensor, plain: Callable[[dict[str, Any]], None]
+) -> None:
+    """Restore a `state` from `get_state_dict` in the environments `rows` [R]; `plain` restores ManiSkill's own part.
+
+    Raises ValueError for a state of another environment or scene, before anything is written.
+    """
+    state, world = batched(state), episode.world
+    restore(episode, state.get("hazard_ms"), rows)
+    plain({k: v for k, v in state.items() if k not in ("hazard_ms", "controller")})
+    if "controller" in state:
+        agent.set_controller_state(state["controller"])  # type: ignore[attr-defined]  # ManiSkill's agents have it
+    world.read()
+    episode.see(agent)
+    episode.freeze(agent.gripper_pose())
+    if world.handles is not None:
+        world.handles.put_to_sleep(torch.as_tensor(state["hazard_ms"]["bodies"]["asleep"]))
+
+
+def batched(state: Any) -> Any:
+    """`state` with a batch axis added to every entry without one: recorded states of one environment have none."""
+    if isinstance(state, dict):
+        return {k: batched(v) for k, v in state.items()}
+    value = torch.as_tensor(state)
+    return value[None] if value.ndim == 1 else value
+
+
+def unflatten(flat: Tensor, like: dict[str, Any]) -> dict[str, Any]:
+    """The nested state that ManiSkill flattened into `flat`, [E, D]; `like` is any state of the same environment.
+
+    Raises ValueError for a flat state of another length.
+    """
+    made, end = _take(flat, like, 0)
+    if end != flat.shape[-1]:
+        raise ValueError(f"the flat state must have {end} numbers, got {flat.shape[-1]}")
+    return made
+
+
+def _take(flat: Tensor, like: dict[str, Any], start: int) -> tuple[dict[str, Any], int]:
+    made: dict[str, Any] = {}
+    for name, entry in like.items():
+        if isinstance(entry, dict):
+            made[name], start = _take(flat, entry, start)
+        else:
+            width = entry.shape[-1]
+            made[name] = flat[..., start : start + width].to(entry.dtype)
+            start += width
+    return made, start

@@ -1,0 +1,84 @@
+"""Watches every step for faults that PhysX never reports: NaN, runaway speeds, and bodies that left the world.
+
+A fault ends the episode.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import tempfile
+from collections import deque
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from hazard_ms.simulation.world import World
+
+MAX_SPEED = 50.0  # highest speed of a body [m/s]: nothing in a room moves faster (docs/reliability.md 5)
+MAX_SPIN = 1000.0  # highest angular velocity of a body [rad/s]; PhysX itself limits bodies to 100
+LOST = 5.0  # distance outside the room at which a body counts as lost [m] [ours]
+HISTORY = 20  # number of the last states that are written when an episode breaks [frames]
+
+
+class Limits:
+    """The range of positions [m], rotations, velocities [m/s] and angular velocities [rad/s] that bodies can have.
+
+    `centre` and `half` (half of the width) are [E, 1, 13].
+    """
+
+    def __init__(self, world: World) -> None:
+        height = world.room.new_tensor([[s.room.height] for s in world.specs])
+        middle = torch.cat([world.room, height], dim=1) / 2
+        half = middle + world.room.new_tensor([[s.room.beyond, s.room.beyond, 0.0] for s in world.specs])
+
+        def same(value: float, count: int) -> Tensor:
+            return torch.full((world.num_envs, count), value, device=world.device)
+
+        self.centre = torch.cat([middle, same(0.0, 10)], dim=1)[:, None]
+        widths = [half + LOST, same(2.0, 4), same(MAX_SPEED, 3), same(MAX_SPIN, 3)]
+        self.half = torch.cat(widths, dim=1)[:, None]
+
+    def broken(self, world: World, qpos: Tensor) -> Tensor:
+        """Whether each environment's simulation is broken, bool [E]. `qpos`: the robot's joints [rad], [E, J]."""
+        state = torch.cat([world.position, world.rotation, world.velocity, world.angular_velocity], dim=-1)
+        good = ((state - self.centre).abs() <= self.half).all(-1)  # NaN fails every comparison
+        unwatched = ~(world.exists & world.movable) | world.away | world.held
+        return ~((good | unwatched).all(-1) & (qpos.abs() < torch.inf).all(-1))
+
+
+class FlightRecorder:
+    """Keeps the last states of the bodies, which are written to a file when an episode breaks."""
+
+    def __init__(self) -> None:
+        self.states: deque[dict[str, Tensor]] = deque(maxlen=HISTORY)
+
+    def keep(self, world: World) -> None:
+        """Keep a copy of the state of all bodies as they are now."""
+        self.states.append(
+            {"frame": world.frame.clone(), "position": world.position.clone(), "velocity": world.velocity.clone()}
+        )
+
+    def dump(self, world: World, env: int) -> Path:
+        """Write the last states of environment `env` as JSON to $HAZARD_MS_DUMPS, or the system's temporary folder."""
+        folder = Path(os.environ.get("HAZARD_MS_DUMPS", tempfile.gettempdir()))
+        folder.mkdir(parents=True, exist_ok=True)
+        rows = [{k: _plain(v[env]) for k, v in s.items()} for s in self.states]
+        seed = int(world.chance.seed[env])
+        path = folder / f"hazard_ms_sim_error_{world.specs[env].name.replace('/', '_')}_{seed}.json"
+        path.write_text(
+            json.dumps({"scene": world.specs[env].name, "seed": seed, "names": world.names[env], "states": rows})
+        )
+        return path
+
+
+def _plain(values: Tensor) -> Any:
+    """Numbers as nested lists for JSON, None in place of those that are not finite."""
+    flat = [x if math.isfinite(x) else None for x in values.flatten().tolist()]
+    if values.ndim == 0:
+        return flat[0]
+    width = values.shape[-1]
+    return flat if values.ndim == 1 else [flat[i : i + width] for i in range(0, len(flat), width)]

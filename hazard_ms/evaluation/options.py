@@ -1,0 +1,166 @@
+"""Options of the commands that play episodes, as plain data: loading them for a help text imports nothing heavy."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Annotated, Any
+
+from hazard_ms import registry
+from hazard_ms.evaluation.choices import EFFECTS, LIGHTINGS, PRESETS, SPLITS, flag, offer
+
+MOST = 10**6  # episodes, seeds and frames between pictures: any larger number is a slip of the pen [-] [ours]
+MOST_WORKERS = 1024  # processes [ours]
+
+
+@dataclass(frozen=True)
+class EnvOptions:
+    """The environment that episodes are played in: names and defaults are those of the keywords of gym.make."""
+
+    env_id: Annotated[str, offer(registry.TASKS), flag("-e")] = "HazardFire-v1"
+    """Task."""
+    split: Annotated[str, offer(SPLITS)] = "train"
+    """Split from which seeds choose scenes; large and new_objects are for tasks in rooms."""
+    physics: Annotated[str, offer(PRESETS)] = "paper"
+    """Preset of the hazards."""
+    hazards: tuple[Annotated[str, offer(registry.HAZARDS)], ...] = ()
+    """Hazards of HazardCompound-v1; its usual ones if not given."""
+    robot_uids: Annotated[str, offer(registry.ROBOTS), flag("-r", "--robot-uids", old="robot")] = "fetch"
+    """Robot that rescues."""
+    affects_agent: bool = False
+    """Let the hazards act on the robot."""
+    lighting: Annotated[str, offer(LIGHTINGS), flag("--lighting", old="light")] = "day"
+    """Light of the scene; random is drawn by the seed."""
+    effects: Annotated[str, offer(EFFECTS)] = "full"
+    """Look of the hazards."""
+    load: tuple[str, ...] = ()
+    """Modules, or files NAME.py, that register tasks, hazards, robots and agents of your own."""
+
+    def check(self) -> None:
+        """Load the modules of `load`, and check every name. Raises ValueError for what cannot be played."""
+        from hazard_ms.checks import one_of  # loads torch
+
+        for module in self.load:
+            registry.load_plugin(module)
+        one_of(self.env_id, registry.TASKS, "env_id")
+        one_of(self.robot_uids, registry.ROBOTS, "robot_uids")
+        one_of(self.physics, PRESETS, "physics")
+        one_of(self.lighting, LIGHTINGS, "lighting")
+        one_of(self.effects, EFFECTS, "effects")
+        for name in self.hazards:
+            one_of(name, registry.HAZARDS, "hazards")
+
+    @property
+    def max_frames(self) -> int:
+        """Frames of an episode, at most."""
+        return registry.TASKS[self.env_id].max_frames
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Keywords of gym.make that change the episode; light and effects only where they are not the usual ones."""
+        names = ["split", "physics", "robot_uids", "affects_agent"]
+        names += [name for name in ("lighting", "effects") if getattr(self, name) != _default(name)]
+        made = {name: getattr(self, name) for name in names}
+        return {**made, "hazards": list(self.hazards)} if self.hazards else made
+
+    @property
+    def words(self) -> list[str]:
+        """Command-line words that give the same environment again."""
+        made = ["-e", self.env_id, "--split", self.split, "--physics", self.physics]
+        for name in ("robot_uids", "lighting", "effects"):
+            made += [_flag(name), getattr(self, name)] if getattr(self, name) != _default(name) else []
+        made += ["--affects-agent"] if self.affects_agent else []
+        for name in ("hazards", "load"):
+            made += [_flag(name), *getattr(self, name)] if getattr(self, name) else []
+        return made
+
+
+@dataclass(frozen=True)
+class EpisodeOptions(EnvOptions):
+    """One episode: its environment, its seed or scene, and the agent that plays it."""
+
+    agent: Annotated[str, offer(registry.AGENTS, "MODULE:CLASS"), flag("-a")] = "greedy"
+    """Agent: a name, package.module:Class or file.py:Class; parameters follow as NAME:key=value,key=value."""
+    seed: Annotated[int, flag("-s")] = 0
+    """Seed of the episode."""
+    scene: str | None = None
+    """Scene; chosen by the seed if not given."""
+
+    @property
+    def reset_options(self) -> dict[str, Any]:
+        """Argument `options` of the environment's reset."""
+        return {} if self.scene is None else {"scene": self.scene}
+
+    @property
+    def command(self) -> str:
+        """The command that plays the episode again."""
+        words = ["hazard-ms", "play", *self.words, "--agent", self.agent, "-s", str(self.seed)]
+        words += [] if self.scene is None else ["--scene", self.scene]
+        return shlex.join(words)
+
+
+@dataclass(frozen=True)
+class PlayOptions:
+    """Options of `hazard-ms play`."""
+
+    episode: EpisodeOptions = EpisodeOptions()
+    output: Annotated[Path | None, flag("-o", "--output", old="video")] = None
+    """Film to write, NAME.mp4; the result (.json) and a page (.html) are written beside it."""
+    every: int = 6
+    """Frames of the episode from one picture of the film to the next; the film runs that much faster."""
+
+    def check(self) -> None:
+        """Check all options. Raises ValueError for what cannot be played."""
+        from hazard_ms.checks import whole
+
+        self.episode.check()
+        whole(self.every, 1, MOST, "every")
+        if self.output is not None and self.output.suffix != ".mp4":
+            raise ValueError(f"output must be a name that ends in .mp4, got {self.output.name!r}")
+
+
+@dataclass(frozen=True)
+class SweepOptions:
+    """Options of `hazard-ms evaluate`."""
+
+    env: EnvOptions = EnvOptions(split="test")
+    agents: tuple[Annotated[str, offer(registry.AGENTS, "MODULE:CLASS")], ...] = ("greedy", "random")
+    """Agents, each as `hazard-ms play --agent` takes it."""
+    episodes: int = 25
+    """Episodes of every agent, one for each seed."""
+    seed: Annotated[int, flag("-s", "--seed", old="first")] = 0
+    """First seed. Seed s plays the split's scene s, and begins again after the last scene."""
+    workers: int = 0
+    """Processes; 0: one for each core."""
+    output: Annotated[Path, flag("-o", "--output", old="out")] = Path("evaluation")
+    """Folder for the results, one file for each episode."""
+
+    def episode_options(self) -> list[EpisodeOptions]:
+        """The episodes, seed by seed. Raises ValueError for what cannot be played."""
+        from hazard_ms.checks import whole
+
+        whole(self.episodes, 1, MOST, "episodes")
+        whole(self.seed, 0, MOST, "seed")
+        whole(self.workers, 0, MOST_WORKERS, "workers")
+        self.env.check()
+        first = EpisodeOptions(**{f.name: getattr(self.env, f.name) for f in fields(EnvOptions)})
+        seeds = range(self.seed, self.seed + self.episodes)
+        return [replace(first, agent=agent, seed=seed) for seed in seeds for agent in self.agents]
+
+    def place(self, episode: EpisodeOptions) -> Path:
+        """The file of an episode's result."""
+        e = episode
+        setting = [e.env_id, *e.hazards, e.split, e.physics, e.robot_uids] + ["affected"] * e.affects_agent
+        setting += [getattr(e, name) for name in ("lighting", "effects") if getattr(e, name) != _default(name)]
+        agent = re.sub(r"[^\w.-]+", ".", e.agent)
+        return self.output / f"{'-'.join(setting)}-{agent}-{e.seed:04d}.json"
+
+
+def _default(name: str) -> Any:
+    return EnvOptions.__dataclass_fields__[name].default
+
+
+def _flag(name: str) -> str:
+    return "--" + name.replace("_", "-")

@@ -1,0 +1,62 @@
+"""The tables of `hazard-ms evaluate`: scores with their intervals, how episodes ended, and which actions failed why."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from hazard_ms.evaluation.metrics import Score, scores
+from hazard_ms.evaluation.options import SweepOptions
+from hazard_ms.evaluation.result import EpisodeResult, machine, versions
+
+HEADINGS = f"{'agent':16s} {'Value':>22s} {'Step':>26s} {'Damage':>22s} {'rescued':>8s} {'s/episode':>10s}"
+
+
+def report(options: SweepOptions, results: Sequence[EpisodeResult]) -> str:
+    """The table of the `results` of all episodes of `options`, with versions and machine."""
+    own = {agent: [r for r in results if r.agent == agent] for agent in options.agents}
+    lines = [title(options), HEADINGS, *(score_line(agent, made) for agent, made in own.items())]
+    lines += [failure_line(agent, made) for agent, made in own.items()]
+    return "\n".join([*lines, machine_line()])
+
+
+def title(options: SweepOptions) -> str:
+    """The line that says what was played."""
+    env = options.env
+    settings = [f"split {env.split}", f"physics {env.physics}", f"robot {env.robot_uids}"]
+    settings += ["agent affected"] * env.affects_agent
+    settings += [f"{name} {env.settings[name]}" for name in ("lighting", "effects") if name in env.settings]
+    what = ", ".join([env.env_id, *env.hazards, *settings])
+    return f"{what}, {options.episodes} episodes each, seeds from {options.seed}"
+
+
+def score_line(agent: str, results: Sequence[EpisodeResult]) -> str:
+    """The scores of one agent, Value and Damage in per cent, Step in frames."""
+    found = scores([r.tally for r in results])
+    saved = sum(r.tally.rescued for r in results)
+    targets = sum(len(r.targets) for r in results)
+    seconds = sum(r.wall_seconds for r in results) / len(results)
+    value, step, damage = (_shown(found[name], 1 if name == "step" else 100) for name in ("value", "step", "damage"))
+    return f"{agent:16s} {value:>22s} {step:>26s} {damage:>22s} {saved:4d}/{targets:<4d} {seconds:9.1f}"
+
+
+def failure_line(agent: str, results: Sequence[EpisodeResult]) -> str:
+    """The line that counts how the episodes of one agent ended, and which of its actions failed why."""
+    ends = Counter(r.ended for r in results)
+    failures = Counter(f"{d.verb} {d.reason}" for r in results for d in r.decisions if not d.ok)
+    return f"{agent}: ended by {_counted(ends)}; failures: {_counted(failures) or 'none'}"
+
+
+def machine_line() -> str:
+    """Versions and machine in one line."""
+    return ", ".join(f"{name} {value}" for name, value in {**versions(), **machine()}.items())
+
+
+def _shown(score: Score, factor: float = 1.0) -> str:
+    if score.mean is None or score.low is None or score.high is None:
+        return "-"
+    return f"{factor * score.mean:.1f} [{factor * score.low:.1f}, {factor * score.high:.1f}]"
+
+
+def _counted(counter: Counter[str]) -> str:
+    return ", ".join(f"{n} {what}" for what, n in counter.most_common())

@@ -1,0 +1,151 @@
+"""Plays one episode of one agent, decision by decision, and tells watchers of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from hazard_ms.agents.base import Agent, agent
+from hazard_ms.evaluation.metrics import Fate, Tally
+from hazard_ms.evaluation.options import EpisodeOptions
+from hazard_ms.evaluation.result import DecisionRecord, EpisodeResult
+from hazard_ms.evaluation.watchers import Watcher
+from hazard_ms.skills.context import LowLevel
+from hazard_ms.skills.decision import STOP, Action, Decision, Result
+from hazard_ms.skills.executor import SkillEnv
+
+FRAME_REACHED = "frame reached"  # how a run ends that was asked to end at a frame
+
+
+@dataclass(frozen=True)
+class Played:
+    """The course of an episode: why it `ended`, as `EpisodeResult` describes it, and every decision."""
+
+    ended: str
+    decisions: tuple[DecisionRecord, ...]
+
+
+class Runner:
+    """Plays episodes of one agent in one environment."""
+
+    def __init__(self, env: SkillEnv, agent: Agent, watchers: Sequence[Watcher] = ()) -> None:
+        self.env, self.agent, self.watchers = env, agent, tuple(watchers)
+
+    def run(self, seed: int | None, options: dict[str, Any] | None = None, until_frame: int | None = None) -> Played:
+        """Play an episode from its reset with `seed` and `options` to its end, or to the frame `until_frame`.
+
+        Raises ValueError for a seed, a scene or an action of the agent that is not valid.
+        """
+        decision, _ = self.env.reset(seed=seed, options=options)
+        self.agent.reset(self.env.brief())
+        self.env.watch, self.env.until_frame = self._frame, until_frame
+        for watcher in self.watchers:
+            watcher.begin(self.env, decision)
+        try:
+            played = self._play(decision)
+        finally:
+            self.env.watch = self.env.until_frame = None
+        for watcher in self.watchers:
+            watcher.finish(played.ended)
+        return played
+
+    def _play(self, decision: Decision) -> Played:
+        records: list[DecisionRecord] = []
+        while len(records) <= self.env.max_frames:  # an agent whose actions take no time must not go on for ever
+            if self.env.until_frame is not None and self.env.frame >= self.env.until_frame:
+                return Played(FRAME_REACHED, tuple(records))
+            action = self.agent.act(decision)
+            value = Tally.of(fates(self.env)).value
+            for watcher in self.watchers:
+                watcher.decided(decision, action, self.agent.note)
+            following, _, terminated, truncated, info = self.env.step(action)
+            result: Result = info["result"]
+            for watcher in self.watchers:
+                watcher.ended(result)
+            records.append(self._record(decision, action, result, value))
+            if terminated or truncated:
+                return Played(self._reason(action, info), tuple(records))
+            decision = following
+        return Played("too many decisions", tuple(records))
+
+    def _frame(self, action: LowLevel) -> None:
+        for watcher in self.watchers:
+            watcher.frame(action)
+
+    def _record(self, decision: Decision, action: Action, result: Result, value: float) -> DecisionRecord:
+        return DecisionRecord(
+            frame=decision.frame,
+            verb=action.verb,
+            target=action.target,
+            ok=result.ok,
+            reason=result.reason,
+            frames=result.frames,
+            note=self.agent.note,
+            held=decision.held,
+            value=value,
+        )
+
+    def _reason(self, action: Action, info: dict[str, Any]) -> str:
+        if bool(info["sim_error"][0]):
+            return "simulation error"
+        if bool(info["success"][0]):
+            return self.env.base.task.goal.done
+        if bool(info["fail"][0]):
+            return "failed"
+        if bool(info["fail"][0]):
+            return "failed"
+        if action.verb == STOP:
+            return "stopped"
+        return "time" if self.env.frame >= self.env.max_frames else FRAME_REACHED
+
+
+def fates(env: SkillEnv) -> tuple[Fate, ...]:
+    """The fates of the targets of `env`, so far."""
+    world, episode, made = env.base.world, env.base.episode, []
+    for row in env.base.observer.table.rows(world):
+        saved = bool(episode.rescue.safe[0, row.index])
+        damaged = (episode.rescue if saved else episode.damage).damaged[0, row.index]
+        frame = int(episode.rescue.frame[0, row.index]) if saved else None
+        made.append(Fate(row.name, row.category, row.value, saved, bool(damaged), frame))
+    return tuple(made)
+
+
+def play(options: EpisodeOptions, watchers: Sequence[Watcher] = (), **keywords: Any) -> EpisodeResult:
+    """Play one episode in an environment of its own, made with `keywords` of gym.make besides those of `options`.
+
+    Raises ValueError for what cannot be played.
+    """
+    start = time.perf_counter()
+    options.check()
+    player = agent(options.agent)
+    env = SkillEnv.make(options.env_id, **{**options.settings, **keywords})
+    try:
+        played = Runner(env, player, watchers).run(options.seed, options.reset_options)
+        return EpisodeResult(
+            env_id=options.env_id,
+            agent=options.agent,
+            seed=options.seed,
+            scene=env.base.specs[0].name,
+            settings=options.settings,
+            frames=env.frame,
+            max_frames=env.max_frames,
+            ended=played.ended,
+            targets=fates(env),
+            decisions=played.decisions,
+            command=options.command,
+            wall_seconds=time.perf_counter() - start,
+        )
+    finally:
+        env.close()
+
+
+def summary(result: EpisodeResult) -> str:
+    """The line that says how an episode went."""
+    saved = sum(f.rescued for f in result.targets)
+    return (
+        f"{result.agent} rescued {saved} of {len(result.targets)} targets in {result.scene}, "
+        f"{100 * result.tally.value:.1f} % of the value, in {result.frames} frames ({result.ended}); "
+        f"{result.wall_seconds:.1f} s"
+    )

@@ -1,0 +1,235 @@
+"""Fire of the preset `realistic`: heat release, radiation, ignition, spread and smoke, in SI seconds (torch).
+
+    heat       each burning thing by its measured or t^2 curve (hazard_ms.hazards.fire.realistic.burning), each cell of
+               the floor
+               as a t^2 fire
+    ignition   of thick and thin solids by the flux of all fires, of the smoke layer, and of flames that touch
+               (.radiation)
+    spread     a burning cell lights each of its four neighbours at the rate FRONT V / dx, V by the material of the
+               floor (.front, .fuels)
+    smoke      one layer per scene (.smoke); dose of heat of the agent (.tenability)
+
+Burnt things give off no heat and cool. Nothing depends on the length of a frame: rates are turned into probabilities by
+1 - exp(-rate dt), curves are functions of time, surfaces are warmed exactly. Heat is updated every few frames, flames
+on the floor in each. `time_scale` is the one number that is not physics: seconds of fire per second of the episode,
+since rooms burn for minutes and episodes last 50 s. Limits: flames on the floor do not go out (carpet of 4 kg/m^2 burns
+longer than an episode), no conduction, no shading; the layer ignores partitions.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import torch
+from torch import Tensor
+
+from hazard_ms.hazards.base import Hazard, Level, State, none_set
+from hazard_ms.hazards.fire import coupling, spread
+from hazard_ms.hazards.fire.declared import TELLS_OF_BLAZE, TEMPERATURE, ignites
+from hazard_ms.hazards.fire.fire import begin_flames, lit
+from hazard_ms.hazards.fire.fire_state import BURNING, NORMAL
+from hazard_ms.hazards.fire.realistic import burning, front, fuels, kindling, radiation, smoke, tenability, touching
+from hazard_ms.hazards.fire.realistic.blaze_state import HEATED, BlazeState
+from hazard_ms.simulation.world import World
+from hazard_ms.spec import Quantity
+
+CELL_AREA = spread.STEP**2  # area of a cell of the floor [m^2]
+CELL_WIDTH = math.sqrt(4.0 * CELL_AREA / math.pi)  # diameter of a disc of the same area [m]
+ESTABLISHED = 60.0  # age of the fires with which a scene begins [s] [ours]
+# Soot from burning floor per heat [kg/kJ]
+FLOOR_SOOT = fuels.MATERIALS["wood"].soot / fuels.MATERIALS["wood"].combustion
+# Unit in which pictures count the age of flames on things: 5 frames of the original [s]
+UPDATE = 1 / 6
+CHEST = 1.0  # height at which the agent feels heat and smoke [m] [ours]
+
+
+@dataclass(frozen=True)
+class Blaze(Hazard):
+    """A realistic fire with these parameters; the defaults are those of the preset `realistic`."""
+
+    name: ClassVar[str] = "fire"
+    state_type: ClassVar[type[State]] = BlazeState
+    level: ClassVar[Level] = TEMPERATURE
+    tells: ClassVar[dict[str, Quantity]] = TELLS_OF_BLAZE
+    fills: ClassVar[bool] = True  # with smoke
+    uses: ClassVar[tuple[str, ...]] = ("water", "air")
+
+    room_temperature: float = 20.0  # [C] [docs/physics.md 4.4]
+    # temperature of burning things, and the highest of all: 800 K above the room [C] [M: McCaffrey, flame region]
+    flame_temperature: float = 820.0
+    every: int = 5  # frames from one update of heat to the next, as in the paper [HAZARD fire/manager.py:97]
+    time_scale: float = (
+        4.5  # seconds of fire per second: 0.15 s in a frame of 1/30 s [docs/physics.md 3.1, flame spread]
+    )
+    radiant: float = 0.35  # share of the heat that is radiated, where no measurement tells [docs/physics.md 4.4]
+    first_release: float = fuels.BASKET  # heat release of the fires with which a scene begins [kW]
+    horizon: float = 50.0  # length of episodes that the floor window and the roster have room for [s]
+    agent_bound: float = 10.0  # flux that keeps the agent out: the limit of class III [kW/m^2] [docs/physics.md 3.1]
+
+    def __post_init__(self) -> None:
+        for name in ("every", "time_scale", "first_release", "horizon", "agent_bound"):
+            if not 0 < getattr(self, name) < math.inf:
+                raise ValueError(f"{name} must be a positive number, got {getattr(self, name)}")
+        if not 0 < self.radiant < 1:
+            raise ValueError(f"radiant must be a share between 0 and 1, got {self.radiant}")
+        if not self.flame_temperature > self.room_temperature:
+            found = f"got {self.flame_temperature}"
+            raise ValueError(f"flame_temperature must be above room_temperature, {self.room_temperature}, {found}")
+
+    def sizes(self, world: World) -> dict[str, int]:
+        lattices = max(1, *(len(s.fires) for s in world.specs))
+        fastest = max(fuels.SPREAD.get(s.room.floor, 0.0) * coupling.fastest(s.wind) for s in world.specs)
+        cells = fastest * self.time_scale * self.horizon / spread.STEP
+        window = 2 * (math.ceil(1.25 * cells) + 3) + 1
+        flames = min(window**2, math.ceil(1.3 * math.pi * cells**2) + 25)
+        return {
+            "S": lattices,
+            "K": window,
+            "F": lattices * flames,
+            "O": max(1, *(len(smoke.gaps(s.room)) for s in world.specs)),
+        }
+
+    def reset(self, state: BlazeState, world: World, rows: Tensor) -> None:
+        state.temperature[rows] = state.agent_temperature[rows] = state.smoke_temperature[rows] = self.room_temperature
+        begin_flames(state, world, rows, fixtures_block=True)
+        first = state.flame_cell[rows] >= 0
+        state.flame_peak[rows] = torch.where(first, self.first_release, CELL_AREA * fuels.AS_GOODS)
+        state.flame_age[rows] = torch.where(first, ESTABLISHED, 0.0)
+        kindling.describe_rooms(state, world, rows)
+        kindling.describe_things(state, world, rows)
+
+    @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
+    def advance(self, state: BlazeState, world: World, dt: float) -> None:
+        coupling.drench(state, world)
+        due = world.frame % self.every == 0
+        if not none_set(due):
+            waiting = {} if none_set(~due) else {name: getattr(state, name).clone() for name in HEATED}
+            self._heat(state, world, dt * self.time_scale * self.every)
+            for name, before in waiting.items():
+                now = getattr(state, name)
+                now.copy_(torch.where(due.view(-1, *[1] * (now.ndim - 1)), now, before))
+        state.flame_age.add_(lit(state, world.frame) * (dt * self.time_scale))
+        front.advance(state, world, dt * self.time_scale)
+
+    def _heat(self, state: BlazeState, world: World, step: float) -> None:
+        """Advance smoke, heat and burning by `step` seconds of fire."""
+        fires = self._fires(state, world)
+        self._smoke(state, world, fires, step)
+        self._warm(state, world, fires, step)
+        self._burn(state, world, step)
+
+    def _fires(self, state: BlazeState, world: World) -> radiation.Fires:
+        """The fires of each environment: B things, then F flames on the floor."""
+        there = world.exists & ~world.safe & (state.status == BURNING)
+        things = burning.release(state.course, state.burn_age) * there
+        flames = torch.minimum(burning.t_squared(fuels.FAST, state.flame_age), state.flame_peak)
+        flames = flames * lit(state, world.frame)
+        base = world.base_of(world.position, world.rotation, world.extent)
+        own = (4.0 / math.pi * world.extent[..., 0] * world.extent[..., 1]).sqrt()
+        return radiation.Fires(
+            torch.cat([base, state.flame_place], 1),
+            torch.cat([things, flames], 1),
+            torch.cat([burning.radiant(state.curve, self.radiant), torch.full_like(flames, self.radiant)], 1),
+            torch.cat([own, torch.full_like(flames, CELL_WIDTH)], 1),
+        )
+
+    def _smoke(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> None:
+        """Advance the layer of smoke by `step` seconds of fire."""
+        power = fires.power.sum(1)
+        convected = ((1.0 - fires.radiant) * fires.power).sum(1)
+        base = (fires.power * fires.place[..., 2]).sum(1) / power.clamp(min=1e-6)
+        things = state.status.shape[1]
+        soot = (fires.power[:, :things] * state.soot_yield).sum(1) + FLOOR_SOOT * fires.power[:, things:].sum(1)
+        walls = smoke.Walls(world.room.prod(-1), state.height, 2.0 * world.room.sum(-1))
+        before = smoke.Layer(state.smoke_volume, state.smoke_energy, state.smoke_mass)
+        source = smoke.Source(power, convected, base, soot)
+        layer = smoke.fill(before, walls, state.vents, source, self.room_temperature, self.flame_temperature, step)
+        state.heat_release.copy_(power)
+        layer = smoke.Layer(layer.volume * state.roofed, layer.energy * state.roofed, layer.soot * state.roofed)
+        state.smoke_volume.copy_(layer.volume)
+        state.smoke_energy.copy_(layer.energy)
+        state.smoke_mass.copy_(layer.soot)
+        state.smoke_height.copy_(smoke.interface(layer.volume, walls))
+        state.smoke_temperature.copy_(smoke.temperature(layer, self.room_temperature))
+        state.smoke_density.copy_(smoke.extinction(layer))
+
+    def _exposure(self, state: BlazeState, fires: radiation.Fires, points: Tensor) -> tuple[Tensor, Tensor]:
+        """Flux [kW/m^2] on surfaces facing heat and gas temperature [C], both [E, P], at `points` [m], [E, P, 3]."""
+        kelvin = state.smoke_temperature + radiation.KELVIN
+        opaque = 1.0 - radiation.exponential(-state.smoke_density * (state.height - state.smoke_height))
+        layer = opaque * radiation.STEFAN * (kelvin**4 - (self.room_temperature + radiation.KELVIN) ** 4)
+        flux = radiation.flux(fires, points, state.height) + layer[:, None]
+        inside = points[..., 2] > state.smoke_height[:, None]
+        gas = torch.where(inside, state.smoke_temperature[:, None], self.room_temperature)
+        rise = smoke.above(fires, points, self.room_temperature)
+        return flux, (gas + rise).clamp(max=self.flame_temperature)
+
+    def _warm(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> None:
+        """Heat things, and the agent, for `step` seconds of fire."""
+        things = state.status.shape[1]
+        points = torch.cat([world.position, self._chest(world)], 1)
+        flux, gas = self._exposure(state, fires, points)
+        reached = torch.where(touching.touched(fires, world, state.height), touching.TOUCH_FLUX, 0.0)
+        taken = torch.maximum(flux[:, :things], reached) + radiation.CONVECTION * (
+            gas[:, :things] - self.room_temperature
+        )
+        passive = world.exists & ~world.safe & (state.status != BURNING)
+        warmed = radiation.warm(state.temperature, taken, state.solid, self.room_temperature, step).clamp(
+            max=self.flame_temperature
+        )
+        state.temperature.copy_(torch.where(passive, warmed, state.temperature))
+        state.agent_temperature.copy_(gas[:, -1])
+        state.agent_dose.add_(tenability.dose_rate(gas[:, -1], flux[:, -1]) * step)
+
+    def _burn(self, state: BlazeState, world: World, step: float) -> None:
+        """Let things catch fire and burn out."""
+        live = world.exists & ~world.safe
+        burning_now = live & (state.status == BURNING)
+        state.burn_age.add_(burning_now * step)
+        state.burn_updates.copy_((state.burn_age / (self.time_scale * UPDATE)).long())
+        ignites = live & (state.status == NORMAL) & (state.temperature >= state.threshold)
+        state.status.add_(ignites | (burning_now & (state.burn_age >= state.burn_end)))  # normal -> burning -> burnt
+        state.temperature.masked_fill_(ignites, self.flame_temperature)
+
+    @staticmethod
+    def _chest(world: World) -> Tensor:
+        """Place where the agent feels heat [m], [E, 1, 3], world frame."""
+        return (world.agent_position + world.agent_position.new_tensor([0.0, 0.0, CHEST]))[:, None]
+
+    def damaged(self, state: BlazeState, world: World) -> Tensor:
+        return state.status != NORMAL
+
+    def image(self, state: BlazeState, world: World, points: Tensor) -> Tensor:
+        """Temperature [C], [E, P], that plate thermometers at `points` [m], [E, P, 3], world frame, would show.
+
+        It comes from radiation, plumes and the layer of smoke.
+        """
+        flux, gas = self._exposure(state, self._fires(state, world), points)
+        return radiation.adiabatic(flux, gas, self.room_temperature).clamp(max=self.flame_temperature)
+
+    def threatens(self, target: Any, level: float, height: float) -> bool:
+        return ignites(target, level)
+
+    def forbids(self, state: BlazeState, world: World, points: Tensor) -> Tensor:
+        """Whether `points` [m], [E, P, 3], world frame, are out of bounds, [E, P], bool.
+
+        They are above a burning floor cell, or under a flux of more than `agent_bound`.
+        """
+        apart = (state.flame_place[:, None, :, :2] - points[:, :, None, :2]).abs().amax(-1)
+        inside = ((apart <= spread.STEP / 2) & lit(state, world.frame)[:, None]).any(-1)
+        raised = points + points.new_tensor([0.0, 0.0, CHEST])
+        return inside | (self._exposure(state, self._fires(state, world), raised)[0] > self.agent_bound)
+
+    def agent_info(self, state: BlazeState, world: World) -> dict[str, Tensor]:
+        flux, gas = (v[:, 0] for v in self._exposure(state, self._fires(state, world), self._chest(world)))
+        return {
+            "agent_temperature": gas,
+            "agent_flux": flux,
+            "agent_dose": state.agent_dose.clone(),
+            "agent_thermal_class": tenability.thermal_class(gas, flux),
+            "agent_overheated": state.agent_dose >= tenability.UNBEARABLE,
+            "agent_in_fire": self.forbids(state, world, world.agent_position[:, None])[:, 0],
+            "agent_in_smoke": state.smoke_height < CHEST,
+        }

@@ -1,0 +1,51 @@
+"""Rooms and things in numbers, as a realistic fire needs them: set at reset (torch)."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+
+from hazard_ms.hazards.fire.realistic import burning, fuels, smoke
+from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
+from hazard_ms.simulation.world import World
+from hazard_ms.spec.catalogue import CATEGORIES
+
+
+def describe_rooms(state: BlazeState, world: World, rows: Tensor) -> None:
+    """Set what the fire needs of the rooms of the environments `rows`, [R]: floor, height [m], gaps and ceiling."""
+    specs = [world.specs[row] for row in rows.tolist()]
+    state.floor_speed[rows] = torch.tensor([fuels.SPREAD.get(s.room.floor, 0.0) for s in specs], device=world.device)
+    state.height[rows] = torch.tensor([s.room.height for s in specs], device=world.device)
+    state.smoke_height[rows] = state.height[rows]
+    state.roofed[rows] = torch.tensor([float(not s.room.open_air) for s in specs], device=world.device)
+    gaps = [smoke.gaps(s.room) for s in specs]
+    padded = [[*g, *[(0.0, 0.0, 0.0)] * (state.vents.shape[1] - len(g))] for g in gaps]
+    state.vents[rows] = torch.tensor(padded, device=world.device)
+
+
+def describe_things(state: BlazeState, world: World, rows: Tensor) -> None:
+    """Set how the things of the environments `rows`, [R], ignite and burn: surfaces, heat release [kW] and soot."""
+    category = world.category.clamp(min=0)
+
+    def of(attribute: str) -> Tensor:
+        numbers = [float(getattr(fuels.material(c), attribute)) for c in CATEGORIES]
+        return torch.tensor(numbers, device=world.device)[category]
+
+    for name in ("ignition", "critical", "inertia", "sheet"):
+        getattr(state, name)[rows] = of(name)[rows]
+    state.threshold[rows] = torch.where(world.lookup("flammable") > 0, state.ignition, torch.inf)[rows]
+    wide, deep, high = world.extent.unbind(-1)
+    # fixtures weigh nothing on purpose
+    mass = torch.where(world.movable, world.mass, world.lookup("density") * wide * deep * high)
+    peak, energy = of("release") * (wide * deep + 2.0 * (wide + deep) * high), of("combustion") * mass
+    measured = torch.tensor([fuels.MEASURED.get(c, (0.0, 0.0)) for c in CATEGORIES], device=world.device)[category]
+    known = measured[..., 0] > 0
+    peak, energy = torch.where(known, measured[..., 0], peak), torch.where(known, measured[..., 1], energy)
+    made = burning.course(of("growth"), peak, energy)
+    numbers = {name: k for k, name in enumerate(fuels.CURVES)}
+    curve = torch.tensor([numbers.get(fuels.CURVE_OF.get(c, ""), -1) for c in CATEGORIES], device=world.device)
+    state.curve[rows] = curve[category][rows]
+    for name in ("growth", "peak", "decline"):
+        getattr(state, name)[rows] = getattr(made, name)[rows]
+    state.burn_end[rows] = torch.where(state.curve >= 0, burning.lasting(state.curve), made.end)[rows]
+    state.soot_yield[rows] = (of("soot") / of("combustion"))[rows]

@@ -1,0 +1,1 @@
+"""Wind: air that pushes and turns what stands in it, gusts, and shelter behind things."""

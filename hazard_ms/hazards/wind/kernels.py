@@ -1,0 +1,142 @@
+"""The kernels of hazard_ms.hazards.wind.wind, one thread per body or point (Warp)."""
+
+from __future__ import annotations
+
+import warp as wp
+
+from hazard_ms.hazards.wind import air as laws
+from hazard_ms.kernels import draws
+from hazard_ms.kernels.bodies import Bodies
+from hazard_ms.kernels.boxes import axes_of, spans, to_body
+from hazard_ms.kernels.drag import spin_drag
+from hazard_ms.kernels.launch import OPTIONS
+
+wp.set_module_options(OPTIONS)
+
+CALM = wp.constant(1e-3)  # slower air does nothing [m/s] [HAZARD wind/object.py:41]
+UNIT_VARIANCE = wp.constant(3.0**0.5)  # length of a vector of three numbers of mean square 1
+
+
+@wp.struct
+class Rules:
+    """The fields of hazard_ms.hazards.wind.wind.Wind with the same names."""
+
+    implicit: bool
+    projected: bool
+    crossflow: bool
+    fixed_length: bool
+    pressure: bool
+    sheltered: bool
+    gust_intensity: float
+    roughness: float
+
+
+@wp.struct
+class Air:
+    """The fields of WindState with the same names: the flow of each environment, and what each thing feels of it."""
+
+    heading: wp.array(dtype=wp.vec2)
+    speed: wp.array(dtype=float)
+    gust: wp.array(dtype=float)
+    corner: wp.array(dtype=wp.vec2)
+    loss: wp.array3d(dtype=float)
+    cause: wp.array3d(dtype=float)
+    felt: wp.array2d(dtype=float)
+    strength: wp.array2d(dtype=float)
+    sway: wp.array2d(dtype=wp.vec3)
+    twist: wp.array2d(dtype=wp.vec3)
+    settled: wp.array2d(dtype=bool)
+
+
+@wp.func
+def open_speed(mean: float, gust: float, height: float, rules: Rules) -> float:
+    """Speed of the air along its heading [m/s] at `height` [m] in the open, from its `mean` [m/s] and the `gust`."""
+    here = mean * (1.0 + rules.gust_intensity * gust)
+    if rules.roughness > 0.0:
+        here = here * laws.profile(height, rules.roughness)
+    return here
+
+
+@wp.kernel
+def speeds(rules: Rules, air: Air, points: wp.array2d(dtype=wp.vec3), found: wp.array2d(dtype=float)):
+    """Write the speed of the air along its heading [m/s] at every one of the `points` [m]."""
+    e, p = wp.tid()
+    point = points[e, p]
+    here = open_speed(air.speed[e], air.gust[e], point[2], rules)
+    if rules.sheltered:
+        here = here * laws.share(e, point, air.corner[e], air.loss, air.cause)
+    found[e, p] = here
+
+
+@wp.kernel
+def turbulence(
+    stream: wp.uint32,
+    sideways: float,
+    turning: float,
+    seed: wp.array(dtype=wp.int64),
+    frame: wp.array(dtype=wp.int64),
+    rules: Rules,
+    air: Air,
+    bodies: Bodies,
+):
+    """Draw new random vectors `sway` and `twist` for a frame.
+
+    `sideways` and `turning` are standard deviations along each axis, that of `twist` in half heights of the body.
+    """
+    e, b = wp.tid()
+    key = draws.key_of(seed[e], frame[e], stream)
+    x = draws.normal_pair(key, 3 * b)
+    y = draws.normal_pair(key, 3 * b + 1)
+    z = draws.normal_pair(key, 3 * b + 2)
+    r = wp.vec3(x[0], y[0], z[0])
+    if rules.fixed_length:  # a normal vector has no preferred direction
+        r = UNIT_VARIANCE * wp.normalize(r)
+    along = wp.vec3(air.heading[e][0], air.heading[e][1], 0.0)
+    height = spans(axes_of(bodies.rotation[e, b]), bodies.extent[e, b])[2]
+    air.sway[e, b] = sideways * wp.cross(along, r)
+    air.twist[e, b] = (0.5 * turning * height) * wp.cross(along, wp.vec3(x[1], y[1], z[1]))
+
+
+@wp.kernel
+def push(
+    dt: float,
+    rules: Rules,
+    air: Air,
+    bodies: Bodies,
+    force: wp.array2d(dtype=wp.vec3),
+    torque: wp.array2d(dtype=wp.vec3),
+):
+    """Write the force [N] and torque [N m] of the wind on every body over the next `dt` [s]."""
+    e, b = wp.tid()
+    force[e, b] = wp.vec3()
+    torque[e, b] = wp.vec3()
+    if not bodies.exists[e, b] or not bodies.movable[e, b]:
+        return
+    if bodies.safe[e, b] or bodies.held[e, b] or air.settled[e, b]:
+        return
+    point = bodies.position[e, b]
+    here = open_speed(air.speed[e], air.gust[e], point[2], rules)
+    if rules.sheltered:
+        here = here * laws.share(e, point, air.corner[e], air.loss, air.cause)
+    here = air.felt[e, b] * here
+    if wp.abs(here) <= CALM:
+        return
+    axes, size, mass = axes_of(bodies.rotation[e, b]), bodies.extent[e, b], bodies.mass[e, b]
+    direction = wp.vec3(air.heading[e][0], air.heading[e][1], 0.0)
+    slip = here - wp.dot(bodies.velocity[e, b], direction)
+    if rules.crossflow:
+        relative = here * direction - bodies.velocity[e, b]
+        slip = wp.length(relative)
+        direction = laws.unit(relative)
+    across = to_body(axes, direction)
+    area = laws.projected_area(across, size)
+    if not rules.projected:
+        box = spans(axes, size)
+        area = box[0] * box[2]
+    main = laws.drag(slip, air.strength[e, b] * laws.DENSITY * area, mass, dt, rules.implicit)
+    turn = main * air.twist[e, b]
+    if rules.pressure:
+        turn = turn + main * (axes * laws.pressure_arm(across, size))
+        turn = turn + spin_drag(bodies.angular_velocity[e, b], axes, size, mass, laws.DENSITY, dt, 0.0)
+    force[e, b] = main * (direction + air.sway[e, b])
+    torque[e, b] = turn

@@ -1,0 +1,188 @@
+"""The one way to start Warp kernels on torch tensors.
+
+A step of a hazard in torch is some 250 operations of 3 us each, however few bodies there are; as a kernel it is one of
+10 us. A result does not depend on the number of environments. A kernel is compiled when it is first used: about 10 s
+for all, once per machine (kept in the cache folder of hazard_ms; WARP_CACHE_PATH moves it). Every module of kernels
+sets `OPTIONS`: products and sums are not fused, so that all processors round alike.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import operator
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import torch
+import warp as wp
+from torch import Tensor
+
+from hazard_ms.machine.cache import home
+from hazard_ms.machine.progress import slow
+
+# Options of Warp that every module of kernels sets
+OPTIONS = {"enable_backward": False, "fuse_fp": False}
+
+_loaded: set[tuple[wp.Kernel, str]] = set()  # kernels that have been launched on a device
+
+Argument = Any  # a tensor, a number or a struct from `Launches.struct`
+
+
+class Launches:
+    """Recorded launches of kernels.
+
+    Repeating a launch takes 10 us, and 20 us more for each tensor or struct that is another one than the last time; a
+    first launch takes 0.2 ms. A tensor must keep its storage: other tensors and numbers are noticed, but not
+    `tensor.data = ...` and `resize_`.
+    """
+
+    def __init__(self) -> None:
+        self._made: dict[wp.Kernel, tuple[list[Argument], Any]] = {}
+        self._results: dict[wp.Kernel, tuple[Tensor, ...]] = {}
+        self._structs: dict[wp.Struct, _Filled] = {}
+
+    def __reduce__(self) -> tuple[type[Launches], tuple[()]]:
+        """A copy starts with nothing recorded."""
+        return Launches, ()
+
+    def results(self, kernel: wp.Kernel, *like: Tensor) -> tuple[Tensor, ...]:
+        """Tensors for the results of `kernel`, each with the shape and number type of one in `like`, [...].
+
+        They are the same ones at every call: clone what has to outlast the next launch.
+        """
+        known = self._results.get(kernel, ())
+        if [(t.shape, t.dtype, t.device) for t in known] != [(t.shape, t.dtype, t.device) for t in like]:
+            known = self._results[kernel] = tuple(
+                torch.empty_like(t, memory_format=torch.contiguous_format) for t in like
+            )
+        return known
+
+    def struct(self, kind: wp.Struct, source: object) -> Any:
+        """The struct `kind`, filled with the attributes of `source` that have the names of its fields.
+
+        It is filled once, and anew when an attribute has become another tensor or number; arrays share the tensors'
+        memory. One struct is kept per kind, so give each kind one source.
+        """
+        filled = self._structs.get(kind)
+        if filled is None:
+            filled = self._structs[kind] = _Filled(kind)
+        return filled.by(source)
+
+    def run(self, kernel: wp.Kernel, size: tuple[int, ...], *arguments: Argument) -> None:
+        """Run `kernel` for every index below `size`.
+
+        `arguments` are in the kernel's order; arrays are tensors of one device, used in place. The caller is
+        responsible for the sizes of the tensors: a kernel does not check them.
+        """
+        if 0 in size:
+            return
+        if kernel not in self._made:
+            self._made[kernel] = list(arguments), _recorded(kernel, size, arguments)
+        known, launch = self._made[kernel]
+        for k, (before, now) in enumerate(zip(known, arguments, strict=True)):
+            if _another(before, now):
+                launch.set_param_at_index(k, now)
+                known[k] = now  # and keeps the tensor alive
+        launch.set_dim(size)
+        launch.launch(stream=_stream(launch.device))
+
+
+class _Filled:
+    """A struct and the values that it was filled with, which are kept alive."""
+
+    def __init__(self, kind: wp.Struct) -> None:
+        self._kind = kind
+        self._read: Callable[[object], tuple[Argument, ...]] = operator.attrgetter(*kind.vars)
+        self._values: tuple[Argument, ...] = ()
+        self._struct: Any = None
+
+    def by(self, source: object) -> Any:
+        """The struct with the values of `source`; another struct if they are others than before."""
+        values = self._read(source)
+        if self._struct is None or any(map(_another, self._values, values)):
+            self._values, self._struct = values, self._kind()
+            for (name, field), value in zip(self._kind.vars.items(), values, strict=True):
+                tensor = isinstance(value, Tensor)
+                setattr(self._struct, name, wp.from_torch(value, dtype=field.type.dtype) if tensor else value)
+        return self._struct
+
+
+def _another(before: Argument, now: Argument) -> bool:
+    """Whether an argument is another tensor or struct, or a number of another value."""
+    return before is not now and (not isinstance(now, float | int) or before != now)
+
+
+def of_environments(points: Tensor, count: int) -> Tensor:
+    """Points [m], [E, P, 3], as kernels take them, from `points` [m], [E, P, 3], or [1, P, 3] for all environments.
+
+    `count` is E. Raises ValueError for points of another number of environments.
+    """
+    if points.ndim != 3 or points.shape[0] not in (1, count) or points.shape[2] != 3:
+        raise ValueError(f"points must have the shape [{count}, P, 3] or [1, P, 3], got {list(points.shape)}")
+    return points.expand(count, -1, -1).contiguous()
+
+
+def _recorded(kernel: wp.Kernel, size: tuple[int, ...], arguments: tuple[Argument, ...]) -> Any:
+    device = _device(arguments)
+    waiting = (
+        contextlib.nullcontext() if (kernel, device.alias) in _loaded else slow("compiling kernels (once, about 10 s)")
+    )
+    with waiting:
+        launch = wp.launch(kernel, dim=size, inputs=arguments, device=device, record_cmd=True)
+    _loaded.add((kernel, device.alias))
+    return launch
+
+
+def _device(arguments: tuple[Argument, ...]) -> Any:
+    """The device of the first array among `arguments`, also inside structs."""
+    for a in arguments:
+        if isinstance(a, Tensor):
+            return wp.device_from_torch(a.device)
+        for value in getattr(a, "__dict__", {}).values():
+            if isinstance(value, wp.array):
+                return value.device
+    raise ValueError("arguments must hold at least one tensor, got none")
+
+
+def _stream(device: Any) -> Any:
+    """The stream in which torch works on a GPU, so that kernels keep their place between its operations."""
+    return wp.stream_from_torch(torch.cuda.current_stream(device.ordinal)) if device.is_cuda else None
+
+
+@contextlib.contextmanager
+def _without_a_word() -> Iterator[None]:
+    """Suppress what Warp's library writes to the standard error on a machine without a GPU."""
+    try:
+        kept = os.dup(2)
+    except OSError:  # a process without a standard error
+        yield
+        return
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 2)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)
+
+
+def _cache() -> str:
+    """The folder of compiled kernels; one for this process alone if the usual one cannot be written."""
+    place = home() / "kernels"
+    with contextlib.suppress(OSError):
+        place.mkdir(parents=True, exist_ok=True)
+    return str(place) if os.access(place, os.W_OK) else tempfile.mkdtemp(prefix="hazard_ms_kernels_")
+
+
+def _begin() -> None:
+    wp.config.log_level = wp.LOG_WARNING
+    if "WARP_CACHE_PATH" not in os.environ:
+        wp.config.kernel_cache_dir = _cache()
+    with contextlib.nullcontext() if torch.cuda.is_available() else _without_a_word():
+        wp.init()
+
+
+_begin()

@@ -1,0 +1,184 @@
+"""The pictures of a film: third person, head camera, hazard and map side by side, with captions of action and score."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+
+import imageio_ffmpeg
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.pictures.drawing import (
+    ACCENT,
+    BAD,
+    EDGE,
+    GOLD,
+    GOOD,
+    NIGHT,
+    PANEL,
+    SOFT,
+    TEXT,
+    Pixels,
+    chip,
+    dot,
+    paint,
+    place,
+    rounded,
+    shorten,
+    text_width,
+    write,
+)
+from hazard_ms.pictures.panels import MapPanel, cover, hazard_panel, strongest
+from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.sensing.target_table import Target
+from hazard_ms.spec import Level
+
+WIDTH, HEIGHT = 1280, 720
+GAP = 12  # between panels
+TOP = 52  # of the panels, below the title
+MAIN = (760, 564)  # the third person's view, width and height
+RENDERED = (560, 416)  # it is rendered a little smaller, which saves a third of the time of a film on a CPU
+SIDE = 236  # of the head camera's and the hazard's image
+BOTTOM = TOP + MAIN[1] + GAP  # of the caption
+
+
+@dataclass(frozen=True)
+class Shot:
+    """Everything that one frame of the video shows."""
+
+    third_person: Pixels
+    head: Pixels
+    level: NDArray[np.floating] | None  # [K, 16, 16], of the task's K hazards in their units
+    map: SemanticMap
+    names: tuple[str, ...]  # of the things that the map refers to by index
+    targets: tuple[Target, ...]
+    frame: int
+    max_frames: int
+    agent: tuple[float, float, float]  # x, y [m], heading [rad]
+    path: tuple[tuple[float, float], ...]  # where the agent has been [m]
+    verb: str
+    target: str | None
+    note: str  # why the agent chose this
+    held: str | None
+    value: float  # share of the value rescued so far
+    news: str = ""  # shown over the main view for a while: a rescue, a failure
+    good_news: bool = True
+
+
+class Compositor:
+    """Puts the frames of one video together."""
+
+    def __init__(self, title: str, subtitle: str, levels: tuple[Level, ...]) -> None:
+        """`title`: what is played; `subtitle`: by whom and with which seed; `levels`: of the task's K hazards."""
+        self._levels = levels
+        self._map = MapPanel(2 * SIDE + GAP, MAIN[1] - SIDE - GAP, levels)
+        self._sheet = np.full((HEIGHT, WIDTH, 3), NIGHT, np.uint8)
+        dot(self._sheet, (GAP + 12, TOP // 2), 7.0, ACCENT)
+        write(self._sheet, title, (GAP + 30, 13), 21)
+        write(self._sheet, subtitle, (WIDTH - GAP - 4, 17), 16, SOFT, "right")
+
+    def compose(self, shot: Shot) -> Pixels:
+        """The frame of the video that shows `shot`: [720, 1280, 3], uint8, RGB."""
+        sheet = self._sheet.copy()
+        main = cover(shot.third_person, *MAIN)
+        if shot.news:
+            chip(main, shot.news, (16, MAIN[1] - 52), 20, TEXT, (24, 110, 62) if shot.good_news else (142, 44, 38), 0.9)
+        place(sheet, main, (GAP, TOP))
+        left = GAP * 2 + MAIN[0]
+        head = cover(shot.head, SIDE, SIDE)
+        place(sheet, self._hazard(head, shot.level), (left + SIDE + GAP, TOP))
+        place(sheet, self._labelled(head, "head camera"), (left, TOP))
+        plan = self._map.draw(shot.map, shot.targets, shot.names, shot.agent, shot.path, shot.target)
+        place(sheet, self._labelled(plan, "what the robot has seen"), (left, TOP + SIDE + GAP))
+        self._caption(sheet, shot)
+        return sheet
+
+    def _hazard(self, head: Pixels, images: NDArray[np.floating] | None) -> Pixels:
+        """The panel of the hazard that is strongest in view."""
+        if images is None or not np.isfinite(images).any(axis=(1, 2)).all():
+            return self._labelled(head.copy(), "no hazard image")
+        which = strongest(images, self._levels)
+        level = self._levels[which]
+        return self._labelled(hazard_panel(head, images[which], level), level.title)
+
+    def _labelled(self, panel: Pixels, text: str) -> Pixels:
+        chip(panel, text, (10, 10), 13, TEXT, PANEL)
+        return panel
+
+    def _caption(self, sheet: Pixels, shot: Shot) -> None:
+        width = WIDTH - 2 * GAP
+        done = min(1.0, shot.frame / max(1, shot.max_frames))
+        sheet[BOTTOM : BOTTOM + 4, GAP : GAP + width] = EDGE
+        sheet[BOTTOM : BOTTOM + 4, GAP : GAP + max(1, round(width * done))] = ACCENT
+        y = BOTTOM + 16
+        verb = shot.verb.replace("_", " ")
+        write(sheet, verb, (GAP + 4, y), 24, ACCENT)
+        if shot.target is not None:
+            write(sheet, shorten(shot.target, 24, 240), (GAP + 14 + text_width(verb, 24), y), 24)
+        write(sheet, shorten(shot.note, 15, 400), (GAP + 4, y + 34), 15, SOFT)
+        self._targets(sheet, shot, 450, y)
+        write(sheet, f"{shot.value:.0%}", (1010, y - 2), 30, GOOD if shot.value > 0 else TEXT)
+        write(sheet, "value rescued", (1010, y + 34), 15, SOFT)
+        write(sheet, f"{shot.frame}", (WIDTH - GAP - 4, y - 2), 30, TEXT, "right")
+        write(sheet, f"of {shot.max_frames} frames", (WIDTH - GAP - 4, y + 34), 15, SOFT, "right")
+
+    def _targets(self, sheet: Pixels, shot: Shot, x: int, y: int) -> None:
+        """One square per target: filled green when rescued, red when damaged; a gold edge marks the high value."""
+        side = 22 if len(shot.targets) <= 18 else 14
+        for i, target in enumerate(shot.targets):
+            left = x + i * (side + 6)
+            fill = GOOD if target.rescued else BAD if target.damaged else ACCENT if target.held else EDGE
+            edge = GOLD if target.value > 1 else SOFT
+            paint(sheet, rounded(side, side, 5), (left, y + 4), edge)
+            paint(sheet, rounded(side - 4, side - 4, 4), (left + 2, y + 6), fill)
+            if target.rescued and target.damaged:
+                paint(sheet, rounded(side - 12, side - 12, 3), (left + 6, y + 10), BAD)
+        saved = sum(t.rescued for t in shot.targets)
+        holding = f"holding {shot.held}" if shot.held is not None else "empty hand"
+        write(sheet, shorten(f"{saved} of {len(shot.targets)} rescued, {holding}", 15, 530), (x, y + 34), 15, SOFT)
+
+
+class Video:
+    """Writes frames to an mp4 that browsers play: H.264, yuv420p, index first. A context manager.
+
+    Raises ValueError for a rate that is not positive.
+    """
+
+    def __init__(self, path: Path, frames_per_second: float) -> None:
+        if frames_per_second <= 0:
+            raise ValueError(f"frames_per_second must be positive, got {frames_per_second}")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self.path = path
+        self.frames = 0
+        self._pipe = imageio_ffmpeg.write_frames(
+            str(path),
+            (WIDTH, HEIGHT),
+            fps=frames_per_second,
+            codec="libx264",
+            pix_fmt_out="yuv420p",
+            quality=None,
+            output_params=["-preset", "veryfast", "-crf", "23", "-movflags", "+faststart"],
+            ffmpeg_log_level="error",
+        )
+        self._pipe.send(None)
+
+    def add(self, frame: Pixels) -> None:
+        """Append a frame, [720, 1280, 3], uint8, RGB. Raises ValueError for another shape or type."""
+        if frame.shape != (HEIGHT, WIDTH, 3) or frame.dtype != np.uint8:
+            raise ValueError(f"a frame must be uint8 ({HEIGHT}, {WIDTH}, 3), got {frame.dtype} {frame.shape}")
+        self._pipe.send(np.ascontiguousarray(frame))
+        self.frames += 1
+
+    def close(self) -> None:
+        """Write the rest and the index."""
+        self._pipe.close()
+
+    def __enter__(self) -> Video:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

@@ -1,0 +1,137 @@
+"""Films an episode: every so many frames a picture of the room, of what the robot sees, and of what it knows."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+
+from hazard_ms.evaluation.metrics import Fate, Tally
+from hazard_ms.evaluation.runner import fates
+from hazard_ms.evaluation.watchers import Watcher
+from hazard_ms.pictures.compositor import Compositor, Shot, Video
+from hazard_ms.pictures.drawing import Pixels
+from hazard_ms.sensing.target_table import Target
+from hazard_ms.skills.context import LowLevel
+from hazard_ms.skills.decision import EXPLORE, Action, Decision, Result
+from hazard_ms.skills.executor import SkillEnv
+
+RATE = 24.0  # pictures of a film per second
+NEWS_SHOTS = 45  # pictures for which news stay: nearly 2 s
+LOOK_EVERY = 4  # pictures of the film for one of the head camera: it is small, and rendering is what takes the time
+LAST_SHOTS = 45  # pictures for which the end stays
+PATH_STEP = 0.05  # shortest piece of the drawn path [m]
+
+
+class Film(Watcher):
+    """The film of one episode, written to a file. A context manager, so that a broken episode leaves a whole file."""
+
+    def __init__(self, path: Path, subtitle: str, every: int) -> None:
+        """`every`: frames of the episode from one picture to the next. The film's speed is added to `subtitle`."""
+        self._path, self._subtitle, self._every = path, subtitle, every
+        self._files = ExitStack()
+        self._action, self._note = Action(EXPLORE), ""
+        self._way: list[tuple[float, float]] = []
+        self._news, self._good, self._news_left = "", True, 0
+        self._saved: frozenset[str] = frozenset()
+        self._shots = 0
+
+    def begin(self, env: SkillEnv, decision: Decision) -> None:
+        """Open the file."""
+        base = env.base
+        speed = self._every * RATE * base.control_timestep
+        title, subtitle = f"{base.task.name}   {base.specs[0].name}", f"{self._subtitle}, {speed:g}x speed"
+        self._env = env
+        self._video = self._files.enter_context(Video(self._path, RATE))
+        self._compositor = Compositor(title, subtitle, tuple(h.level for h in base.task.hazards))
+        self._head = base.observer.look()
+
+    def decided(self, decision: Decision, action: Action, note: str) -> None:
+        """Show `action` and its reason from now on."""
+        self._action, self._note = action, note
+
+    def ended(self, result: Result) -> None:
+        """Show a failure for a while."""
+        if not result.ok:
+            self._tell(f"{str(self._action).replace('_', ' ', 1)}: {result.reason.replace('_', ' ')}", good=False)
+
+    def frame(self, action: LowLevel) -> None:
+        """Take a picture where one is due; `action`, [A], in the units of the robot's controllers, is not looked at."""
+        x, y, _heading = self._env.stage.robot.base()
+        if not self._way or np.hypot(x - self._way[-1][0], y - self._way[-1][1]) > PATH_STEP:
+            self._way.append((x, y))
+        if self._env.frame % self._every == 0:
+            self._shoot()
+
+    def finish(self, reason: str) -> None:
+        """Hold the last picture for a while, and close the file."""
+        last = self._shoot()
+        for _ in range(LAST_SHOTS):
+            self._video.add(last)
+        self._files.close()
+
+    def __enter__(self) -> Film:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._files.close()
+
+    def _shoot(self) -> Pixels:
+        """Take a picture now, and add it to the film."""
+        env, base = self._env, self._env.base
+        if self._shots % LOOK_EVERY == 0:
+            self._head = base.observer.look()
+        self._shots += 1
+        rgb, view = self._head
+        room = base.render()[0].cpu().numpy()
+        now = fates(env)
+        self._tell_rescues(now)
+        shown = self._news if self._news_left > 0 else ""
+        self._news_left -= 1
+        held = env.stage.held
+        picture = self._compositor.compose(
+            Shot(
+                third_person=room,
+                head=rgb.cpu().numpy(),
+                level=view.level,
+                map=env.seen,
+                names=base.world.names[0],
+                targets=self._targets(now),
+                frame=env.frame,
+                max_frames=env.max_frames,
+                agent=env.stage.robot.base(),
+                path=tuple(self._way),
+                verb=self._action.verb,
+                target=self._action.target,
+                note=self._note,
+                held=base.world.names[0][held] if held >= 0 else None,
+                value=Tally.of(now).value,
+                news=shown,
+                good_news=self._good,
+            )
+        )
+        self._video.add(picture)
+        return picture
+
+    def _targets(self, now: tuple[Fate, ...]) -> tuple[Target, ...]:
+        """The target table as it is at this frame.
+
+        The audience is told of all damage, the agent only of what it sees.
+        """
+        world = self._env.base.world
+        damaged = {world.names[0].index(f.name) for f in now if f.damaged}
+        return self._env.base.observer.table.rows(world, 0, damaged)
+
+    def _tell(self, news: str, good: bool) -> None:
+        self._news, self._good, self._news_left = news, good, NEWS_SHOTS
+
+    def _tell_rescues(self, now: tuple[Fate, ...]) -> None:
+        saved = frozenset(f.name for f in now if f.rescued)
+        for fate in now:
+            if fate.rescued and fate.name not in self._saved:
+                self._tell(f"{fate.name} is safe" + (", but damaged" if fate.damaged else ""), good=True)
+        self._saved = saved

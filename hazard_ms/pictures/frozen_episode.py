@@ -1,0 +1,107 @@
+"""An episode played to a frame without drawing, and the views of it that can be photographed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import sapien
+from mani_skill.utils.sapien_utils import look_at
+
+from hazard_ms.agents.base import agent
+from hazard_ms.effects.entities import FRAMES_PER_SECOND
+from hazard_ms.effects.raytracing.still import Image, Photographer, Viewpoint
+from hazard_ms.evaluation.runner import Runner
+from hazard_ms.pictures.options import IDLE, RenderOptions
+from hazard_ms.simulation.viewpoint import corner_view
+from hazard_ms.skills.executor import SkillEnv
+
+THIRD_ANGLE = 1.15  # vertical, of the third person's eye, as in the environment [rad]
+ORBIT = 0.36  # of a turntable, as a share of the scene's shorter side; indoors it stays inside the walls [ours]
+ORBIT_OUTDOORS, ORBIT_HEIGHT = 0.55, 0.85  # the latter as a share of the third person's height [ours]
+
+
+class FrozenEpisode:
+    """One episode that stands still at a frame. A context manager."""
+
+    def __init__(self, options: RenderOptions) -> None:
+        """Play the episode of `options` up to its frame.
+
+        Raises ValueError where nothing can draw, and for options that are not valid.
+        """
+        options.check()
+        episode = options.episode
+        player = None if episode.agent == IDLE else agent(episode.agent)
+        self._skills = SkillEnv.make(episode.env_id, render_mode="rgb_array", **episode.settings)
+        self.env = self._skills.base
+        if player is None:
+            self._skills.env.reset(seed=episode.seed, options=episode.reset_options)
+            self.play(options.frame)
+        else:
+            Runner(self._skills, player).run(episode.seed, episode.reset_options, until_frame=options.frame)
+
+    @property
+    def frame(self) -> int:
+        """Frames since the start of the episode."""
+        return int(self.env.world.frame[0])
+
+    def play(self, frame: int) -> None:
+        """Let the robot stand still until `frame`, which must not have passed."""
+        still = self.env.agent.action(0.0, 0.0, self.env.agent.tucked, True)
+        for _ in range(self.frame, frame):
+            self.env.advance(still)
+
+    def view(self, camera: str, width: int, height: int) -> Viewpoint:
+        """The view from the corner (third), or through the robot's head camera (head), of a size in pixels."""
+        if camera == "head":
+            eye = self.env.observer.camera.camera._render_cameras[0]
+            return Viewpoint(eye.global_pose, float(eye.fovy), width, height)
+        return Viewpoint(corner_view(self.env.specs[0]), THIRD_ANGLE, width, height)
+
+    def around(self, share: float, width: int, height: int) -> Viewpoint:
+        """The view from a circle around the middle of the scene; `share` of a turn, 0 to 1."""
+        spec = self.env.specs[0]
+        (x, y), turn = spec.room.size, 2 * math.pi * share
+        radius = (ORBIT_OUTDOORS if spec.room.open_air else ORBIT) * min(x, y)
+        eye = np.array(
+            [x / 2 + radius * math.cos(turn), y / 2 + radius * math.sin(turn), ORBIT_HEIGHT * corner_view(spec).p[2]]
+        )
+        return Viewpoint(look_at(eye, [x / 2, y / 2, 0.3]).sp, THIRD_ANGLE, width, height)
+
+    @contextmanager
+    def ready(self, view: Viewpoint, shader: str) -> Iterator[Callable[[int], Image]]:
+        """Compile what pictures from `view` through `shader` need.
+
+        Yields what takes a picture, given the samples per pixel.
+        """
+        self.env.observer.show()
+        with self._photographer.ready(view, shader, self.frame / FRAMES_PER_SECOND) as take:
+            yield take
+
+    def picture(self, view: Viewpoint, shader: str, samples: int) -> Image:
+        """The picture from `view`, [H, W, 3], RGB."""
+        with self.ready(view, shader) as take:
+            return take(samples)
+
+    @cached_property
+    def _photographer(self) -> Photographer:
+        return Photographer(self._scene)
+
+    @property
+    def _scene(self) -> sapien.Scene:
+        scene: sapien.Scene = self.env.scene.sub_scenes[0]
+        return scene
+
+    def close(self) -> None:
+        """Close the environment."""
+        self._skills.close()
+
+    def __enter__(self) -> FrozenEpisode:
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()

@@ -1,0 +1,226 @@
+"""Tasks, hazards, robots and agents by name: the one list of each, which third parties can add to.
+
+An entry names what it stands for as text, "package.module:attribute", or holds the object itself. Text is imported by
+`load` when it is first needed, so that this module imports nothing heavy.
+
+    import hazard_ms
+    hazard_ms.register_hazard("earthquake", "my_package.earthquake:earthquake")
+    hazard_ms.register_task("HazardEarthquake-v1", "my_package.rescue:earthquake_rescue", max_frames=900)
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import importlib.util
+import re
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType, ModuleType
+from typing import Any, TypeVar
+
+FRAMES = 1500  # of an episode [docs/benchmark.md 1]
+TASK_NAME = re.compile(r"[A-Za-z]\w*-v\d+")
+NAME = re.compile(r"[A-Za-z]\w*")
+
+
+@dataclass(frozen=True)
+class TaskEntry:
+    """A task: `maker(physics, **options)` gives the `hazard_ms.spec.Task`; episodes last `max_frames` at most."""
+
+    name: str  # the id under which gymnasium knows it, "HazardFire-v1"
+    maker: Any
+    max_frames: int = FRAMES
+
+
+@dataclass(frozen=True)
+class HazardEntry:
+    """A hazard: `maker(preset)` gives the `hazard_ms.hazards.base.Hazard`.
+
+    `looks`: class of its effects in pictures, see `hazard_ms.effects.looks`; `cases`: functions that give validation
+    cases; `charts`: function that gives the curves of the validation page.
+    """
+
+    name: str
+    maker: Any
+    looks: Any = None
+    cases: tuple[Any, ...] = ()
+    charts: Any = None
+
+
+@dataclass(frozen=True)
+class RobotEntry:
+    """A robot: a class that keeps `hazard_ms.robots.planar.PlanarRobot`; `uid` is ManiSkill's name of it."""
+
+    name: str
+    robot: Any
+    uid: str
+
+
+@dataclass(frozen=True)
+class AgentEntry:
+    """An agent: a subclass of `hazard_ms.agents.base.Agent`."""
+
+    name: str
+    agent: Any
+
+
+Entry = TaskEntry | HazardEntry | RobotEntry | AgentEntry
+_Kind = TypeVar("_Kind", TaskEntry, HazardEntry, RobotEntry, AgentEntry)
+
+_tasks: dict[str, TaskEntry] = {}
+_hazards: dict[str, HazardEntry] = {}
+_robots: dict[str, RobotEntry] = {}
+_agents: dict[str, AgentEntry] = {}
+TASKS: Mapping[str, TaskEntry] = MappingProxyType(_tasks)
+HAZARDS: Mapping[str, HazardEntry] = MappingProxyType(_hazards)
+ROBOTS: Mapping[str, RobotEntry] = MappingProxyType(_robots)
+AGENTS: Mapping[str, AgentEntry] = MappingProxyType(_agents)
+
+_followers: list[tuple[Callable[[Entry], None], Callable[[Entry], None]]] = []
+
+
+def register_task(name: str, maker: Any, max_frames: int = FRAMES) -> None:
+    """Add a task, and make it known to gymnasium and ManiSkill.
+
+    Raises ValueError for a name that no environment can have, one that is taken, and a wrong number of frames.
+    """
+    if isinstance(max_frames, bool) or not isinstance(max_frames, int) or max_frames < 1:
+        raise ValueError(f"max_frames must be a whole number from 1, got {max_frames!r}")
+    _add(_tasks, TaskEntry(name, maker, max_frames), TASK_NAME, "Name-v0")
+
+
+def register_hazard(name: str, maker: Any, looks: Any = None, cases: Any = (), charts: Any = None) -> None:
+    """Add a hazard. `cases` is one function, or a tuple of them. Raises ValueError for a name that is taken."""
+    several = cases if isinstance(cases, tuple) else (cases,)
+    _add(_hazards, HazardEntry(name, maker, looks, several, charts))
+
+
+def register_robot(name: str, robot: Any, uid: str | None = None) -> None:
+    """Add a robot; `uid`: by default that of the class, or hazard_NAME where it is given as text.
+
+    Raises ValueError for a name that is taken.
+    """
+    _add(_robots, RobotEntry(name, robot, uid or getattr(robot, "uid", None) or f"hazard_{name}"))
+
+
+def register_agent(name: str, agent: Any) -> None:
+    """Add an agent. Raises ValueError for a name that is taken."""
+    _add(_agents, AgentEntry(name, agent))
+
+
+def unregister(entry: Entry) -> None:
+    """Remove an entry, everywhere that it was made known. Raises KeyError if it is not registered."""
+    table: Any = {TaskEntry: _tasks, HazardEntry: _hazards, RobotEntry: _robots, AgentEntry: _agents}[type(entry)]
+    if table[entry.name] != entry:
+        raise KeyError(f"{entry.name!r} is registered as something else")
+    del table[entry.name]
+    for _, removed in _followers:
+        removed(entry)
+
+
+def follow(added: Callable[[Entry], None], removed: Callable[[Entry], None] = lambda entry: None) -> None:
+    """Call `added` with every entry there is and every later one, and `removed` with those that are taken away."""
+    _followers.append((added, removed))
+    entries: list[Entry] = [*_tasks.values(), *_hazards.values(), *_robots.values(), *_agents.values()]
+    for entry in entries:
+        added(entry)
+
+
+def find(table: Mapping[str, _Kind], name: Any, what: str) -> _Kind:
+    """The entry called `name` in one of the tables above. Raises ValueError for others, which says `what` it is."""
+    from hazard_ms.checks import one_of  # loads numpy
+
+    return table[one_of(name, table, what)]
+
+
+def load(what: Any) -> Any:
+    """The object that `what` names as "package.module:attribute"; anything but text is returned as it is.
+
+    Raises ValueError if there is no such module or attribute.
+    """
+    if not isinstance(what, str):
+        return what
+    module_name, _, attribute = what.partition(":")
+    if not module_name or not attribute:
+        raise ValueError(f"an entry must be package.module:attribute, got {what!r}")
+    try:
+        return getattr(importlib.import_module(module_name), attribute)
+    except ModuleNotFoundError as missing:
+        raise ValueError(f"{what!r} must name a module that can be imported; {missing}") from missing
+    except AttributeError as missing:
+        raise ValueError(f"{what!r} must name an attribute of {module_name}; {missing}") from missing
+
+
+def load_plugin(text: str) -> ModuleType:
+    """Run a third party's module, which registers what it brings: a file "folder/name.py", or "package.module".
+
+    A file is run once, however often it is loaded. Raises ValueError if there is no such file or module.
+    """
+    if not text.endswith(".py"):
+        try:
+            return importlib.import_module(text)
+        except (ModuleNotFoundError, TypeError) as missing:
+            raise ValueError(f"load must be a file NAME.py or a module, got {text!r}: {missing}") from missing
+    path = Path(text).resolve()
+    name = f"hazard_ms_plugin_{path.stem}_{hashlib.sha256(str(path).encode()).hexdigest()[:8]}"
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None or not path.is_file():
+        raise ValueError(f"load must be a file that exists, got {text!r}")
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module
+
+
+def _add(table: dict[str, _Kind], entry: _Kind, form: re.Pattern[str] = NAME, shown: str = "name") -> None:
+    if not isinstance(entry.name, str) or not form.fullmatch(entry.name):
+        raise ValueError(f"a registered name must look like {shown!r}, got {entry.name!r}")
+    if entry.name in table:
+        if table[entry.name] == entry:
+            return
+        raise ValueError(f"a registered name must be new, got {entry.name!r}, which is {table[entry.name]}")
+    table[entry.name] = entry
+    for added, _ in _followers:
+        added(entry)
+
+
+register_task("HazardFire-v1", "hazard_ms.tasks.fire:hazard_fire")
+register_task("HazardFlood-v1", "hazard_ms.tasks.flood:hazard_flood")
+register_task("HazardWind-v1", "hazard_ms.tasks.wind:hazard_wind", max_frames=3000)
+register_task("HazardCompound-v1", "hazard_ms.tasks.compound:hazard_compound")
+
+register_hazard(
+    "fire",
+    "hazard_ms.hazards.presets:fire",
+    "hazard_ms.effects.fire:FireEffects",
+    ("hazard_ms.validation.fire_cases:cases", "hazard_ms.validation.blaze_cases:cases"),
+    "hazard_ms.validation.curves:fire_charts",
+)
+register_hazard(
+    "flood",
+    "hazard_ms.hazards.presets:flood",
+    "hazard_ms.effects.flood:FloodEffects",
+    "hazard_ms.validation.flood_cases:cases",
+    "hazard_ms.validation.curves:flood_charts",
+)
+register_hazard(
+    "wind",
+    "hazard_ms.hazards.presets:wind",
+    "hazard_ms.effects.wind:WindEffects",
+    "hazard_ms.validation.wind_cases:cases",
+    "hazard_ms.validation.curves:wind_charts",
+)
+
+register_robot("fetch", "hazard_ms.robots.fetch:HazardFetch")
+register_robot("g1", "hazard_ms.robots.g1:HazardG1")
+
+register_agent("random", "hazard_ms.agents.random:Random")
+register_agent("greedy", "hazard_ms.agents.greedy:Greedy")

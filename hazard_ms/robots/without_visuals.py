@@ -1,0 +1,26 @@
+"""A robot's description without its visual shapes, for machines where nothing can draw."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+from hazard_ms.machine.cache import kept_folder
+
+
+def without_visuals(urdf: Path) -> Path:
+    """A copy of a robot's description (URDF) that keeps bodies, joints and collision shapes only.
+
+    SAPIEN's loader makes a material for each visual shape, which fails without a Vulkan device.
+    """
+    tree = ElementTree.parse(urdf)
+    for link in tree.getroot().iter("link"):
+        for visual in link.findall("visual"):
+            link.remove(visual)
+    for mesh in tree.getroot().iter("mesh"):
+        mesh.set("filename", str((urdf.parent / mesh.get("filename", "").removeprefix("package://")).resolve()))
+    files = {urdf.name: ElementTree.tostring(tree.getroot(), encoding="unicode")}
+    collisions = urdf.with_suffix(".srdf")  # pairs of links that may overlap; the loader reads it from beside the URDF
+    if collisions.exists():
+        files[collisions.name] = collisions.read_text(encoding="utf-8")
+    return kept_folder("robots", files) / urdf.name

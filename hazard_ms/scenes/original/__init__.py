@@ -1,0 +1,1 @@
+"""The original benchmark's scenes, read from its folders and turned into ours."""

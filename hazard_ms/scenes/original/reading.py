@@ -1,0 +1,167 @@
+"""Reads the JSON of the original benchmark's files strictly, and names file, line and place of what it refuses.
+
+A log holds one list of commands after the other, usually one on each line.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NoReturn
+
+from hazard_ms.scenes.schema import unique_keys, whole_number
+
+LARGEST_FILE = 8_000_000  # [bytes]; the largest published log has 200,000
+FARTHEST = 10_000.0  # any number's absolute value, in its unit; ids are larger
+LONGEST_TEXT = 200  # of a name [characters]
+SPACE = re.compile(r"[ \t\r\n]*")
+
+
+@dataclass(frozen=True)
+class Record:
+    """A JSON object and where it stands, with strict access to what it holds."""
+
+    data: dict[str, Any]
+    place: str  # "DIR/log.txt, line 3, command 2 (add_object)"
+
+    def only(self, must: tuple[str, ...], may: tuple[str, ...] = ()) -> Record:
+        """The record itself, if its keys are all of `must` and any of `may`. Raises ValueError for others."""
+        for key in must:
+            if key not in self.data:
+                raise ValueError(f"{self.place}: keys must include {', '.join(must)}, got no {key!r}")
+        for key in self.data:
+            if key not in must and key not in may:
+                raise ValueError(f"{self.place}: keys must be among {', '.join((*must, *may))}, got {key!r:.100}")
+        return self
+
+    def number(self, key: str, default: float | None = None) -> float:
+        """The finite number at `key`. Raises ValueError for anything else."""
+        value = self.data.get(key, default)
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= FARTHEST:
+            self.refuse(key, f"a number between -{FARTHEST:g} and {FARTHEST:g}")
+        return float(value)
+
+    def id(self, key: str = "id") -> int:
+        """The id at `key`: a whole number that names a thing. Raises ValueError for anything else."""
+        return self.ids(key, [self.data.get(key)])[0]
+
+    def ids(self, key: str, values: Any = None) -> list[int]:
+        """The list of ids at `key`. Raises ValueError for anything else."""
+        values = self.data.get(key) if values is None else values
+        if not isinstance(values, list) or not all(
+            isinstance(v, int) and not isinstance(v, bool) and 0 <= v < 2**63 for v in values
+        ):
+            self.refuse(key, "ids, whole numbers from 0")
+        return list(values)
+
+    def text(self, key: str) -> str:
+        """The text at `key`, of printable characters. Raises ValueError for anything else."""
+        value = self.data.get(key)
+        if not isinstance(value, str) or not 0 < len(value) <= LONGEST_TEXT or not value.isprintable():
+            self.refuse(key, f"a text of 1 to {LONGEST_TEXT} printable characters")
+        return str(value)
+
+    def flag(self, key: str, default: bool | None = None) -> bool:
+        """The truth value at `key`. Raises ValueError for anything else."""
+        value = self.data.get(key, default)
+        if not isinstance(value, bool):
+            self.refuse(key, "true or false")
+        return bool(value)
+
+    def vector(self, key: str) -> tuple[float, float, float]:
+        """The vector at `key`: {"x": .., "y": .., "z": ..} or [x, y, z]. Raises ValueError for anything else."""
+        value = self.data.get(key)
+        if isinstance(value, list) and len(value) == 3:
+            value = dict(zip("xyz", value, strict=True))
+        if not isinstance(value, dict) or set(value) != set("xyz"):
+            self.refuse(key, "three numbers x, y, z")
+        inner = Record(value, f"{self.place}, {key}")
+        return inner.number("x"), inner.number("y"), inner.number("z")
+
+    def inner(self, key: str) -> Record:
+        """The object at `key`, inside this one. Raises ValueError for anything else."""
+        value = self.data.get(key)
+        if not isinstance(value, dict):
+            self.refuse(key, "an object")
+        return Record(value, f"{self.place}, {key}")
+
+    def refuse(self, key: str, allowed: str) -> NoReturn:
+        """Refuse the value at `key`. Always raises ValueError, which says what is `allowed`."""
+        raise ValueError(f"{self.place}: {key} must be {allowed}, got {self.data.get(key)!r:.100}")
+
+
+def read_object(path: Path) -> Record:
+    """The one JSON object of a file. Raises ValueError for anything else."""
+    values = list(_values(path))
+    if len(values) != 1 or not isinstance(values[0][1], dict):
+        raise ValueError(f"{path}, line 1: a file must hold one JSON object, got {len(values)} values")
+    return Record(values[0][1], f"{path}, line 1")
+
+
+def read_commands(path: Path) -> Iterator[Record]:
+    """All commands of a log in their order; `place` of each says where it stands.
+
+    Raises ValueError that names the line for anything that is not a command.
+    """
+    for line, commands in _values(path):
+        if not isinstance(commands, list):
+            raise ValueError(f"{path}, line {line}: a line must be a list of commands, got {commands!r:.100}")
+        for number, command in enumerate(commands, 1):
+            place = f"{path}, line {line}, command {number}"
+            if not isinstance(command, dict) or not isinstance(command.get("$type"), str):
+                raise ValueError(f"{place}: a command must be an object with a '$type', got {command!r:.100}")
+            yield Record(command, f"{place} ({command['$type']:.60})")
+
+
+def _values(path: Path) -> Iterator[tuple[int, Any]]:
+    """The JSON values of a file one after the other, each with the line on which it starts."""
+    text = _text(path)
+    decoder = json.JSONDecoder(
+        parse_constant=_not_finite, parse_int=whole_number, parse_float=_finite, object_pairs_hook=unique_keys
+    )
+    at, line, counted = 0, 1, 0
+    while (at := SPACE.match(text, at).end()) < len(text):  # type: ignore[union-attr]
+        line, counted = line + text.count("\n", counted, at), at
+        try:
+            value, at = decoder.raw_decode(text, at)
+        except json.JSONDecodeError as error:
+            raise ValueError(
+                f"{path}, line {error.lineno}, column {error.colno}: not valid JSON: {error.msg}"
+            ) from None
+        except (RecursionError, ValueError) as error:
+            raise ValueError(f"{path}, line {line}: {error}") from None
+        yield line, value
+
+
+def _text(path: Path) -> str:
+    try:
+        if not path.is_file():
+            raise ValueError(
+                f"{path}: there is no such file; a scene's folder holds log.txt and info.json, indoors flood.json, too"
+            )
+        with path.open("rb") as file:
+            raw = file.read(LARGEST_FILE + 1)
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
+    if len(raw) > LARGEST_FILE:
+        raise ValueError(f"{path} must have at most {LARGEST_FILE} bytes, got more")
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise ValueError(f"{path}, line {line}: not UTF-8: {error.reason}") from None
+
+
+def _not_finite(word: str) -> NoReturn:
+    raise ValueError(f"numbers must be finite, got {word}")
+
+
+def _finite(digits: str) -> float:
+    number = float(digits)
+    if not math.isfinite(number):
+        raise ValueError(f"numbers must be finite, got {digits:.40}")
+    return number

@@ -1,0 +1,53 @@
+"""Makes visible before each picture what the simulator does not draw: the hazards, the light and the bag."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hazard_ms.effects.entities import FRAMES_PER_SECOND
+from hazard_ms.effects.looks import Looks, tell_of_first_picture
+from hazard_ms.effects.raytracing.sensor import take_over
+from hazard_ms.episode.situation import Situation
+from hazard_ms.simulation.building import extent_of_bag, pose_of
+from hazard_ms.simulation.lighting import Lighting
+
+
+class Display:
+    """The visible side of one built environment, made anew with every reconfiguration."""
+
+    def __init__(
+        self,
+        situation: Situation,
+        scene: Any,
+        bags: list[Any],
+        lights: Lighting | None,
+        cameras: tuple[dict[str, Any], ...],
+        mode: str,
+    ) -> None:
+        """Prepare to show the episodes of `situation` in ManiSkill's `scene`.
+
+        `bags`: the actor of each environment's bag; `cameras`: dictionaries of cameras by name; `mode` of effects.
+        Cameras that use our ray tracing are replaced in place. Raises ValueError for one that uses SAPIEN's own.
+        """
+        self._situation, self._bags, self._lights = situation, bags, lights
+        self.scene = scene
+        self.renders = bool(scene.can_render())
+        world = situation.world
+        hazards = situation.episode.hazards
+        self.effects = Looks(hazards, scene.sub_scenes, world.specs, world, mode) if self.renders else None
+        for some in cameras:
+            take_over(some, lambda: int(world.frame[0]) / FRAMES_PER_SECOND)
+
+    def show(self) -> None:
+        """Show everything as it is now; call it before a picture is taken."""
+        if self.renders:
+            tell_of_first_picture(on_cpu=not self.scene.sub_scenes[0].render_system.device.is_cuda())
+        world, agent = self._situation.world, self._situation.agent
+        depth = extent_of_bag()[2]
+        mouths, headings = agent.bag_position().tolist(), world.agent_heading.tolist()
+        for bag, (x, y, z), heading in zip(self._bags, mouths, headings, strict=False):
+            bag._objs[0].set_pose(pose_of((x, y, z - depth), heading).sp)
+        if self.effects is not None and self._lights is not None:
+            self._lights.show(world.chance.seed, world.frame)
+            self.effects.light(self._lights.air())
+            self.effects.update(world, self._situation.episode.states, world.frame)

@@ -1,0 +1,43 @@
+"""Observation modes: their names, those that need a renderer, and the removal of numbers that are not finite."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import torch
+from mani_skill.envs.utils.observations import parse_obs_mode_to_struct
+
+from hazard_ms.checks import one_of
+
+# names of modes, of which the first three need no renderer, and of textures, which can be joined by "+"
+PLAIN_MODES = ("state", "state_dict", "none", "sensor_data", "pointcloud")
+TEXTURES = ("rgb", "depth", "segmentation", "position", "normal", "albedo", "rgbd", "state")
+
+
+def check_obs_mode(mode: str) -> None:
+    """Check that ManiSkill knows `mode`: a plain mode, or textures joined by "+". Raises ValueError otherwise."""
+    if not isinstance(mode, str):
+        raise ValueError(f"obs_mode must be one of {', '.join(PLAIN_MODES)}, or textures joined by '+', got {mode!r}")
+    if mode in PLAIN_MODES:
+        return
+    for part in mode.split("+"):
+        one_of(part, (*PLAIN_MODES, *TEXTURES), "obs_mode")
+    parse_obs_mode_to_struct(mode)
+
+
+def needs_pictures(mode: str | None) -> bool:
+    """Whether observations of `mode` need a renderer."""
+    return mode is not None and mode not in PLAIN_MODES[:3]
+
+
+def check_renderer(mode: str | None, chosen: str | None) -> None:
+    """Check that the renderer `chosen` can serve `mode`. Raises ValueError if `mode` needs one and there is none."""
+    if chosen in ("none", None) and needs_pictures(mode):
+        raise ValueError(f"obs_mode must be one of {', '.join(PLAIN_MODES[:3])} without a renderer, got {mode!r}")
+
+
+def finite(obs: Any) -> Any:
+    """`obs` with 0 in place of numbers that are not finite: a broken simulation must not reach a learner."""
+    if isinstance(obs, dict):
+        return {k: finite(v) for k, v in obs.items()}
+    return torch.nan_to_num(obs, 0.0, 0.0, 0.0) if obs.is_floating_point() else obs

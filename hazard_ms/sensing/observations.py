@@ -1,0 +1,96 @@
+"""Observations of an environment: the task's own entries, the hazard image, and looks for skills and films."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from torch import Tensor
+
+from hazard_ms.episode.situation import Situation
+from hazard_ms.sensing.camera import relabel
+from hazard_ms.sensing.display import Display
+from hazard_ms.sensing.hazard_image import enlarge, hazard_images, sample_points
+from hazard_ms.sensing.labels import label_table
+from hazard_ms.sensing.target_table import TargetTable
+from hazard_ms.sensing.view import View
+from hazard_ms.spec import Term
+
+SLOTS = 32  # columns of the target table in observations: an episode has 5 to 29 targets (docs/benchmark.md 1)
+
+
+class Observer:
+    """The senses of one built environment, made anew with every reconfiguration."""
+
+    def __init__(
+        self, situation: Situation, terms: Sequence[Term], display: Display, sensors: dict[str, Any], labels: Tensor
+    ) -> None:
+        """Make the senses for the task's `terms`; `sensors`: cameras by name; `labels` [E, S]: see `labels_of`."""
+        self.situation, self.terms, self.display, self.sensors, self.labels = situation, terms, display, sensors, labels
+        self.table = TargetTable(situation.world, SLOTS)
+        self._constant = {t.name: self._value(t) for t in terms if t.constant}
+
+    @property
+    def renders(self) -> bool:
+        """Whether pictures can be taken."""
+        return self.display.renders
+
+    @property
+    def camera(self) -> Any:
+        """ManiSkill's camera in the robot's head. Raises KeyError if the environment was made without it."""
+        return self.sensors[self.situation.agent.head_camera]
+
+    def label_table(self, env: int = 0) -> dict[int, tuple[str, str]]:
+        """Name and category of each id of a segmentation in scene `env`."""
+        return label_table(self.situation.world, self.labels, env)
+
+    def show(self) -> None:
+        """Show everything as it is now; call it before a picture is taken."""
+        self.display.show()
+
+    def extra(self, hidden: bool) -> dict[str, Tensor]:
+        """The task's own entries of the observation, float32 [E, N] each in its term's unit [SI]; all if `hidden`."""
+        told = [t for t in self.terms if hidden or not t.hidden]
+        return {t.name: self._constant[t.name] if t.constant else self._value(t) for t in told}
+
+    def _value(self, term: Term) -> Tensor:
+        value = term.of(self.situation)
+        return (self.table.of(value) if term.per_target else value).float().flatten(1)
+
+    def add_hazard_image(self, obs: dict[str, Any], in_extra: bool) -> dict[str, Any]:
+        """Put the hazard image of the head camera, [E, H, W, K], into an observation with sensor data.
+
+        With `in_extra` it goes beside the task's entries: a point cloud drops all other data of the cameras.
+        """
+        name = self.situation.agent.head_camera
+        if name not in self.sensors:
+            return obs
+        seen = obs["sensor_data"][name] if "sensor_data" in obs else None
+        depth = seen["depth"] if seen is not None and "depth" in seen else self._textures(depth=True)["depth"]
+        params = obs["sensor_param"][name] if "sensor_param" in obs else self.camera.get_params()
+        image = enlarge(self._levels(depth, params), *depth.shape[1:3])
+        if in_extra or seen is None:
+            obs["extra"]["hazard"] = image
+        else:
+            seen["hazard"] = image
+        return obs
+
+    def _levels(self, depth: Tensor, params: dict[str, Tensor]) -> Tensor:
+        """Levels of the K hazards at 16 x 16 points of the depth image, [E, K, 16, 16], each in its hazard's unit."""
+        points = sample_points(depth, params["intrinsic_cv"], params["cam2world_gl"])
+        return hazard_images(self.situation.episode.levels, points)
+
+    def _textures(self, **wanted: bool) -> dict[str, Tensor]:
+        every = dict.fromkeys(("rgb", "depth", "position", "segmentation", "normal", "albedo"), False)
+        return self.camera.get_obs(**{**every, **wanted})
+
+    def look(self) -> tuple[Tensor, View]:
+        """One look of the first environment's head camera: its image [H, W, 3], uint8, and the view for the map."""
+        self.show()
+        self.display.scene.update_render(update_sensors=True, update_human_render_cameras=False)
+        self.camera.capture()
+        seen = self._textures(rgb=True, depth=True, segmentation=True)
+        params = self.camera.get_params()
+        levels = self._levels(seen["depth"], params)
+        labels = relabel(seen["segmentation"], self.labels)
+        return seen["rgb"][0], View.of(seen["depth"], params["intrinsic_cv"], params["cam2world_gl"], labels, levels)

@@ -1,0 +1,78 @@
+"""Things as an agent has seen them: their place, the levels of hazards there, and whether they were damaged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.sensing.view import View
+
+SEEN_PIXELS = 3  # pixels from which a thing counts as seen: a key at 2 m has about so many in an image of 256 x 256
+MEDIAN_PIXELS = 400  # least number of a thing's pixels that give its position: as good as all 20,000 [ours]
+VIEW_ERROR = 0.1  # a median can move by this much because the angle of view changed [m]
+REMEMBERED = 256  # number of the newest levels of hazards that are kept for each thing
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """The memory of one thing. Levels are those of the task's hazards, in their order and units."""
+
+    position: NDArray[np.float32]  # median of the points that were seen of it, [3] [m]
+    radius: float  # horizontal distance of the farthest of these points from the median [m]
+    top: float  # height of the highest of them [m]
+    frame: int  # frame in which it was last seen
+    pixels: int  # number of its pixels in the view that gave its position
+    levels: tuple[float, ...] = ()  # mean level of each hazard over it when last seen; empty without a hazard image
+    damaged: bool = False  # whether it was damaged when last seen
+    history: tuple[tuple[int, tuple[float, ...]], ...] = ()  # (frame, levels), oldest first
+
+    @property
+    def hazard(self) -> float:
+        """Level of the task's first hazard over the thing when it was last seen; NaN if unknown."""
+        return self.levels[0] if self.levels else float("nan")
+
+
+def sightings(
+    view: View, frame: int, things: int, ignore: frozenset[int], damaged: NDArray[np.bool_] | None
+) -> dict[int, Sighting]:
+    """The sightings in `view` of B = `things` things, by index; those in `ignore` are left out.
+
+    `damaged` [B]: which of them are damaged. The view must have labels.
+    """
+    assert view.labels is not None
+    labels = view.labels.ravel()
+    flat = np.flatnonzero((labels >= 0) & (view.depth.ravel() > 0.0))
+    counts = np.bincount(labels[flat], minlength=things)
+    order = np.argsort(labels[flat], kind="stable")
+    ends = np.cumsum(counts)
+    made = {}
+    for index in np.flatnonzero(counts >= SEEN_PIXELS).tolist():
+        if index not in ignore:
+            pixels = flat[order[ends[index] - counts[index] : ends[index]]]
+            made[index] = _sighting(view, frame, pixels, damaged is not None and bool(damaged[index]))
+    return made
+
+
+def _sighting(view: View, frame: int, pixels: NDArray[np.int64], damaged: bool) -> Sighting:
+    some = pixels[:: max(1, len(pixels) // MEDIAN_PIXELS)]
+    row, column = np.divmod(some, view.depth.shape[1])
+    points = view.points(row, column)
+    middle = np.median(points, axis=0)
+    middle.flags.writeable = False
+    radius = float(np.hypot(*(points[:, :2] - middle[:2]).T).max())
+    levels = view.level_at(row, column)
+    means = () if levels is None else tuple(float(level.mean()) for level in levels)
+    return Sighting(middle, radius, float(points[:, 2].max()), frame, len(pixels), means, damaged, ((frame, means),))
+
+
+def merged(known: Sighting | None, seen: Sighting) -> Sighting:
+    """The memory of a thing after `seen`: the better of two views where it stayed, the new one where it moved."""
+    if known is None:
+        return seen
+    moved = float(np.linalg.norm(seen.position - known.position)) > known.radius + VIEW_ERROR
+    history = (*known.history, *seen.history)[-REMEMBERED:]
+    if not moved and seen.pixels < known.pixels // 2:
+        seen = replace(known, frame=seen.frame, levels=seen.levels, damaged=seen.damaged)
+    return replace(seen, history=history)

@@ -1,0 +1,183 @@
+"""The only file that touches SAPIEN's handles of moving bodies: one class for PhysX on the CPU, one for PhysX on a GPU.
+
+CPU: one environment. All bodies are read in one call (`pack`: rotation, position, velocity and angular velocity of
+every dynamic body of the scene, in the order of `rigid_dynamic_components`); the rest of SAPIEN's CPU interface is per
+body. GPU: whole buffers, one call for the forces of all bodies of all environments in each physics step. Written from
+SAPIEN 3.0.3's interface (`cuda_rigid_body_data`, `cuda_rigid_body_force`, `gpu_apply_rigid_dynamic_force`); run the
+tests marked `gpu` on such a machine.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sapien
+import torch
+from sapien.physx import PhysxRigidDynamicComponent
+from torch import Tensor
+
+from hazard_ms.kernels.bodies import Bodies
+from hazard_ms.kernels.reading import unpack
+
+if TYPE_CHECKING:
+    from hazard_ms.simulation.world import World
+
+PACKED_NUMBERS = 13  # numbers that SAPIEN packs for each body: position, rotation, velocity, angular velocity
+
+
+class CpuHandles:
+    """Bodies of one scene in PhysX on the CPU, in the order of World's B. See `hazard_ms.simulation.world.Handles`."""
+
+    def __init__(self, entities: list[sapien.Entity]) -> None:
+        self.bodies = [e.find_component_by_type(PhysxRigidDynamicComponent) for e in entities]
+        self._groups = [[s.get_collision_groups() for s in b.collision_shapes] for b in self.bodies]
+        self._frozen = [False] * len(self.bodies)
+        self._px: Any = entities[0].scene.physx_system if entities else None
+        self._length = -1  # size of what SAPIEN packed last [bytes]
+
+    def read(self, world: World) -> None:
+        """Write the state of the bodies into `world`."""
+        if not self.bodies:
+            return
+        packed = self._px.pack()
+        if len(packed) != self._length:
+            self._find(len(packed))
+        self._packed.view(-1).numpy()[:] = np.frombuffer(packed, np.float32, self._packed.numel())
+        bodies = world.launches.struct(Bodies, world)
+        world.launches.run(unpack, (len(self.bodies),), self._packed, self._rows, bodies)
+
+    def _find(self, length: int) -> None:
+        """Find the rows of the bodies in what SAPIEN packs; needed again when bodies come or go."""
+        every = self._px.rigid_dynamic_components
+        self._length = length
+        self._rows = torch.tensor([every.index(b) for b in self.bodies])
+        self._packed = torch.zeros(len(every), PACKED_NUMBERS)
+
+    def asleep(self) -> Tensor:
+        """Whether PhysX has put each body to rest, bool [1, M]."""
+        return torch.tensor([[b.is_sleeping for b in self.bodies]])
+
+    def put_to_sleep(self, asleep: Tensor) -> None:
+        """Let the bodies of the mask `asleep` [1, M] rest exactly where they are: restored piles do not move."""
+        for body, still, frozen in zip(self.bodies, asleep[0].tolist(), self._frozen, strict=True):
+            if still and not frozen:
+                body.put_to_sleep()
+
+    def push(self, force: Tensor, torque: Tensor | None) -> None:
+        """Apply `force` [N] and `torque` [N m], [1, B, 3], world frame, for one physics step."""
+        forces = force[0].numpy()
+        torques = np.zeros_like(forces) if torque is None else torque[0].numpy()
+        for b in (forces.any(1) | torques.any(1)).nonzero()[0].tolist():
+            if not self._frozen[b]:
+                self.bodies[b].add_force_torque(forces[b], torques[b])
+
+    def place(self, rows: Tensor, base: Tensor, rotation: Tensor) -> None:
+        """Put all bodies at rest at `base` [m], [1, B, 3], and `rotation` [1, B, 4], unless `rows` is empty."""
+        if len(rows) == 0:
+            return
+        for b, body in enumerate(self.bodies):
+            body.entity.set_pose(sapien.Pose(base[0, b].numpy(), rotation[0, b].numpy()))
+            if not self._frozen[b]:
+                body.linear_velocity = body.angular_velocity = np.zeros(3)
+
+    def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
+        """Keep the bodies of the mask `frozen` [1, B] at `base` [m], [1, B, 3], and `rotation` [1, B, 4].
+
+        They are kinematic and collide with nothing meanwhile.
+        """
+        wanted = frozen[0].tolist()
+        for b, body in enumerate(self.bodies):
+            if wanted[b] != self._frozen[b]:
+                self._switch(b, wanted[b])
+            if wanted[b]:
+                body.entity.set_pose(sapien.Pose(base[0, b].numpy(), rotation[0, b].numpy()))
+
+    def _switch(self, b: int, frozen: bool) -> None:
+        self._frozen[b] = frozen
+        body = self.bodies[b]
+        for shape, groups in zip(body.collision_shapes, self._groups[b], strict=True):
+            shape.set_collision_groups([0, 0, 0, 0] if frozen else groups)
+        body.kinematic = frozen
+        if not frozen:
+            body.linear_velocity = body.angular_velocity = np.zeros(3)
+        # bodies that rested on it must fall: contacts alone do not wake them
+        for other, still in zip(self.bodies, self._frozen, strict=True):
+            if not still:
+                other.wake_up()
+
+
+class GpuHandles:
+    """Bodies of E scenes in PhysX on a GPU, in the order of World's B, padded to M per scene.
+
+    See `hazard_ms.simulation.world.Handles`.
+    """
+
+    def __init__(self, px: Any, entities: list[list[sapien.Entity]], offsets: Tensor, device: torch.device) -> None:
+        self.px = px
+        self.offsets = offsets  # place of each sub-scene within the shared PhysX scene [m], [E, 3]
+        found = [[e.find_component_by_type(PhysxRigidDynamicComponent).gpu_index for e in row] for row in entities]
+        width = max(len(row) for row in found)
+        self.index = torch.tensor([row + [-1] * (width - len(row)) for row in found], device=device)  # [E, M]
+        self.present = self.index >= 0
+        self._frozen = torch.zeros_like(self.present)
+
+    def read(self, world: World) -> None:
+        """Write the state of the bodies into `world`."""
+        self.px.gpu_fetch_rigid_dynamic_data()
+        data = self.px.cuda_rigid_body_data.torch()[self.index.clamp(min=0)]
+        m = self.index.shape[1]
+        keep = self.present[..., None]
+        base = data[..., :3] - self.offsets[:, None]
+        centre = world.centre_of(base, data[..., 3:7], world.extent[:, :m])
+        for target, new in (
+            (world.position, centre),
+            (world.rotation, data[..., 3:7]),
+            (world.velocity, data[..., 7:10]),
+            (world.angular_velocity, data[..., 10:13]),
+        ):
+            target[:, :m] = torch.where(keep, new, target[:, :m])
+
+    def push(self, force: Tensor, torque: Tensor | None) -> None:
+        """Apply `force` [N] and `torque` [N m], [E, B, 3], world frame, for one physics step."""
+        m = self.index.shape[1]
+        live = self.present & ~self._frozen
+        felt, here = live[..., None], self.present
+        self.px.cuda_rigid_body_force.torch()[self.index[here], :3] = torch.where(felt, force[:, :m], 0.0)[here]
+        self.px.gpu_apply_rigid_dynamic_force()
+        if torque is not None:
+            self.px.cuda_rigid_body_torque.torch()[self.index[here], :3] = torch.where(felt, torque[:, :m], 0.0)[here]
+            self.px.gpu_apply_rigid_dynamic_torque()
+
+    def asleep(self) -> Tensor:
+        """All False, bool [E, M]: PhysX on a GPU does not tell which bodies rest."""
+        return torch.zeros_like(self.present)
+
+    def put_to_sleep(self, asleep: Tensor) -> None:
+        """Do nothing with the mask `asleep` [E, M]: PhysX on a GPU cannot do it, so restored piles settle again."""
+
+    def place(self, rows: Tensor, base: Tensor, rotation: Tensor) -> None:
+        """Put the bodies of the environments `rows` at rest at `base` [m], [E, B, 3], and `rotation` [E, B, 4]."""
+        moved = torch.zeros_like(self.present)
+        moved[rows] = True
+        self._write(moved, base, rotation)
+
+    def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
+        """Keep the bodies of the mask `frozen` [E, B] at `base` [m], [E, B, 3], and `rotation` [E, B, 4].
+
+        A body on a GPU cannot become kinematic at run time: it is put back in its place every frame, and no hazard acts
+        on it.
+        """
+        self._frozen = frozen[:, : self.index.shape[1]]
+        self._write(self._frozen, base, rotation)
+
+    def _write(self, moved: Tensor, base: Tensor, rotation: Tensor) -> None:
+        m = self.index.shape[1]
+        rows = self.px.cuda_rigid_body_data.torch()
+        old = rows[self.index.clamp(min=0)]
+        pose = torch.cat(
+            [base[:, :m] + self.offsets[:, None], rotation[:, :m], torch.zeros_like(old[..., 7:13])], dim=-1
+        )
+        new = torch.where((moved & self.present)[..., None], pose, old[..., :13])
+        rows[self.index[self.present], :13] = new[self.present]
+        self.px.gpu_apply_rigid_dynamic_data()

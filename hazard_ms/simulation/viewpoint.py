@@ -1,0 +1,39 @@
+"""The third person: from where a camera overlooks a whole scene."""
+
+from __future__ import annotations
+
+import numpy as np
+import sapien
+from mani_skill.utils.sapien_utils import look_at
+
+from hazard_ms.assets.index import asset
+from hazard_ms.scenes.boxes import Box, box_of
+from hazard_ms.spec import SceneSpec
+
+# a box higher than TALL hides from a camera what lies behind it and up to BESIDE to its sides [m] [ours]
+TALL, BESIDE = 1.3, 0.4
+HIDING = 12.0  # one box in the view weighs as much as being this much nearer to the agent [m] [ours]
+EYES_OUTDOORS = 6.0  # height of the camera that watches a scene in the open [m] [ours]
+
+
+def corner_view(spec: SceneSpec) -> sapien.Pose:
+    """Pose of the camera that watches a scene: in an upper corner of the room, or in the open over one of its sides.
+
+    It is far from the agent's start and looks at the middle, past tall things.
+    """
+    (x, y), z = spec.room.size, EYES_OUTDOORS if spec.room.open_air else spec.room.height
+    start = np.array(spec.agent_start.position)
+    sides = [(0.15, size / 2, size - 0.15) if spec.room.open_air else (0.15, size - 0.15) for size in (x, y)]
+    eyes = [np.array([a, b, z - 0.15]) for a in sides[0] for b in sides[1] if (a, b) != (x / 2, y / 2)]
+    target = np.array([x / 2, y / 2, 0.1]) * 0.8 + np.array([*start, 0.1]) * 0.2
+    tall = [box for f in spec.fixtures if (box := box_of(f, asset(f.asset).extent)).high > TALL]
+    eye = max(eyes, key=lambda e: np.linalg.norm(e[:2] - start) - HIDING * _hidden(e, target, tall))
+    return look_at(eye, target).sp
+
+
+def _hidden(eye: np.ndarray, target: np.ndarray, boxes: list[Box]) -> float:
+    """Number of `boxes` that hide the line from `eye` to `target`, each weighted: the nearer to the eye, the more."""
+    share = np.linspace(0.0, 0.8, 30)[:, None]
+    points = eye + share * (target - eye)
+    inside = [(b.distance(points[:, 0], points[:, 1]) < BESIDE) & (points[:, 2] < b.high + BESIDE) for b in boxes]
+    return float(sum((i * (1.0 - share[:, 0])).max(initial=0.0) for i in inside))

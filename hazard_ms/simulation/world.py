@@ -1,0 +1,237 @@
+"""The things of E scenes as batched tensors, and the calls that cross into the simulator.
+
+Indices along B count the bodies of a scene (they move) and then its fixtures (they do not), padded to the largest scene
+of the batch. Hazards see only this class: they know nothing of SAPIEN, and their tests use a World without a simulator
+(`handles=None`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import torch
+from torch import Tensor
+
+from hazard_ms.kernels.launch import Launches
+from hazard_ms.simulation.chance import Chance
+from hazard_ms.spec import Body, Build, SceneSpec
+from hazard_ms.spec.catalogue import CATEGORIES
+
+
+class Handles(Protocol):
+    """The moving bodies of a simulator, M per scene; `hazard_ms.simulation.physx` has a class for CPU and for GPU."""
+
+    def read(self, world: World) -> None:
+        """Write position, rotation, velocity and angular velocity of the moving bodies into `world`."""
+
+    def push(self, force: Tensor, torque: Tensor | None) -> None:
+        """Apply force [N] and torque [N m], [E, B, 3], world frame, at the centres of mass, for one physics step."""
+
+    def asleep(self) -> Tensor:
+        """Whether the simulator has put each body to rest, bool [E, M]."""
+
+    def put_to_sleep(self, asleep: Tensor) -> None:
+        """Let the bodies of the mask `asleep` [E, M] rest exactly where they are."""
+
+    def place(self, rows: Tensor, base: Tensor, rotation: Tensor) -> None:
+        """Put all bodies of the environments `rows` at rest at `base` [m], [E, B, 3], and `rotation`, [E, B, 4]."""
+
+    def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
+        """Keep the bodies of the mask `frozen`, [E, B], at `base` [m], [E, B, 3], and `rotation`, [E, B, 4].
+
+        They neither fall nor collide. All other bodies are free.
+        """
+
+
+@dataclass
+class World:
+    """State and properties of all things, in the world frame, SI units and degrees Celsius.
+
+    position          [E, B, 3]  centre of the bounding box, which is the centre of mass [m]
+    rotation          [E, B, 4]  unit quaternion w x y z
+    velocity          [E, B, 3]  velocity of the centre of mass [m/s]
+    angular_velocity  [E, B, 3]  about the world's axes [rad/s]
+    extent            [E, B, 3]  edge lengths of the box along the body's own axes [m]
+    mass              [E, B]     [kg]
+    exists            [E, B]     bool; False where the scene has fewer things than B
+    movable           [E, B]     bool; True for bodies, False for fixtures
+    category          [E, B]     index into the catalogue; -1 where nothing exists
+    target            [E, B]     bool; must be rescued
+    value             [E, B]     value of a rescue, 1 or 5
+    safe              [E, B]     bool; rescued: hazards no longer touch it (written by the rescue record)
+    away              [E, B]     bool; in the agent's bag, so no longer in the scene (written by the episode)
+    held              [E, B]     bool; in the agent's hand (written by the agent's hand)
+    room              [E, 2]     inner size of the room along x and y [m]
+    agent_position    [E, 3]     middle of the agent's base on the floor [m]
+    agent_heading     [E]        anticlockwise from +x [rad]
+
+    `fields` holds what hazards tell each other, as functions of points [m], [E, P, 3]. The episode makes sure that each
+    has one writer:
+    water  level of the water [m], [E, P]
+    air    velocity of the air x, y [m/s], [E, P, 2]
+    """
+
+    specs: tuple[SceneSpec, ...]
+    names: tuple[tuple[str, ...], ...]  # names of the things of each scene, in the order of B
+    chance: Chance
+    position: Tensor
+    rotation: Tensor
+    velocity: Tensor
+    angular_velocity: Tensor
+    extent: Tensor
+    mass: Tensor
+    exists: Tensor
+    movable: Tensor
+    category: Tensor
+    target: Tensor
+    value: Tensor
+    safe: Tensor
+    away: Tensor
+    held: Tensor
+    room: Tensor
+    agent_position: Tensor
+    agent_heading: Tensor
+    handles: Handles | None = field(default=None, repr=False)
+    agent_build: Build | None = None  # mass, width, drag area and friction of the agent's robot
+    fields: dict[str, Callable[[Tensor], Tensor]] = field(default_factory=dict, repr=False)
+    launches: Launches = field(default_factory=Launches, repr=False)  # prepared launches of its hazards' kernels
+
+    @classmethod
+    def of(
+        cls,
+        specs: tuple[SceneSpec, ...],
+        extents: list[list[tuple[float, float, float]]],
+        masses: list[list[float]],
+        device: torch.device | str = "cpu",
+    ) -> World:
+        """The world of `specs`, with everything at its place.
+
+        `extents` [m] and `masses` [kg] hold each scene's bodies, then its fixtures.
+        """
+        things = [s.things for s in specs]
+        shape = (len(specs), max(len(t) for t in things))
+
+        def zeros(*more: int, dtype: torch.dtype = torch.float32) -> Tensor:
+            return torch.zeros(*shape, *more, dtype=dtype, device=device)
+
+        world = cls(
+            specs=specs,
+            names=tuple(tuple(t.name for t in row) for row in things),
+            chance=Chance(len(specs), device),
+            position=zeros(3),
+            rotation=zeros(4),
+            velocity=zeros(3),
+            angular_velocity=zeros(3),
+            extent=zeros(3),
+            mass=zeros(),
+            exists=zeros(dtype=torch.bool),
+            movable=zeros(dtype=torch.bool),
+            category=zeros(dtype=torch.int64) - 1,
+            target=zeros(dtype=torch.bool),
+            value=zeros(),
+            safe=zeros(dtype=torch.bool),
+            away=zeros(dtype=torch.bool),
+            held=zeros(dtype=torch.bool),
+            room=torch.tensor([s.room.size for s in specs], device=device),
+            agent_position=torch.tensor([[*s.agent_start.position, 0.0] for s in specs], device=device),
+            agent_heading=torch.tensor([s.agent_start.heading for s in specs], device=device),
+        )
+        order = list(CATEGORIES)
+        for e, (spec, row) in enumerate(zip(specs, things, strict=True)):
+            n = len(row)
+            world.extent[e, :n] = torch.tensor(extents[e], device=device)
+            world.mass[e, :n] = torch.tensor(masses[e], device=device)
+            world.rotation[e, :n] = torch.tensor([t.rotation for t in row], device=device)
+            world.exists[e, :n] = True
+            world.movable[e, :n] = torch.tensor([isinstance(t, Body) for t in row], device=device)
+            world.category[e, :n] = torch.tensor([order.index(t.category) for t in row], device=device)
+            world.target[e, :n] = torch.tensor(
+                [isinstance(t, Body) and t.category in spec.target_categories for t in row], device=device
+            )
+            world.value[e, :n] = torch.tensor([float(CATEGORIES[t.category].value) for t in row], device=device)
+            base = torch.tensor([t.position for t in row], device=device)
+            world.position[e, :n] = cls.centre_of(base, world.rotation[e, :n], world.extent[e, :n])
+        world.rotation[..., 0] += (~world.exists).float()  # padding: the identity rotation
+        return world
+
+    @staticmethod
+    def centre_of(base: Tensor, rotation: Tensor, extent: Tensor) -> Tensor:
+        """Centres of boxes [m], [..., 3], from the middles of their bases, rotations and extents."""
+        return base + rotate(rotation, extent * extent.new_tensor([0.0, 0.0, 0.5]))
+
+    @staticmethod
+    def base_of(centre: Tensor, rotation: Tensor, extent: Tensor) -> Tensor:
+        """Middles of the bases of boxes [m], [..., 3], which are their assets' origins, from centres and rotations."""
+        return centre - rotate(rotation, extent * extent.new_tensor([0.0, 0.0, 0.5]))
+
+    @property
+    def num_envs(self) -> int:
+        """Number of environments, E."""
+        return self.position.shape[0]
+
+    @property
+    def num_bodies(self) -> int:
+        """Number of things in the largest scene, B: bodies and fixtures."""
+        return self.position.shape[1]
+
+    @property
+    def device(self) -> torch.device:
+        """Device on which all tensors live."""
+        return self.position.device
+
+    @property
+    def robot(self) -> Build:
+        """Build of the agent's robot, on which water and wind act. Raises ValueError in a world without an agent."""
+        if self.agent_build is None:
+            raise ValueError("agent_build must be the build of a robot, got None: this world has no agent")
+        return self.agent_build
+
+    @property
+    def frame(self) -> Tensor:
+        """Frames since the start of each episode, [E], int64."""
+        return self.chance.frame
+
+    def lookup(self, attribute: str) -> Tensor:
+        """A numeric attribute of the catalogue (temperatures in [C]) of every thing, float32 [E, B]; 0 for padding."""
+        table = torch.tensor([float(getattr(c, attribute)) for c in CATEGORIES.values()], device=self.device)
+        return torch.where(self.exists, table[self.category.clamp(min=0)], 0.0)
+
+    def index(self, env: int, name: str) -> int:
+        """Index along B of the thing called `name` in scene `env`. Raises ValueError if no thing has that name."""
+        if name not in self.names[env]:
+            raise ValueError(
+                f"a thing in {self.specs[env].name} must be one of {', '.join(self.names[env])}, got {name!r}"
+            )
+        return self.names[env].index(name)
+
+    def read(self) -> None:
+        """Refresh positions, rotations and velocities from the simulator."""
+        if self.handles is not None:
+            self.handles.read(self)
+
+    def place(self, rows: Tensor) -> None:
+        """Put the bodies of the environments `rows` [R] at rest in the simulator, at the world's `position` [m]."""
+        if self.handles is not None:
+            self.handles.place(rows, self.base_of(self.position, self.rotation, self.extent), self.rotation)
+
+    def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
+        """Keep the bodies of the mask `frozen`, [E, B], at `base` [m], [E, B, 3], and `rotation`, [E, B, 4].
+
+        All other bodies are free.
+        """
+        if self.handles is not None:
+            self.handles.freeze(frozen, base, rotation)
+
+    def push(self, force: Tensor, torque: Tensor | None = None) -> None:
+        """Send the summed force [N] and torque [N m] of all hazards, [E, B, 3], once per physics step."""
+        if self.handles is not None:
+            self.handles.push(force, torque)
+
+
+def rotate(rotation: Tensor, vector: Tensor) -> Tensor:
+    """`vector` [..., 3], in any unit, turned by the unit quaternion `rotation` [..., 4]."""
+    w, u = rotation[..., :1], rotation[..., 1:]
+    twice = 2.0 * torch.cross(u, vector, dim=-1)
+    return vector + w * twice + torch.cross(u, twice, dim=-1)

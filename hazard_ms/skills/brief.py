@@ -1,0 +1,44 @@
+"""The brief of an agent before an episode: all that the paper's agents know, and nothing that identifies the scene."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from hazard_ms.sensing.target_table import Target
+
+RANDOM_BYTES = 8  # size of an agent's random seed [bytes]
+
+
+@dataclass(frozen=True)
+class HazardBrief:
+    """The part of a brief on one hazard of the task."""
+
+    name: str  # "fire"
+    title: str  # name of its level: "temperature"
+    unit: str  # unit of its level: "°C"
+    # whether a target is damaged at a level of the hazard and a height above the floor [m]
+    threatens: Callable[[Target, float, float], bool]
+
+
+@dataclass(frozen=True)
+class Brief:
+    """Everything that an agent is told before an episode."""
+
+    task: str  # id of the environment
+    text: str  # the task in words
+    targets: tuple[Target, ...]  # the things to rescue, as they are at the start
+    containers: tuple[str, ...]  # carts if they are the safe place, else empty
+    safe_place: str  # bag (carried by the robot) | cart (containers in the scene)
+    hazards: tuple[HazardBrief, ...]  # in the order of `Sighting.levels`
+    max_frames: int
+    frame_seconds: float  # duration of a frame [s]
+    robot: str  # name of the robot
+    random_seed: int  # seed of the agent's own randomness, derived one-way from that of the episode
+
+
+def random_seed(seed: int) -> int:
+    """The seed of an agent's randomness in the episode of `seed`: a hash, so that it does not reveal the scene."""
+    digest = hashlib.sha256(f"hazard_ms agent {seed}".encode()).digest()
+    return int.from_bytes(digest[:RANDOM_BYTES], "big")

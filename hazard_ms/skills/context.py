@@ -1,0 +1,124 @@
+"""The context of a skill: the robot, the hand, the things, and the map of what was seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.episode.grasp import Hand, distance_to_boxes, graspable
+from hazard_ms.robots.robot import Robot
+from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.simulation.world import World
+from hazard_ms.skills.decision import Result
+
+LowLevel = NDArray[np.float32]  # an action of the environment
+Skill = Generator[LowLevel, None, Result]  # yields actions and returns the outcome
+BUMP_RADIUS = 0.2  # radius of the obstacle that is assumed where the robot got stuck [m]
+BUMP_MEMORY = 300  # frames for which such an obstacle is remembered
+
+
+class Rescuer(Protocol):
+    """The part of an environment that skills need; `hazard_ms.env.HazardEnv` has it."""
+
+    agent: Robot
+    world: World
+    hand: Hand
+
+
+class Stage:
+    """One episode of one environment as skills see it.
+
+    The arm moves towards where it should be whenever an action is made.
+    """
+
+    def __init__(self, env: Rescuer, seen: SemanticMap, look: Callable[[], None]) -> None:
+        """Begin an episode in `env` with the map `seen`, which `look` updates."""
+        self.env = env
+        self.seen = seen
+        self.look = look
+        self.bumps: list[tuple[float, float, int]] = []  # x, y [m], frame
+        self._arm = self.robot.arm()  # last commanded joints [rad]
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that acts."""
+        return self.env.agent
+
+    @property
+    def world(self) -> World:
+        """The true state of the robot's surroundings."""
+        return self.env.world
+
+    @property
+    def frame(self) -> int:
+        """Frames since the start of the episode."""
+        return int(self.world.frame[0])
+
+    @property
+    def held(self) -> int:
+        """Index along B of the thing in the hand, or -1."""
+        return int(self.env.hand.held[0])
+
+    def act(
+        self, forward: float = 0.0, turn: float = 0.0, arm: NDArray[np.float64] | None = None, shut: bool | None = None
+    ) -> LowLevel:
+        """An action, [A]: drive `forward` [m], `turn` [rad], bring the arm one step towards `arm` [rad] (None: tucked).
+
+        `shut` closes the hand or opens it; None keeps what it holds.
+        """
+        actual = self.robot.arm()
+        if np.abs(actual - self._arm).max() > 1.0:  # [rad]; something else moved the arm or is in its way
+            self._arm = actual
+        goal = self.robot.tucked if arm is None else arm
+        left = goal - self._arm  # all joints arrive at the same time
+        self._arm = self._arm + left * min(1.0, self.robot.build.arm_step / max(float(np.abs(left).max()), 1e-9))
+        holding = self.held >= 0 if shut is None else shut
+        return self.robot.action(forward, turn, self._arm, not holding)
+
+    def arm_gap(self, arm: NDArray[np.float64]) -> float:
+        """Largest difference of a joint from `arm`, [..., J] [rad]."""
+        return float(np.abs(self.robot.arm() - arm).max())
+
+    def position(self, index: int) -> NDArray[np.float64]:
+        """True middle of a thing's box [m], [3], world frame: for the hand, which feels what it touches."""
+        return self.world.position[0, index].cpu().numpy().astype(np.float64)
+
+    def would_take(self) -> int:
+        """Index along B of the thing that the hand would take if it shut now, or -1."""
+        return int(graspable(self.world, self.robot.gripper_pose()[0])[0])
+
+    def gap(self, index: int) -> float:
+        """Distance from the hand to the surface of a thing's box [m]."""
+        return float(distance_to_boxes(self.world, self.robot.gripper_pose()[0])[0, index])
+
+    def bump(self) -> None:
+        """Remember that something stands right in front of the base."""
+        x, y, heading = self.robot.base()
+        ahead = self.robot.build.radius + BUMP_RADIUS / 2
+        self.bumps.append((x + ahead * np.cos(heading), y + ahead * np.sin(heading), self.frame))
+
+    def room_ahead(self, height: float, most: float) -> float:
+        """Distance [m] from the base's middle to the next thing ahead higher than `height` [m], at most `most` [m]."""
+        x, y, heading = self.robot.base()
+        radius = self.robot.build.radius
+        along, across = np.meshgrid(np.arange(0.0, most, self.seen.cell / 4), np.linspace(-radius, radius, 9) * 0.8)
+        points_x = x + along * np.cos(heading) - across * np.sin(heading)
+        points_y = y + along * np.sin(heading) + across * np.cos(heading)
+        cells = np.floor((np.stack([points_y, points_x], -1) - self.seen.origin[::-1]) / self.seen.cell).astype(int)
+        inside = ((cells >= 0) & (cells < self.seen.height.shape)).all(-1)
+        high = np.zeros(along.shape, bool)
+        high[inside] = self.seen.height[tuple(cells[inside].T)] > height
+        return float(along[high].min(initial=most))
+
+    def obstacles(self) -> NDArray[np.float32]:
+        """Heights of obstacles [m], [Y, X]: as seen, and where the robot got stuck lately."""
+        height = self.seen.height.copy()
+        for bump_x, bump_y, frame in self.bumps:
+            if self.frame - frame < BUMP_MEMORY:
+                y, x = np.mgrid[0 : height.shape[0], 0 : height.shape[1]]
+                middle_x, middle_y = self.seen.origin[:, None, None] + (np.stack([x, y]) + 0.5) * self.seen.cell
+                height[np.hypot(middle_x - bump_x, middle_y - bump_y) < BUMP_RADIUS] = 1.0
+        return height

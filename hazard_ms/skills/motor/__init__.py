@@ -1,0 +1,1 @@
+"""Skills of the body: finding a way, walking, reaching, grasping, putting away."""

@@ -1,0 +1,90 @@
+"""Inverse kinematics by damped least squares: the arm joints that bring the hand to a point.
+
+    dq = J^T (J J^T + damping^2 I)^-1 e,   e = (position error, WEIGHT x direction error)
+
+The hand's x axis, along which its fingers point, should have a given direction, but the point matters more. The search
+is deterministic: it begins from a fixed list of postures, without random restarts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.robots.robot import Robot
+
+DAMPING = 0.05  # damping [m]; a smaller value is faster but shakes near singular postures
+WEIGHT = 0.15  # position error that weighs as much as a radian of direction error [m]
+ITERATIONS = 60  # greatest number of iterations from one start
+STRIDE = 0.3  # greatest change of a joint in one iteration [rad]
+GOOD_ERROR, GOOD_TILT = 0.02, 0.2  # errors [m], [rad] below which no other start is tried
+WITHOUT_GAIN = 8  # iterations without gain after which the search ends
+GAIN = 0.95  # share of the best cost below which a lower one counts as a gain
+CONVERGED = 0.005  # position error at which the search ends [m]
+
+
+@dataclass(frozen=True)
+class Posture:
+    """A posture of the arm that brings the hand near a point."""
+
+    arm: NDArray[np.float64]  # [J] [rad]
+    error: float  # distance left between hand and point [m]
+    tilt: float  # angle between the fingers and the direction that they should have [rad]
+
+
+def solve(robot: Robot, point: NDArray[np.float64], pointing: NDArray[np.float64]) -> Posture:
+    """The best posture found for the hand at `point`, [3] [m], world frame; there always is one.
+
+    `pointing`: the direction of the fingers, a unit vector, [3], world frame.
+    """
+    limits = robot.arm_limits
+    best: Posture | None = None
+    for start in robot.stretched:
+        found = _descend(robot, _facing(robot, start, point), point, pointing, limits)
+        if best is None or found.error + WEIGHT * found.tilt < best.error + WEIGHT * best.tilt:
+            best = found
+        if best.error < GOOD_ERROR and best.tilt < GOOD_TILT:
+            break
+    assert best is not None
+    return best
+
+
+def _facing(robot: Robot, start: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`start` with its first joint, the shoulder's pan, turned towards `point`."""
+    heading = robot.base()[2]
+    shoulder = robot.shoulder()
+    pan = np.arctan2(point[1] - shoulder[1], point[0] - shoulder[0]) - heading
+    turned = start.copy()
+    turned[0] = np.arctan2(np.sin(pan), np.cos(pan))
+    return turned
+
+
+def _descend(
+    robot: Robot,
+    start: NDArray[np.float64],
+    point: NDArray[np.float64],
+    pointing: NDArray[np.float64],
+    limits: NDArray[np.float64],
+) -> Posture:
+    arm = np.clip(start, limits[:, 0], limits[:, 1])
+    best, since = Posture(arm, np.inf, np.pi), 0
+    damping = DAMPING**2 * np.eye(6)
+    rows, aim = np.empty((6, len(arm))), np.empty(6)
+    for iteration in range(ITERATIONS):
+        hand, turn, jacobian = robot.kinematics(arm)
+        off, axis = point - hand, turn[:, 0]
+        error, tilt = float(np.sqrt(off @ off)), float(np.arccos(min(1.0, max(-1.0, float(axis @ pointing)))))
+        cost = best.error + WEIGHT * best.tilt
+        if error + WEIGHT * tilt < cost:
+            since = since if error + WEIGHT * tilt > GAIN * cost else iteration
+            best = Posture(arm, error, tilt)
+        if (error < CONVERGED and tilt < CONVERGED / WEIGHT) or iteration - since > WITHOUT_GAIN:
+            break
+        rows[:3], rows[3:] = jacobian[:3], WEIGHT * jacobian[3:]
+        aim[:3], aim[3:] = off, WEIGHT * np.cross(axis, pointing)
+        step = rows.T @ np.linalg.solve(rows @ rows.T + damping, aim)
+        step *= min(1.0, STRIDE / max(float(np.abs(step).max()), 1e-9))
+        arm = np.clip(arm + step, limits[:, 0], limits[:, 1])
+    return best

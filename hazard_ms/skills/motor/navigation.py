@@ -1,0 +1,211 @@
+"""Paths over the height grid of what was seen, by Dijkstra on cells whose cost grows exponentially with height.
+
+    cost of a cell = exp(STEEPNESS x highest point under the robot's footprint there) x (UNSEEN where nothing was seen)
+
+A book on the floor is therefore worth a small detour, a chair a long one, and a table is never driven into. A robot
+that already stands too close to something (it was pushed, or the map is coarse) still finds a path away from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage, sparse
+from scipy.sparse import csgraph
+
+STEEPNESS = 10.0  # growth of the cost with height [1/m] (docs/benchmark.md 3: exponential in the height)
+FLOOR = 0.03  # heights below this count as floor, given the noise of a 16 bit depth image [m]
+LOW = 0.15  # things up to this height can be pushed aside, higher ones are obstacles [m]
+UNSEEN = 3.0  # factor of the cost of an unexplored cell
+NARROW = 1.5  # factor of the cost of a cell within NARROW_MARGIN of an obstacle
+NARROW_MARGIN = 0.15  # distance from obstacles beyond the robot's radius that a path should keep [m]
+OBSTACLE_COST = 1e6  # cost of a cell in which an obstacle stands
+LEAVING_COST = 20.0  # cost of such a cell where the robot already is
+SHORT = 3.0  # cost of ending a metre short of the goal, in metres of path
+AT_MOST = 0.6  # distance from where a path should end up to which SHORT holds [m]
+FAR_SHORT = 1000.0  # cost of ending a metre short of the goal beyond AT_MOST, in metres of path
+BORDER = 10  # number of unexplored cells around the explored ones that a path may use
+SIDES = ((0, 1), (1, 0), (1, 1), (1, -1))  # half of the eight neighbours
+
+
+@dataclass(frozen=True)
+class Path:
+    """A path for the base."""
+
+    points: NDArray[np.float64]  # [P, 2] [m], without the start
+    length: float  # [m]
+    short: float  # horizontal distance that is left to the goal at its end [m]
+
+
+def plan(
+    height: NDArray[np.floating],
+    explored: NDArray[np.bool_],
+    cell: float,
+    origin: NDArray[np.floating],
+    start: tuple[float, float],
+    goal: tuple[float, float],
+    radius: float,
+    near: float,
+) -> Path | None:
+    """The best path from `start` to within `near` [m] of `goal`, or as near as a robot gets without a long detour.
+
+    `height` [Y, X] [m], `explored` [Y, X], `cell` [m], `origin`: south-west corner of cell 0, 0 [m]; `radius` of the
+    robot [m]. None if start or goal lies outside the grid, or if nothing brings the robot nearer.
+    """
+    return Ways(height, explored, cell, origin, start, (goal,), radius).path(goal, near)
+
+
+class Ways:
+    """All cheapest paths from one place over what was seen: one search serves every goal."""
+
+    def __init__(
+        self,
+        height: NDArray[np.floating],
+        explored: NDArray[np.bool_],
+        cell: float,
+        origin: NDArray[np.floating],
+        start: tuple[float, float],
+        goals: Sequence[tuple[float, float]],
+        radius: float,
+    ) -> None:
+        """Search from `start`; arguments as for `plan`. The grid is cut to what was seen, `start` and `goals` [m]."""
+        self._grid = _Grid(height, explored, cell, np.asarray(origin, dtype=np.float64), start, goals)
+        if not self._grid.holds:
+            return
+        self._start = np.asarray(start)
+        self._cost = _costs(self._grid.height, self._grid.explored, cell, radius, self._grid.start)
+        first = self._grid.start[0] * self._cost.shape[1] + self._grid.start[1]
+        spent, self._before = csgraph.dijkstra(_graph(self._cost, cell), indices=first, return_predecessors=True)
+        reachable = (spent.reshape(self._cost.shape) < OBSTACLE_COST * cell / 2) & (self._cost < OBSTACLE_COST)
+        y, x = np.nonzero(reachable)
+        self._number = y * self._cost.shape[1] + x
+        self._spent = spent[self._number]
+        self._centres = self._grid.centres(np.stack([y, x], -1))
+
+    def _end(self, goal: tuple[float, float], near: float) -> tuple[int, float] | None:
+        """Number of the cell where the best path to `goal` ends, and the distance left from it [m]; None: no path."""
+        if not self._grid.holds or not len(self._number):
+            return None
+        far = np.hypot(*(self._centres - np.asarray(goal)).T)
+        missed = np.maximum(far - near, 0.0)
+        best = int(np.argmin(self._spent + np.where(missed <= AT_MOST, SHORT, FAR_SHORT) * missed))
+        return int(self._number[best]), float(far[best])
+
+    def path(self, goal: tuple[float, float], near: float) -> Path | None:
+        """The best path to within `near` [m] of `goal` [m]; see `plan`."""
+        end = self._end(goal, near)
+        if end is None:
+            return None
+        cells = _trace(self._before, end[0], self._cost.shape[1])
+        points = self._grid.centres(_straighten(cells, self._cost))[1:]
+        whole = np.vstack([self._start[None], points])
+        return Path(points, float(np.hypot(*np.diff(whole, axis=0).T).sum()), end[1])
+
+    def length(self, goal: tuple[float, float], near: float) -> float:
+        """Length [m] of the path to within `near` [m] of `goal` [m] along the cells, up to 8 % above that of `path`.
+
+        It is infinite if no path ends within AT_MOST of there.
+        """
+        end = self._end(goal, near)
+        if end is None or end[1] - near > AT_MOST:
+            return float("inf")
+        cells = _trace(self._before, end[0], self._cost.shape[1])
+        return float(np.hypot(*np.diff(cells, axis=0).T).sum() * self._grid.cell)
+
+
+class _Grid:
+    """The part of the map that a path can use: explored cells, start and goals, and a border."""
+
+    def __init__(
+        self,
+        height: NDArray[np.floating],
+        explored: NDArray[np.bool_],
+        cell: float,
+        origin: NDArray[np.float64],
+        start: tuple[float, float],
+        goals: Sequence[tuple[float, float]],
+    ) -> None:
+        ends = np.floor((np.array([start, *goals]) - origin) / cell).astype(int)[:, ::-1]
+        self.holds = bool((ends >= 0).all() and (ends < height.shape).all())
+        seen = np.argwhere(explored)
+        used = np.vstack([ends, seen.min(0)[None], seen.max(0)[None]]) if len(seen) else ends
+        low = np.maximum(used.min(0) - BORDER, 0)
+        high = np.minimum(used.max(0) + BORDER + 1, height.shape)
+        window = (slice(low[0], high[0]), slice(low[1], high[1]))
+        self.height, self.explored = np.asarray(height)[window], np.asarray(explored)[window]
+        self.cell, self.origin = cell, origin + low[::-1] * cell
+        self.start = (int(ends[0, 0] - low[0]), int(ends[0, 1] - low[1]))
+
+    def centres(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Middles [m] of cells (y, x), [P, 2] -> (x, y), [P, 2]."""
+        return self.origin + (cells[:, ::-1] + 0.5) * self.cell
+
+
+def _disc(radius: float, cell: float) -> NDArray[np.bool_]:
+    reach = int(np.ceil(radius / cell))
+    y, x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+    return np.hypot(y, x) * cell <= radius
+
+
+def _costs(
+    height: NDArray[np.floating], explored: NDArray[np.bool_], cell: float, radius: float, start: tuple[int, int]
+) -> NDArray[np.float64]:
+    raised = np.where(explored & (height > FLOOR), height, 0.0)
+    under = ndimage.maximum_filter(raised, footprint=_disc(radius + cell / 2, cell), mode="constant")
+    beside = ndimage.maximum_filter(raised, footprint=_disc(radius + NARROW_MARGIN, cell), mode="constant")
+    cost = (
+        np.exp(STEEPNESS * np.minimum(under, LOW))
+        * np.where(explored, 1.0, UNSEEN)
+        * np.where(beside > LOW, NARROW, 1.0)
+    )
+    y, x = np.mgrid[0 : cost.shape[0], 0 : cost.shape[1]]
+    here = np.hypot(y - start[0], x - start[1]) * cell <= radius + cell
+    cost = np.where(under > LOW, np.where(here & (raised <= LOW), LEAVING_COST, OBSTACLE_COST), cost)
+    cost[start] = min(cost[start], LEAVING_COST)
+    return cost
+
+
+def _graph(cost: NDArray[np.float64], cell: float) -> sparse.csr_matrix:
+    """Graph of the steps to eight neighbours; a step costs its length times the mean cost of its two cells."""
+    number = np.arange(cost.size).reshape(cost.shape)
+    rows, columns, weights = [], [], []
+    for dy, dx in SIDES:
+        a = (slice(0, cost.shape[0] - dy), slice(max(0, -dx), cost.shape[1] - max(0, dx)))
+        b = (slice(dy, cost.shape[0]), slice(max(0, dx), cost.shape[1] - max(0, -dx)))
+        rows.append(number[a].ravel())
+        columns.append(number[b].ravel())
+        weights.append(((cost[a] + cost[b]) / 2 * cell * np.hypot(dy, dx)).ravel())
+    shape = (cost.size, cost.size)
+    half = sparse.coo_matrix(
+        (np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))), shape=shape
+    ).tocsr()
+    return half + half.T
+
+
+def _trace(before: NDArray[np.int32], end: int, width: int) -> NDArray[np.int64]:
+    """Cells (y, x) from the start to `end`, [P, 2]."""
+    chain = [end]
+    while before[chain[-1]] >= 0:
+        chain.append(int(before[chain[-1]]))
+    return np.stack(np.divmod(np.array(chain[::-1]), width), axis=-1)
+
+
+def _straighten(cells: NDArray[np.int64], cost: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The fewest of the `cells` whose straight connections cross no cell dearer than the path does."""
+    kept, at = [0], 0
+    while at < len(cells) - 1:
+        ahead = len(cells) - 1
+        while ahead > at + 1 and not _clear(cells[at], cells[ahead], cost, cost[tuple(cells[at : ahead + 1].T)].max()):
+            ahead -= 1
+        kept.append(ahead)
+        at = ahead
+    return cells[kept]
+
+
+def _clear(a: NDArray[np.int64], b: NDArray[np.int64], cost: NDArray[np.float64], limit: float) -> bool:
+    steps = int(np.abs(b - a).max()) * 2 + 1
+    line = np.rint(a + (b - a) * np.linspace(0.0, 1.0, steps)[:, None]).astype(int)
+    return bool((cost[tuple(line.T)] <= limit).all())

@@ -1,0 +1,210 @@
+"""Skills as a plain gymnasium environment: gym.make("hazard_ms:HazardFireSkills-v1").
+
+An action is the number of an option (`hazard_ms.skills.options.options`), which runs to its end. An observation is a
+vector of features (`hazard_ms.skills.options.features`). The reward of a step is the value that it rescued as a share
+of the value of all targets: the rewards of an episode add up to its score Value.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.checks import flag, one_of, whole
+from hazard_ms.machine.render_backend import backend
+from hazard_ms.skills.context import Skill, Stage
+from hazard_ms.skills.decision import Decision, Result
+from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.options.features import Encoder
+from hazard_ms.skills.options.macros import play
+from hazard_ms.skills.options.options import COUNT, Menu, Option, Options
+from hazard_ms.spec.catalogue import DAMAGED_SHARE
+
+ACTIONS = ("options",)
+FIXED = ("obs_mode", "reward_mode", "num_envs", "control_mode")  # keywords that skills decide
+IDLE = 10  # frames taken by an option that would take none, so that every episode ends [ours]
+NOT_AVAILABLE = "not_available"  # reason for the failure of an option that the mask forbids
+SEEDS = 2**31  # seeds of unseeded episodes are drawn from 0 to this number
+
+
+class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
+    """A rescue task as a gymnasium environment with one option per step.
+
+    Every step takes at least one frame: an option that is not available, or fails at once, costs IDLE frames.
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 2}  # noqa: RUF012 gymnasium's name and type
+
+    def __init__(
+        self,
+        *,
+        task: str,
+        actions: str = "options",
+        stop: bool = True,
+        max_frames: int | None = None,
+        render_mode: str | None = None,
+        **settings: Any,
+    ) -> None:
+        """Make the environment of a task.
+
+        Args:
+            task: Name of the task; gym.make fills it in.
+            actions: Meaning of an action: "options".
+            stop: Whether the option `stop` may be chosen. Without it, an untrained policy cannot end its episodes at
+                once.
+            max_frames: Greatest length of an episode [frames]; None takes that of the task.
+            render_mode: None, or "rgb_array" for pictures of the scene.
+            **settings: Keywords of the task's own environment (split, scenes, physics, robot_uids, ...).
+
+        Raises:
+            ValueError: For unknown names, for keywords that skills decide, and without a renderer.
+        """
+        self.actions = one_of(actions, ACTIONS, "actions")
+        self._stop = flag(stop, "stop")
+        if render_mode is not None:
+            one_of(render_mode, self.metadata["render_modes"], "render_mode")
+        self.render_mode = render_mode
+        for name in FIXED:
+            if name in settings:
+                raise ValueError(f"{name} must not be given, because skills decide it, got {settings[name]!r}")
+        wanted = settings.get("render_backend", "auto")
+        if (backend() if wanted == "auto" else wanted) in ("none", None):
+            raise ValueError(
+                "render_backend must be a renderer, got none: skills look through a camera (see `hazard-ms doctor`)"
+            )
+        if max_frames is not None:
+            settings["max_episode_steps"] = whole(max_frames, 1, 2**31, "max_frames")
+        settings.setdefault("effects", "off" if render_mode is None else "full")  # effects only change pictures
+        self.skills = SkillEnv.make(task, reward_mode="none", render_mode=render_mode, **settings)
+        base = self.skills.base
+        ranges = [(hazard.level.low, hazard.level.high) for hazard in base.task.hazards]
+        self.encoder = Encoder(ranges, base.agent.build.radius)
+        self.observation_space: gym.spaces.Box = self.encoder.space()  # type: ignore[assignment]
+        self.action_space = gym.spaces.Discrete(COUNT)
+        self._menu: Menu | None = None
+
+    # ------------------------------------------------------------------ gymnasium
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Start the episode of `seed`; without a seed, the next episode of the series that the last seed began.
+
+        `options` are those of the task's own environment ({"scene": name}).
+        """
+        super().reset(seed=seed)
+        drawn = int(self.np_random.integers(SEEDS)) if seed is None else seed
+        self._decision, _ = self.skills.reset(seed=drawn, options=options)
+        self._options = Options(self._stop)
+        self._value = self._rescued_value()
+        return self._observe(), self._info(None, Result(True), 0)
+
+    def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Play an option to its end.
+
+        Raises ValueError for anything but the number of an option, and after the end of an episode.
+        """
+        if self._menu is None:
+            raise ValueError("the episode must have begun and not be over: call reset first")
+        number = whole(action, 0, COUNT - 1, "action")
+        option, start = self._menu.option(number), self.skills.frame
+        result, terminated = Result(False, NOT_AVAILABLE), False
+        if option is not None and self._menu.mask[number]:
+            result, terminated = self._play(option)
+            self._options.note(option, result.ok)
+        if self.skills.frame == start and not terminated:
+            self.skills.run(_stand(self.skills.stage))
+            self._decision = self.skills.decision()
+        truncated = self.skills.frame >= self.skills.max_frames or bool(self.skills.base.episode.sim_error[0])
+        before, self._value = self._value, self._rescued_value()
+        obs = self._observe()
+        info = self._info(option, result, self.skills.frame - start)
+        if terminated or truncated:
+            self._menu = None
+        return obs, self._value - before, terminated, truncated and not terminated, info
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Mask of the options that can be chosen now, bool [A], as sb3-contrib's MaskablePPO expects it.
+
+        Raises ValueError before the first episode and after the end of an episode.
+        """
+        if self._menu is None:
+            raise ValueError("the episode must have begun and not be over: call reset first")
+        return self._menu.mask.copy()
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """A picture of the scene, [H, W, 3]; None without a render mode."""
+        if self.render_mode is None:
+            return None
+        picture: Any = self.skills.env.render()
+        return np.array(picture[0].cpu().numpy())
+
+    def close(self) -> None:
+        """Close the environment."""
+        self.skills.close()
+
+    # ------------------------------------------------------------------ one decision
+
+    @property
+    def decision(self) -> Decision:
+        """The current decision, for agents that read more than numbers."""
+        return self._decision
+
+    @property
+    def menu(self) -> Menu | None:
+        """The current meaning of the options' numbers; None when the episode is over."""
+        return self._menu
+
+    def _play(self, option: Option) -> tuple[Result, bool]:
+        """Play `option` to its end or to that of the episode; return its outcome and whether the episode terminated."""
+        macro = play(option, self._decision)
+        action = next(macro)
+        while True:
+            self._decision, _, terminated, truncated, info = self.skills.step(action)
+            result: Result = info["result"]
+            try:
+                action = macro.send(self._decision)
+            except StopIteration as ended:
+                return Result(ended.value, "" if ended.value else result.reason or "not_done"), terminated
+            if terminated or truncated:
+                macro.close()
+                return Result(terminated, "" if terminated else result.reason), terminated
+
+    def _observe(self) -> NDArray[np.float32]:
+        self._menu = self._options.menu(self._decision)
+        return self.encoder.encode(self._decision, self._menu)
+
+    def _info(self, option: Option | None, result: Result, frames: int) -> dict[str, Any]:
+        """Plain numbers and text about a step."""
+        world = self.skills.base.world
+        assert self._menu is not None
+        return {
+            "value": self._value,
+            "frame": self.skills.frame,
+            "option": "" if option is None else str(option),
+            "ok": result.ok,
+            "reason": result.reason,
+            "frames": frames,
+            "rescued": int((world.safe & world.target).sum()),
+            "targets": int(world.target.sum()),
+            "sim_error": bool(self.skills.base.episode.sim_error[0]),
+            "action_mask": self._menu.mask.copy(),
+        }
+
+    def _rescued_value(self) -> float:
+        """Value rescued so far as a share of all, a damaged target counting half."""
+        world, rescue = self.skills.base.world, self.skills.base.episode.rescue
+        saved = world.safe[0] & world.target[0]
+        worth = world.value[0].double() * saved.double()
+        worth[rescue.damaged[0]] *= DAMAGED_SHARE
+        return float(worth.sum()) / max(float((world.value[0] * world.target[0]).double().sum()), 1.0)
+
+
+def _stand(stage: Stage) -> Skill:
+    """Stand still for IDLE frames."""
+    for _ in range(IDLE):
+        yield stage.act()
+    return Result(True, frames=IDLE)

@@ -1,0 +1,102 @@
+"""The data that a task is made of, plain and frozen: its observations, its goal, its safe place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from hazard_ms.spec.scene import SceneSpec
+
+Bound = float | tuple[float, ...]  # of all numbers of a quantity, or of each one
+
+
+@dataclass(frozen=True)
+class Term:
+    """One entry of what an environment tells: of its observations, or of `info`.
+
+    Functions of a task get the `hazard_ms.episode.situation.Situation` of all E environments.
+    """
+
+    name: str
+    of: Callable[[Any], Any]  # Situation -> tensor [E, *shape]; [E, B, *shape] of all things where `per_target`
+    meaning: str
+    shape: tuple[int, ...] = ()  # in one environment, or of one target
+    unit: str = ""
+    frame: str = ""  # of coordinates: "world"
+    low: Bound = -math.inf  # range, in its unit
+    high: Bound = math.inf
+    entries: tuple[str, ...] = ()  # what each number along the last axis is, if there are several
+    per_target: bool = False  # one row for each target
+    hidden: bool = False  # told in state modes only: what else an agent must see for itself
+    constant: bool = False  # the same as long as the scene stands
+
+
+@dataclass(frozen=True)
+class SafePlace:
+    """The place where targets are safe."""
+
+    name: str  # "bag"
+    text: str  # in words, for agents: "the bag that you carry"
+    # World -> (Drop -> things that are safe there now, [E, B], bool); see hazard_ms.episode.safe_places
+    rule: Callable[[Any], Callable[[Any], Any]]
+    containers: tuple[str, ...] = ()  # categories of the things that have to be reached in order to put something there
+    carried: bool = False  # the agent takes along what is safe, so that it is no longer in the scene
+
+
+@dataclass(frozen=True)
+class Goal:
+    """The goal of a task and its rewards: functions of the Situation that give [E] each."""
+
+    success: Callable[[Any], Any]  # bool: the episode ends, it is done
+    dense: Callable[[Any], Any]  # reward of a frame, with hints on the way
+    sparse: Callable[[Any], Any]  # reward of a frame, for what counts alone
+    largest: float  # dense reward of one frame, by which the normalised one is divided
+    fail: Callable[[Any], Any] | None = None  # bool: the episode ends, it can no longer be achieved; None: never
+    info: tuple[Term, ...] = ()  # further entries of `info`
+    done: str = "done"  # why an episode ended that succeeded, in words: "all rescued"
+
+
+@dataclass(frozen=True)
+class Task:
+    """A task: its scenes, its hazards, its goal, and what the environment tells of it."""
+
+    scenes: Callable[[str], tuple[str, ...]]  # split -> scene names
+    build: Callable[[str], SceneSpec]  # scene name -> scene
+    hazards: tuple[Any, ...]  # hazard_ms.hazards.base.Hazard, in the order in which they advance
+    goal: Goal
+    safe_place: SafePlace
+    observations: tuple[Term, ...]  # beside the robot's joints and the cameras
+    text: str = ""  # the task in words, for agents
+    splits: tuple[str, ...] = ("train", "test")
+    name: str = ""  # "HazardFire-v1"; filled in by the registry, as is the next
+    max_frames: int = 1500
+
+    @property
+    def all_scenes(self) -> tuple[str, ...]:
+        """Names of the scenes of all splits."""
+        return tuple(dict.fromkeys(name for split in self.splits for name in self.scenes(split)))
+
+
+@dataclass(frozen=True)
+class Level:
+    """The meaning of the numbers in `Hazard.image`, and how pictures, films and reports show them."""
+
+    title: str  # "temperature"
+    unit: str  # "°C"
+    low: float  # shown as the lowest colour, in the unit
+    high: float  # shown as the highest colour
+    colours: str = "viridis"  # name of the colour map, as OpenCV and matplotlib call it
+    tint: tuple[int, int, int] = (200, 120, 220)  # on maps: red, green, blue, 0 to 255
+    least: float = -math.inf  # lowest that there can be: a bound of observations
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """The meaning of a number that a hazard adds to `info`."""
+
+    meaning: str
+    unit: str = ""
+    low: float = -math.inf
+    high: float = math.inf

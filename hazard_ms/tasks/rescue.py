@@ -1,0 +1,45 @@
+"""The goal that all rescues share: bring the targets to a safe place before they are damaged."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hazard_ms.episode import rewards
+from hazard_ms.episode.safe_places import BAG, CART
+from hazard_ms.hazards.base import Hazard
+from hazard_ms.scenes import splits
+from hazard_ms.spec import Goal, Task, Term
+from hazard_ms.tasks.terms import terms
+
+INFO = (
+    Term("rescued", lambda s: (s.world.safe & s.world.target).sum(1), "targets that are safe", low=0.0),
+    Term("targets", lambda s: s.world.target.sum(1), "things to rescue", low=0.0),
+    Term("value", rewards.rescued_value, "rescued value as a share of all, damaged targets half", low=0.0, high=1.0),
+    Term("damaged", rewards.damaged_targets, "targets that were damaged and are not safe", low=0.0),
+)
+RESCUE = Goal(  # it cannot be lost: damaged targets can still be saved, for half their value
+    success=rewards.all_rescued,
+    dense=rewards.dense,
+    sparse=rewards.rescued_now,
+    largest=rewards.LARGEST,
+    info=INFO,
+    done="all rescued",
+)
+
+
+def rescue(hazards: Sequence[Hazard]) -> Task:
+    """The rescue from `hazards`: in rooms and into the bag, or in the open and into carts if one of them needs that."""
+    open_air = any(h.open_air for h in hazards)
+    family = "outdoor" if open_air else "indoor"
+    place = CART if open_air else BAG
+    names = " and ".join(h.name for h in hazards)
+    return Task(
+        scenes=lambda split: splits.scene_names(split, family),
+        build=splits.scene,
+        hazards=tuple(hazards),
+        goal=RESCUE,
+        safe_place=place,
+        observations=terms(hazards),
+        text=f"Put every target into {place.text} before the {names} can damage it or carry it away.",
+        splits=splits.split_names(family),
+    )

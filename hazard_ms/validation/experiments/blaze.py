@@ -1,0 +1,143 @@
+"""Experiments with the realistic fire and its laws, whose results hazard_ms.validation.blaze_cases compares."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from hazard_ms.hazards.fire.fire import NORMAL
+from hazard_ms.hazards.fire.realistic import burning, radiation, smoke, tenability
+from hazard_ms.hazards.fire.realistic import front as edge
+from hazard_ms.hazards.fire.realistic.blaze import Blaze
+from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
+from hazard_ms.simulation.world import World
+from hazard_ms.validation.experiments import correlations
+from hazard_ms.validation.experiments.fire_room import room_world
+
+ROOM = (21.66, 7.04, 3.82)  # size of the room of N-7 and N-8 [m]
+HALL = (20.0, 20.0)  # floor of the rooms in which one fire burns [m]
+PLAIN = Blaze(time_scale=1.0, every=1)
+
+
+def number(value: float) -> Tensor:
+    """A tensor of one `value`, any unit [-], shape [1]."""
+    return torch.tensor([float(value)])
+
+
+def point_flux(apart: float) -> float:
+    """Flux [kW/m^2] on a target at floor level, facing a 100 kW burner of 0.3 x 0.3 m, `apart` [m] from it."""
+    length = radiation.flame_length(number(100.0), number(math.sqrt(4 * 0.09 / math.pi)))
+    square = apart**2 + (length / 3) ** 2
+    return float(radiation.point_source(number(100.0), 0.35, square, apart / square.sqrt()))
+
+
+def burner_flux(apart: float) -> float:
+    """Flux from the same burner by the solid flame, with the flame length of the code."""
+    wide = math.sqrt(4 * 0.09 / math.pi)
+    return correlations.solid_flame(float(radiation.flame_length(number(100.0), number(wide))), wide, apart)
+
+
+def plume() -> float:
+    """Temperature [C] on the axis of Heskestad's plume of N-4."""
+    return 22.0 + float(
+        smoke.plume_rise(number(1245.0), 0.4, number(math.sqrt(4 * 1.075 / math.pi)), number(6.0), 22.0)
+    )
+
+
+@functools.cache
+def filling(dt: float = 0.05) -> dict[int, float]:
+    """Depth of the layer [m] in the closed room of N-7 by second: 410 kW, nothing lost to walls."""
+    walls = smoke.Walls(number(ROOM[0] * ROOM[1]), number(ROOM[2]), number(0.0))
+    area = walls.area.clone()
+    layer, made = smoke.Layer(*(torch.zeros(1) for _ in range(3))), {}
+    for step in range(1, round(30 / dt) + 1):
+        # the loss to walls, which N-7 has not, is given back
+        lost = smoke.WALLS * area * (smoke.temperature(layer, 22.0) - 22.0) * (layer.volume > smoke.THIN)
+        source = smoke.Source(number(410.0), 410.0 + lost, number(0.0), number(0.0))
+        layer = smoke.fill(layer, walls, torch.zeros(1, 1, 3), source, 22.0, 1500.0, dt)
+        made[round(step * dt * 1000)] = float(layer.volume / area)
+    return {t: made[t * 1000] for t in (10, 20, 30)}
+
+
+def time_to_megawatt(growth: float) -> float:
+    """Seconds to 1055 kW, to 0.1 s."""
+    age = torch.arange(0, 700, 0.1)
+    return float(age[burning.t_squared(growth, age) >= 1055.0][0])
+
+
+def ignition_time(
+    kpc: float, ignition: float, critical: float, flux: float, dt: float = 0.1, sheet: float = 0.0
+) -> float:
+    """Seconds to ignition of a surface at 20 C under a constant `flux`; infinite if not within 500 s."""
+    solid = radiation.Solid(number(ignition), number(critical), number(kpc), number(sheet))
+    temperature, steps = number(20.0), 0
+    while float(temperature) < ignition:
+        temperature = radiation.warm(temperature, number(flux), solid, 20.0, dt)
+        steps += 1
+        if steps * dt > 500.0:
+            return math.inf
+    return steps * dt
+
+
+def radius(case: tuple[float, float]) -> float:
+    """Farthest distance [m] at which a fire of a power [kW] gives a critical flux [kW/m^2], level with its point."""
+    apart = torch.arange(0.1, 4.0, 0.001)
+    return float(apart[radiation.point_source(torch.tensor(case[0]), 0.35, apart**2) >= case[1]][-1])
+
+
+def released(category: str) -> float:
+    """Energy [kJ] that a burning pillow or book of 1 kg gives off by the hazard's own curve."""
+    state, _ = burn_room([(category, (5.0, 5.0, 0.0))])
+    age = torch.linspace(0.0, float(state.burn_end[0, 0]), 200_001, dtype=torch.float64).float()
+    course = burning.Course(*(v[0, :1].expand(age.shape) for v in state.course))
+    return float(burning.release(course, age).double().mean() * state.burn_end[0, 0])
+
+
+def burn_room(
+    bodies: list[tuple[str, tuple[float, float, float]]], blaze: Blaze = PLAIN, copies: int = 1, **room: Any
+) -> tuple[BlazeState, World]:
+    """A hall with `bodies` in it, and its fire as it begins."""
+    floor = room.pop("floor", "tile")
+    world = room_world(bodies, room.pop("fires", ()), size=HALL, copies=copies, extent=(0.2, 0.15, 0.04), **room)
+    specs = tuple(
+        dataclasses.replace(s, room=dataclasses.replace(s.room, floor=floor, height=20.0)) for s in world.specs
+    )
+    world = dataclasses.replace(world, specs=specs)
+    state = BlazeState.allocate({"E": copies, "B": world.num_bodies, **blaze.sizes(world)}, world.device)
+    blaze.reset(state, world, torch.arange(copies))
+    return state, world
+
+
+def neighbour(apart: float, dt: float = 0.5) -> float:
+    """Seconds until a book burns `apart` [m] from one waste basket of 100 kW on tiles; infinite if not within 600 s."""
+    state, world = burn_room([("book", (10.0 + apart, 10.0, 0.0))], fires=[(10.0, 10.0)])
+    for step in range(1, round(600 / dt) + 1):
+        world.chance.tick()
+        PLAIN.advance(state, world, dt)
+        if int(state.status[0, 0]) != NORMAL:
+            return step * dt
+    return math.inf
+
+
+@functools.cache
+def front(runs: int = 16, seconds: float = 800.0, dt: float = 4.0) -> float:
+    """Speed [m/s] of the edge of a fire on an open wooden floor, that of a circle of the burning area, after 300 s."""
+    blaze = Blaze(time_scale=1.0, every=1, horizon=seconds)
+    state, world = burn_room([], blaze, runs, floor="wood", fires=[(10.0, 10.0)])
+    seen = {}
+    for step in range(1, round(seconds / dt) + 1):
+        world.chance.tick()
+        edge.advance(state, world, dt)
+        cells = (state.flame_cell >= 0).sum(1).double().mean()
+        seen[step * dt] = math.sqrt(float(cells) * 0.22**2 / math.pi)
+    return (seen[seconds] - seen[300.0]) / (seconds - 300.0)
+
+
+def dose(temperature: float, flux: float) -> float:
+    """Dose of heat per second [1/s] in air of `temperature` [C] under `flux` [kW/m^2]."""
+    return float(tenability.dose_rate(number(temperature), number(flux)))

@@ -1,0 +1,65 @@
+"""Published correlations that the realistic fire does not use, to compare it with other authors' answers.
+
+Sources: NIST FDS Correlation Guide (Target Heat Flux, Plume Temperature, HGL Depth, HGL Temperature chapters). Plain
+numbers, SI, kW, C.
+"""
+
+from __future__ import annotations
+
+import math
+
+from hazard_ms.hazards.fire.realistic.radiation import GRAVITY, KELVIN
+
+MCCAFFREY = ((0.08, 0.5, 6.8), (0.2, 0.0, 1.9), (math.inf, -1 / 3, 1.1))  # limit of z / Q^0.4, eta, kappa
+
+
+def mccaffrey(power: float, height: float, ambient: float) -> float:
+    """Temperature on a plume's axis [C] at `height` [m] above a fire of `power` [kW] in air of `ambient` [C]."""
+    scaled = height / power**0.4
+    eta, kappa = next((e, k) for limit, e, k in MCCAFFREY if scaled < limit)
+    rise = (kappa / (0.9 * math.sqrt(2 * GRAVITY))) ** 2 * scaled ** (2 * eta - 1)
+    return ambient + rise * (ambient + KELVIN)
+
+
+def solid_flame(length: float, diameter: float, apart: float) -> float:
+    """Flux [kW/m^2] at ground level, `apart` [m] from the axis of a cylindrical flame of `length` and `diameter` [m].
+
+    The emissive power is 58 * 10^(-0.00823 D) kW/m^2: the guide prints -0.0823, its numbers need 0.00823
+    (docs/physics.md N-2).
+    """
+    h, s = 2 * length / diameter, 2 * apart / diameter
+    a, b = (h * h + s * s + 1) / (2 * s), (1 + s * s) / (2 * s)
+    root = math.atan(math.sqrt((a + 1) * (s - 1) / ((a - 1) * (s + 1))))
+    other = math.atan(math.sqrt((b + 1) * (s - 1) / ((b - 1) * (s + 1))))
+    level = (b - 1 / s) / (math.pi * math.sqrt(b * b - 1)) * other - (a - 1 / s) / (
+        math.pi * math.sqrt(a * a - 1)
+    ) * root
+    upright = (math.atan(h / math.sqrt(s * s - 1)) - h * math.atan(math.sqrt((s - 1) / (s + 1)))) / (math.pi * s)
+    upright += a * h / (math.pi * s * math.sqrt(a * a - 1)) * root
+    return 58 * 10 ** (-0.00823 * diameter) * math.hypot(level, upright)
+
+
+def beyler(power: float, size: tuple[float, float, float], lining: float, seconds: float) -> float:
+    """Rise of the layer's temperature [K] in a closed room of `size` [m] with a fire of `power` [kW].
+
+    `lining` is k rho c of its walls [kW^2 s/m^4 K^2].
+    """
+    length, width, high = size
+    surface = 2 * (length * width + length * high + width * high)
+    mass = 1.2 * length * width * high
+    first, second = 2 * 0.4 * math.sqrt(lining) * surface / mass, power / mass
+    root = math.sqrt(seconds)
+    return 2 * second / first**2 * (first * root - 1 + math.exp(-first * root))
+
+
+def yamana_tanaka(
+    power: float, size: tuple[float, float, float], lining: float, ambient: float, seconds: float
+) -> float:
+    """Height of the smoke layer [m] in a closed room, with Beyler's temperature.
+
+    `ambient` is the temperature outside [C]; the other arguments are those of `beyler`.
+    """
+    length, width, high = size
+    hot = ambient + KELVIN + beyler(power, size, lining, seconds)
+    k = 0.076 * hot / 353
+    return float((2 * k * power ** (1 / 3) * seconds / (3 * length * width) + high ** (-2 / 3)) ** -1.5)

@@ -1,0 +1,166 @@
+"""2,000 invalid inputs: each gives an error that names the value and what is allowed; none harms the episode."""
+
+from __future__ import annotations
+
+import string
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+import torch
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import hazard_ms  # noqa: F401
+from tests.worlds.episodes import feed
+
+EXAMPLES = 500  # of each of the four families below
+SETTINGS = settings(max_examples=EXAMPLES, deadline=5000, suppress_health_check=list(HealthCheck), database=None)
+ALLOWED = ("allowed", "there are", "needs", "must")  # how our errors say what would have been right
+
+words = st.text(string.ascii_letters + string.digits + "/_-. \0é", max_size=30)
+junk = st.one_of(
+    st.none(), st.booleans(), st.floats(), st.binary(max_size=4), st.lists(st.integers(), max_size=2), words
+)
+
+
+@pytest.fixture(scope="module")
+def env() -> Any:
+    made = gym.make("HazardFire-v1", obs_mode="state", render_backend="none")
+    made.reset(seed=0)
+    yield made
+    made.close()
+
+
+def bad_numbers(shape: tuple[int, ...]) -> st.SearchStrategy[np.ndarray]:
+    return st.tuples(st.integers(0, shape[0] - 1), st.sampled_from([np.nan, np.inf, -np.inf])).map(
+        lambda at: np.where(np.arange(shape[0]) == at[0], at[1], 0.0).astype(np.float32)
+    )
+
+
+def told(error: pytest.ExceptionInfo[ValueError]) -> None:
+    assert any(word in str(error.value) for word in ALLOWED), str(error.value)
+
+
+@given(data=st.data())
+@SETTINGS
+def test_actions(env: Any, data: st.DataObject) -> None:
+    shape = env.unwrapped.single_action_space.shape
+    wrong_size = (
+        st.lists(st.integers(0, 20), min_size=0, max_size=3)
+        .filter(lambda s: tuple(s) not in (shape, (1, *shape)))
+        .map(np.zeros)
+    )
+    wrong_type = st.one_of(
+        st.booleans(), st.integers(), st.floats(), words, st.lists(st.floats(), max_size=3), st.binary(max_size=3)
+    )
+    wrong_dtype = st.sampled_from(
+        [np.zeros(shape, bool), np.zeros(shape, complex), torch.zeros(shape, dtype=torch.bool)]
+    )
+    bad = data.draw(st.one_of(bad_numbers(shape), wrong_size, wrong_type, wrong_dtype))
+    before = env.unwrapped.world.frame.clone()
+    with pytest.raises(ValueError) as error:
+        env.step(bad)
+    told(error)
+    assert torch.equal(before, env.unwrapped.world.frame)
+
+
+@given(data=st.data())
+@SETTINGS
+def test_resets(env: Any, data: st.DataObject) -> None:
+    bad_seed = st.one_of(
+        st.integers(max_value=-1),
+        st.integers(min_value=2**32),
+        st.floats(),
+        st.booleans(),
+        words,
+        st.just([]),
+        st.just([1, 2, 3]),
+    )
+    bad_option = st.one_of(
+        st.dictionaries(
+            words.filter(lambda w: w not in ("scene", "reconfigure", "env_idx", "reset_to_env_states")),
+            junk,
+            min_size=1,
+        ),
+        st.fixed_dictionaries({"scene": st.one_of(words, st.integers(), st.lists(words, max_size=2), st.none())}),
+        st.fixed_dictionaries({"reconfigure": st.one_of(st.integers(), words, st.none())}),
+        st.fixed_dictionaries({"env_idx": st.lists(st.integers().filter(lambda i: i != 0), min_size=1, max_size=3)}),
+        words,
+        st.integers(),
+    )
+    keywords = data.draw(st.one_of(bad_seed.map(lambda s: {"seed": s}), bad_option.map(lambda o: {"options": o})))
+    with pytest.raises(ValueError) as error:
+        env.unwrapped.reset(**keywords)
+    told(error)
+
+
+@given(data=st.data())
+@SETTINGS
+def test_keywords(data: st.DataObject) -> None:
+    name = data.draw(
+        st.sampled_from(
+            [
+                "physics",
+                "split",
+                "robot_uids",
+                "effects",
+                "sim_backend",
+                "render_mode",
+                "num_envs",
+                "affects_agent",
+                "deterministic",
+                "obs_mode",
+            ]
+        )
+    )
+    if name == "num_envs":
+        value = data.draw(st.one_of(st.integers(max_value=0), st.floats(), st.booleans(), words))
+    elif name in ("affects_agent", "deterministic"):
+        value = data.draw(st.one_of(st.integers(), words, st.none(), st.floats()))
+    else:
+        known = {
+            "cpu",
+            "gpu",
+            "cuda",
+            "auto",
+            "paper",
+            "shipped",
+            "train",
+            "test",
+            "fetch",
+            "full",
+            "fast",
+            "off",
+            "state",
+            "none",
+            "rgb",
+        }
+        value = data.draw(words.filter(lambda w: w not in known and w.split(":")[0] not in known))
+    with pytest.raises(ValueError) as error:
+        gym.make("HazardFire-v1", render_backend="none", **{name: value})
+    told(error)
+    if isinstance(value, str) and value:
+        assert repr(value) in str(error.value) or value.split("+")[0] in str(error.value)
+
+
+def test_an_episode_goes_on_as_if_nothing_had_happened(env: Any) -> None:
+    """The same frames with and without invalid calls in between give the same bits."""
+    import hashlib
+
+    def play(disturb: bool) -> str:
+        digest = hashlib.sha256()
+        env.reset(seed=8)
+        for _ in range(10):
+            if disturb:
+                for bad in (np.full(env.unwrapped.single_action_space.shape, np.nan), np.zeros(3), "forward"):
+                    with pytest.raises(ValueError):
+                        env.step(bad)
+                for keywords in ({"seed": -1}, {"options": {"scene": "nowhere"}}):
+                    with pytest.raises(ValueError):
+                        env.reset(**keywords)
+            feed(digest, env.step(None)[0])
+        return digest.hexdigest()
+
+    assert play(False) == play(True)

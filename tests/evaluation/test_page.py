@@ -1,0 +1,76 @@
+"""The page of an episode: it is whole, stands alone, and says what happened."""
+
+from __future__ import annotations
+
+import html.parser
+from pathlib import Path
+
+import pytest
+
+from hazard_ms.evaluation.metrics import Fate
+from hazard_ms.evaluation.page import write_page
+from hazard_ms.evaluation.result import DecisionRecord, EpisodeResult
+
+
+class Reader(html.parser.HTMLParser):
+    """Collects text and addresses, and checks that tags close in order."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.text = ""
+        self.links: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.links += [value or "" for key, value in attrs if key in ("src", "href")]
+        if tag not in ("meta", "br"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        return
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+def test_page_is_whole_and_says_what_happened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    result = EpisodeResult(
+        "HazardFire-v1",
+        "package:<Odd>",
+        7,
+        "kitchen/07",
+        {"physics": "paper"},
+        700,
+        1500,
+        "stopped",
+        (Fate("bag_1", "bag", 5.0, True, True, 300), Fate("pen_1", "pen", 1.0, False, False)),
+        (DecisionRecord(0, "walk_to", "bag_1", False, "no_path", 40, "cost 1.0 < 2"),),
+        "hazard-ms play -s 7",
+    )
+    video, page = tmp_path / "out.mp4", tmp_path / "out.html"
+    video.write_bytes(b"12345")
+    write_page(page, result, video)
+    reader = Reader()
+    reader.feed(page.read_text(encoding="utf-8"))
+    assert not reader.open
+    assert reader.links == ["data:video/mp4;base64,MTIzNDU="]
+    for told in (
+        "package:<Odd>",
+        "41.7 %",
+        "bag_1",
+        "left behind",
+        "no path",
+        "cost 1.0 < 2",
+        "hazard-ms play -s 7",
+        "kitchen/07",
+    ):
+        assert told in reader.text
+    monkeypatch.setattr("hazard_ms.evaluation.page.LARGEST_EMBEDDED", 4)
+    (tmp_path / "pages").mkdir()
+    write_page(tmp_path / "pages" / "out.html", result, video)
+    reader = Reader()
+    reader.feed((tmp_path / "pages" / "out.html").read_text(encoding="utf-8"))
+    assert reader.links == ["../out.mp4"]

@@ -1,0 +1,106 @@
+"""The runner: what it tells its watchers, in which order, and how it ends a run at a frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import groupby
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import hazard_ms  # noqa: F401 registers the environments
+from hazard_ms.agents.base import Agent
+from hazard_ms.evaluation.runner import FRAME_REACHED, Runner
+from hazard_ms.evaluation.watchers import Progress, Watcher
+from hazard_ms.skills.brief import Brief, random_seed
+from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision, Result
+from hazard_ms.skills.executor import SkillEnv
+
+pytestmark = pytest.mark.render
+SEED = 4
+
+
+class Looker(Agent):
+    """Looks around twice and stops."""
+
+    def reset(self, brief: Brief) -> None:
+        self.brief, self.left = brief, [STOP, EXPLORE, EXPLORE]
+
+    def act(self, decision: Decision) -> Action:
+        self.note = "why"
+        return Action(self.left.pop())
+
+
+class Witness(Watcher):
+    """Writes down what it is told."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[str, Any]] = []
+
+    def begin(self, env: SkillEnv, decision: Decision) -> None:
+        self.told.append(("begin", decision.frame))
+
+    def decided(self, decision: Decision, action: Action, note: str) -> None:
+        self.told.append(("decided", (str(action), note)))
+
+    def frame(self, action: np.ndarray) -> None:
+        self.told.append(("frame", action.shape))
+
+    def ended(self, result: Result) -> None:
+        self.told.append(("ended", result.frames))
+
+    def finish(self, reason: str) -> None:
+        self.told.append(("finish", reason))
+
+
+@pytest.fixture(scope="module")
+def env() -> Iterator[SkillEnv]:
+    camera = {"width": 64, "height": 64}
+    made = SkillEnv(gym.make("HazardFire-v1", obs_mode="none", control_mode="pd_joint_pos", sensor_configs=camera))
+    yield made
+    made.close()
+
+
+def test_watchers_are_told_everything_in_order(env: SkillEnv) -> None:
+    first, second = Witness(), Witness()
+    played = Runner(env, Looker(), [first, second, Progress("looker"), Watcher()]).run(SEED)
+    kinds = [(kind, len(list(group))) for kind, group in groupby(kind for kind, _ in first.told)]
+    frames = [d.frames for d in played.decisions]
+    look = [("decided", 1), ("frame", frames[0]), ("ended", 1), ("decided", 1), ("frame", frames[1]), ("ended", 1)]
+    assert kinds == [("begin", 1), *look, ("decided", 1), ("ended", 1), ("finish", 1)]
+    assert first.told == second.told and first.told[-1] == ("finish", "stopped") and played.ended == "stopped"
+    assert ("decided", ("explore", "why")) in first.told and sum(frames) == env.frame
+
+
+@pytest.mark.parametrize("frame", [0, 1, 25, 70])
+def test_a_run_ends_at_the_frame_that_was_asked_for(env: SkillEnv, frame: int) -> None:
+    """Before the first decision, in the midst of the first (60 frames) and of the second one."""
+    witness = Witness()
+    played = Runner(env, Looker(), [witness]).run(SEED, until_frame=frame)
+    assert env.frame == frame and played.ended == FRAME_REACHED and witness.told[-1] == ("finish", FRAME_REACHED)
+    assert sum(kind == "frame" for kind, _ in witness.told) == frame
+    assert Runner(env, Looker()).run(SEED).ended == "stopped", "the next run is not cut short"
+
+
+def test_the_agent_is_told_what_the_paper_tells_it(env: SkillEnv) -> None:
+    player = Looker()
+    Runner(env, player).run(SEED)
+    told, world = player.brief, env.base.world
+    assert (told.task, told.robot, told.safe_place, told.max_frames) == ("HazardFire-v1", "fetch", "bag", 1500)
+    assert told.frame_seconds == pytest.approx(1 / 30) and told.random_seed == random_seed(SEED)
+    assert [t.name for t in told.targets] == [n for n, t in zip(world.names[0], world.target[0], strict=False) if t]
+    assert [(h.name, h.title, h.unit) for h in told.hazards] == [("fire", "temperature", "°C")] and "bag" in told.text
+    scene = env.base.specs[0].name
+    assert scene not in repr(told) and scene.partition("/")[0] not in repr(told)
+
+
+def test_the_map_of_a_decision_is_a_copy(env: SkillEnv) -> None:
+    decision, _ = env.reset(seed=SEED)
+    before = decision.map.explored.copy()
+    with pytest.raises(ValueError, match="read-only"):
+        decision.map.explored[:] = True
+    later, *_ = env.step(Action(EXPLORE))
+    assert (decision.map.explored == before).all() and later.map.explored.sum() > before.sum()
+    assert (env.seen.explored == later.map.explored).all()

@@ -1,5 +1,0 @@
-"""Rooms and tanks for the tests of floods: those that `hazard-ms validate` uses, too."""
-
-from hazard_ms.validation.tank import GRAVITY, SAILS, Tank, Thing, begin, frames, room
-
-__all__ = ["GRAVITY", "SAILS", "Tank", "Thing", "begin", "frames", "room"]

@@ -1,0 +1,183 @@
+"""Gusts, profile and lee: W-20 to W-22 of docs/physics.md 2.3, and a shelter map against rays traced one by one."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+import torch
+
+from hazard_ms.hazards.presets import wind
+from hazard_ms.hazards.wind import gusts, shelter
+from tests.worlds.fire_worlds import about_z
+from tests.worlds.wind_worlds import Block, Thing, begin, push, run, street
+
+REAL = wind("realistic")
+
+
+@pytest.mark.parametrize(("dt", "time"), [(0.01, 5.0), (1 / 30, 5.0), (1.0, 5.0), (0.5, 2.0)])
+def test_gusts_are_an_ornstein_uhlenbeck_process(dt: float, time: float) -> None:
+    """W-20: Mean 0, variance 1 from the start and for ever, autocorrelation exp(-dt / T), whatever dt is."""
+    law = dataclasses.replace(REAL, gust_time=time, sheltered=False)
+    world = street([Thing()], copies=20000)
+    state = begin(law, world)
+    series = [state.gust.clone()]
+    for _ in range(8):
+        run(law, state, world, 1, dt)
+        series.append(state.gust.clone())
+    got = torch.stack(series)
+    tolerance = 4 * math.sqrt(2 / 20000)
+    assert got.mean(1).abs().max() < tolerance
+    assert (got.var(1) - 1.0).abs().max() < 1.3 * tolerance
+    kept = math.exp(-dt / time)
+    step = got[1:] - kept * got[:-1]  # what is new is independent of what was, and of variance 1 - kept^2
+    assert float(step.var() / (1 - kept**2)) == pytest.approx(1.0, abs=tolerance)
+    assert abs(float((step * got[:-1]).mean()) / math.sqrt(1 - kept**2)) < tolerance
+
+
+def test_the_wind_has_the_intensity_of_its_roughness() -> None:
+    """W-20 of docs/physics.md."""
+    assert REAL.gust_intensity == pytest.approx(1 / math.log(10 / REAL.roughness), rel=0.003)
+    law, world = dataclasses.replace(REAL, sheltered=False), street([Thing()], copies=20000)
+    state = begin(law, world)
+    seen = law.image(state, world, torch.tensor([[[8.0, 8.0, 10.0]]]).expand(20000, 1, 3))[:, 0]
+    assert float(seen.std() / seen.mean()) == pytest.approx(0.172, rel=0.03)
+
+
+def series(time: float, runs: int, seconds: float, dt: float = 0.1) -> np.ndarray:
+    """Standardised gusts, [N, runs], through the hazard's own steps."""
+    law = dataclasses.replace(REAL, gust_time=time, sheltered=False)
+    world, made = street([Thing()], copies=runs), []
+    state = begin(law, world)
+    for _ in range(round(seconds / dt)):
+        world.chance.tick()
+        state.gust.copy_(gusts.gust(state.gust, dt, time, world.chance.normal("wind.gust")))
+        made.append(state.gust.numpy().copy())
+    return np.array(made)
+
+
+@pytest.mark.parametrize(
+    ("time", "intensities"),
+    [(5.0, {0.1: 1.25, 0.15: 1.39, 0.2: 1.51, 0.3: 1.76}), (2.0, {0.2: 1.47}), (10.0, {0.2: 1.50})],
+)
+def test_three_second_means_and_gust_factors(time: float, intensities: dict[float, float]) -> None:
+    """W-20, W-21: E[max 3-s mean / 600-s mean] over 200 runs, to 0.03 and the runs' own scatter; variance of the 3-s
+    mean of the process.
+    """
+    got = series(time, 200, 600.0)
+    total = np.cumsum(np.vstack([np.zeros((1, 200)), got]), axis=0)
+    means = (total[30:] - total[:-30]) / 30
+    tau = 3.0
+    want = 2 * (time / tau) ** 2 * (tau / time - 1 + math.exp(-tau / time))
+    assert means.var() == pytest.approx(want, rel=0.05)
+    for intensity, factor in intensities.items():
+        found = ((1 + intensity * means.max(axis=0)) / (1 + intensity * got.mean(axis=0))).mean()
+        assert found == pytest.approx(factor, abs=0.03)
+
+
+W22 = {0.005: (0.394, 0.539, 0.606, 0.697, 0.788), 0.03: (0.207, 0.396, 0.484, 0.604, 0.723)}
+W22_ROUGH = {0.1: (0.239, 0.349, 0.500, 0.651)}
+
+
+@pytest.mark.parametrize("roughness", [*W22, *W22_ROUGH])
+def test_the_wind_follows_the_logarithmic_profile(roughness: float) -> None:
+    """W-22 of docs/physics.md."""
+    heights = (0.1, 0.3, 0.5, 1.0, 2.0)[-len({**W22, **W22_ROUGH}[roughness]) :]
+    want = {**W22, **W22_ROUGH}[roughness]
+    law = dataclasses.replace(REAL, roughness=roughness, gust_intensity=0.0, sheltered=False)
+    world = street([Thing()], (5.0, 0.0))
+    points = torch.tensor([[[8.0, 8.0, z] for z in (*heights, -1.0, 0.0, roughness, 10.0)]])
+    shares = (law.image(begin(law, world), world, points)[0] / (5.0 * law.scale)).tolist()
+    assert shares[: len(heights)] == pytest.approx(want, abs=1e-3)
+    assert shares[len(heights) :] == pytest.approx([0.0, 0.0, 0.0, 1.0], abs=1e-6)
+    world = street([Thing((0.2, 0.2, 2 * z), 1e9) for z in heights], (5.0, 0.0))
+    force = push(law, world).force[0, :, 0]
+    drag = 0.5 * 1.225 * 1.05 * torch.tensor([0.4 * z for z in heights]) * (5.0 * law.scale * torch.tensor(want)) ** 2
+    assert torch.allclose(force, drag, rtol=0.01)
+
+
+def traced(point: tuple[float, float, float], heading: float, blocks: list[Block]) -> float:
+    """Share of the wind at `point`: a ray upwind in steps of 1 cm against the blocks themselves, grown by half
+    a cell.
+    """
+    x, y, z = point
+    deepest = 0.0
+    for b in blocks:
+        solid, high = shelter.SOLIDITY.get(b.category, 1.0), b.at[2] + b.extent[2]
+        turn = 2 * math.atan2(b.rotation[3], b.rotation[0])
+        d = np.arange(0.25, 40.0, 0.01)
+        dx, dy = x - d * math.cos(heading) - b.at[0], y - d * math.sin(heading) - b.at[1]
+        over = (np.abs(math.cos(turn) * dx + math.sin(turn) * dy) < (b.extent[0] + shelter.CELL) / 2) & (
+            np.abs(math.cos(turn) * dy - math.sin(turn) * dx) < (b.extent[1] + shelter.CELL) / 2
+        )
+        if over.any() and high >= shelter.LOWEST:
+            near = 1 - d[over].min() / (shelter.LEE * high)
+            deepest = max(deepest, shelter.DEEPEST * solid * max(near, 0.0) * min(max(2 - 2 * z / high, 0.0), 1.0))
+    return 1 - deepest
+
+
+HOUSE = Block("house", (5.0, 8.0, 0.0), (3.0, 4.0, 3.0))
+HEDGE = Block("hedge", (12.0, 5.0, 0.0), (0.6, 5.0, 1.4), about_z(0.5))
+CART = Block("cart", (9.0, 12.0, 0.0), (0.53, 0.93, 1.03))
+LOW = Block("bench", (9.0, 2.0, 0.0), (0.5, 1.5, 0.45))
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.8, 2.5, -1.9])
+@pytest.mark.parametrize("block", [HOUSE, HEDGE])
+def test_the_lee_is_that_of_traced_rays(heading: float, block: Block) -> None:
+    """Where a cell is no edge of the lee: two cells to every side agree. Within what a cell's length matters."""
+    law = dataclasses.replace(REAL, scale=1.0, roughness=0.0, gust_intensity=0.0)
+    world = street([Thing()], (4 * math.cos(heading), 4 * math.sin(heading)), [block])
+    state = begin(law, world)
+    along, aside, high = np.random.default_rng(3).uniform((3.5, -6, 0.05), (11, 6, 1.2), (240, 3)).T
+    c, s = math.cos(heading), math.sin(heading)
+    points = np.stack([block.at[0] + along * c - aside * s, block.at[1] + along * s + aside * c, high], 1)
+    points = points[((points[:, :2] > -3) & (points[:, :2] < 19)).all(1)]
+    got = law.image(state, world, torch.tensor(points, dtype=torch.float32)[None])[0] / 4
+    want = [
+        [traced((x + i, y + j, z), heading, [block]) for i in (0, -0.7, 0.7) for j in (0, -0.7, 0.7)]
+        for x, y, z in points
+    ]
+    inner = np.ptp(want, axis=1) < 0.09
+    shares = np.array(want)[inner, 0]
+    assert got.numpy()[inner] == pytest.approx(shares, abs=0.06)
+    assert (shares < 0.95).sum() > 3 and (shares == 1.0).sum() > 5
+
+
+def test_carts_and_low_things_shelter_nothing_and_a_lee_ends() -> None:
+    law = dataclasses.replace(REAL, scale=1.0, roughness=0.0, gust_intensity=0.0)
+    world = street([Thing()], (4.0, 0.0), [CART, LOW, HOUSE])
+    state = begin(law, world)
+    points = [
+        (10.0, 12.0, 0.1),
+        (10.0, 2.0, 0.1),
+        (7.5, 8.0, 0.1),
+        (7.5, 8.0, 3.5),
+        (2.0, 8.0, 0.1),
+        (7.5, 14.0, 0.1),
+        (90.0, 8.0, 0.1),
+    ]
+    seen = (law.image(state, world, torch.tensor([points])) / 4)[0].tolist()
+    assert seen[0] == seen[1] == seen[3] == seen[4] == seen[5] == seen[6] == 1.0
+    assert 0.25 <= seen[2] < 0.35
+
+
+def test_what_lies_behind_a_house_feels_a_sixteenth_of_the_force() -> None:
+    things = [Thing((0.2, 0.2, 0.2), 1e9, (7.2, 8.0, 0.0)), Thing((0.2, 0.2, 0.2), 1e9, (7.2, 14.0, 0.0))]
+    force = push(dataclasses.replace(REAL, gust_intensity=0.0), street(things, (4.0, 0.0), [HOUSE])).force[0, :, 0]
+    assert 1 / 16 <= float(force[0] / force[1]) < 1 / 10
+
+
+def test_the_lee_of_each_environment_is_its_own() -> None:
+    """Eight headings in one batch as each alone."""
+    law = dataclasses.replace(REAL, gust_intensity=0.0)
+    world = street([Thing()], (0.0, 0.0), [HOUSE, HEDGE], copies=8)
+    state = begin(law, world)
+    assert float(state.loss.max()) > 0.6
+    for e in range(8):
+        alone = street([Thing()], (0.0, 0.0), [HOUSE, HEDGE])
+        alone.chance.seed[:] = e
+        assert torch.equal(begin(law, alone).loss[0], state.loss[e])
+    assert not torch.equal(state.loss[0], state.loss[1])

@@ -96,9 +96,8 @@ def reward(env: HazardEnv) -> Iterator[Row]:
     """One row for each reward mode; `env` has one of them."""
     for mode, text in REWARDS.items():
         function = {"dense": env.task.goal.dense, "sparse": env.task.goal.sparse}.get(mode)
-        more = (
-            f": {(inspect.getdoc(function) or '').splitlines()[0].replace(', [E]', '')}" if function is not None else ""
-        )
+        first = (inspect.getdoc(function) or "").split("\n")[0].replace(", [E]", "") if callable(function) else ""
+        more = f": {first}" if first else ""
         if mode == "normalized_dense":
             more = f", {env.task.goal.largest:g}"
         chosen = " (in use)" if mode == env.reward_mode else ""

@@ -13,8 +13,6 @@ from torch import Tensor
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.catalogue import CATEGORIES
 
-PROPERTIES = ("flammable", "waterproof", "ignition_temperature")  # attributes of the catalogue; the last [C]
-
 
 @dataclass(frozen=True)
 class Target:
@@ -33,12 +31,7 @@ class Target:
 
 
 class TargetTable:
-    """The targets of E scenes, in T columns.
-
-    index       [E, T]     index along B; -1 where the scene has fewer targets
-    value       [E, T]     1 or 5; 0 where there is no target
-    properties  [E, T, 3]  flammable, waterproof (0 or 1), ignition temperature [C]
-    """
+    """The targets of E scenes, in T columns: `index`, [E, T], along B; -1 where the scene has fewer targets."""
 
     def __init__(self, world: World, slots: int | None = None) -> None:
         """Make the table of the targets of `world` with T = `slots` columns, so that all scenes give the same shape.
@@ -55,8 +48,6 @@ class TargetTable:
             self.index[e, : len(row)] = row
         self.there = self.index >= 0
         self._column = self.index.clamp(min=0)
-        self.value = self.of(world.value)
-        self.properties = torch.stack([self.of(world.lookup(name)) for name in PROPERTIES], dim=-1)
 
     def of(self, of_things: Tensor) -> Tensor:
         """Numbers of the targets, [E, T, ...], taken from those of all things, [E, B, ...]; 0 without a target."""
@@ -64,15 +55,6 @@ class TargetTable:
         taken = of_things[rows, self._column]
         there = self.there.reshape(self.there.shape + (1,) * (taken.ndim - 2))
         return torch.where(there, taken, torch.zeros_like(taken))
-
-    def observe(self, world: World) -> dict[str, Tensor]:
-        """The table as float32 tensors: value, held and rescued, [E, T] each; properties [E, T, 3], the last in [C]."""
-        return {
-            "value": self.value,
-            "properties": self.properties,
-            "held": self.of(world.held).float(),
-            "rescued": self.of(world.safe).float(),
-        }
 
     def rows(self, world: World, env: int = 0, damaged: frozenset[int] | set[int] = frozenset()) -> tuple[Target, ...]:
         """The targets of scene `env`.

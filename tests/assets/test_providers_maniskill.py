@@ -69,6 +69,7 @@ def test_maniskill_builds_models(data: Path) -> None:
 
 
 @pytest.mark.render
+@pytest.mark.long
 def test_maniskill_builds_scenes(data: Path) -> None:
     """An environment's four attributes are all that these builders look at."""
     out = with_maniskill(SCENES, data)

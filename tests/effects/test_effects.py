@@ -38,7 +38,9 @@ def burning(mode: str, pack: str | None = None) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.render
-@pytest.mark.parametrize(("mode", "stock"), [("full", "default"), ("fast", "minimal")])
+@pytest.mark.parametrize(
+    ("mode", "stock"), [("full", "default"), pytest.param("fast", "minimal", marks=pytest.mark.long)]
+)
 @alone
 def test_labels_are_those_without_effects(mode: str, stock: str) -> None:
     with_effects, without = burning(mode), burning("off", stock)
@@ -112,6 +114,7 @@ def test_flames_move_from_frame_to_frame() -> None:
 
 
 @pytest.mark.render
+@pytest.mark.long
 def test_two_processes_draw_the_same_pixels() -> None:
     command = [sys.executable, "-m", "tests.worlds.burning_room"]
     child = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True, timeout=300)

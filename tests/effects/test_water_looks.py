@@ -26,7 +26,7 @@ from tests.worlds.looking import BOX, INSIDE, OVERHEAD, flooded, picture_hashes
 
 ROOT = Path(__file__).parents[2]
 LABELS = ("segmentation", "depth", "position", "normal")
-MODES = [("full", "default"), ("fast", "minimal")]
+MODES = [("full", "default"), pytest.param("fast", "minimal", marks=pytest.mark.long)]
 PARTED = replace(
     INSIDE,
     room=Room(
@@ -123,7 +123,8 @@ def test_a_picture_depends_on_the_present_state_alone() -> None:
 
 
 @pytest.mark.render
-@pytest.mark.parametrize("others", [1, pytest.param(2, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("others", [1, 2])
 def test_other_processes_draw_the_same_pixels(others: int) -> None:
     command = [sys.executable, "-m", "tests.worlds.looking"]
     children = [subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) for _ in range(others)]

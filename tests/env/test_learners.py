@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import warnings
@@ -81,6 +82,7 @@ def test_explicit_reconfiguration_decides_alone() -> None:
     env.close()
 
 
+@pytest.mark.long
 def test_training_in_processes() -> None:
     from stable_baselines3 import PPO
     from stable_baselines3.common.vec_env import SubprocVecEnv
@@ -93,7 +95,8 @@ def test_training_in_processes() -> None:
         envs.close()
 
 
-def test_the_line_that_is_advised_runs() -> None:
+@pytest.mark.long
+def test_the_line_that_is_advised_runs(tmp_path: Path) -> None:
     """In a script of its own: new processes import the main module again."""
     code = (
         "import gymnasium, hazard_ms\n"
@@ -105,14 +108,12 @@ def test_the_line_that_is_advised_runs() -> None:
         "    print(obs.shape[0], (obs[0] != obs[1]).any(), envs.step(envs.action_space.sample())[1].shape)\n"
         "    envs.close()\n"
     )
-    script = ROOT / "tests" / "_spawn_script.py"
+    script = tmp_path / "training.py"
     script.write_text(code)
-    try:
-        out = subprocess.run(
-            [sys.executable, str(script)], capture_output=True, text=True, timeout=400, cwd=ROOT, check=False
-        )
-    finally:
-        script.unlink()
+    environ = {**os.environ, "PYTHONPATH": str(ROOT)}
+    out = subprocess.run(
+        [sys.executable, str(script)], capture_output=True, text=True, timeout=280, env=environ, check=False
+    )
     assert out.returncode == 0, out.stderr[-2000:]
     assert out.stdout.split() == ["2", "True", "(2,)"]
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from hazard_ms.agents.base import agent
+from hazard_ms.cli.__main__ import main
 from hazard_ms.skills.brief import HazardBrief
 from hazard_ms.skills.decision import STOP, Action
 from tests.worlds.playground import Playground, brief, play
@@ -46,10 +47,16 @@ def test_it_keeps_away_from_what_is_threatened(caution: float, goes: str) -> Non
     assert player.act(ground.decision()).target == goes
 
 
-@pytest.mark.render
-def test_it_runs_as_a_program(tmp_path: Path) -> None:
+def test_it_plays_in_a_room(capsys: pytest.CaptureFixture[str]) -> None:
     """With so much caution it fetches nothing that can burn, so that the episode is short."""
+    assert main(["play", "-s", "1", "--agent", f"{FILE}:Careful:caution=1e9"]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"own_agent.py:Careful:caution=1e9 rescued \d of \d+ targets .*\(stopped\)", out)
+
+
+@pytest.mark.long
+def test_it_runs_as_a_program(tmp_path: Path) -> None:
     words = [sys.executable, str(FILE), "-s", "1", "--agent", f"{FILE}:Careful:caution=1e9"]
     done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, timeout=250)
     assert done.returncode == 0, done.stderr[-2000:]
-    assert re.search(r"own_agent.py:Careful:caution=1e9 rescued \d of \d+ targets .*\(stopped\)", done.stdout)
+    assert "(stopped)" in done.stdout

@@ -67,6 +67,13 @@ def test_the_goal_is_a_share_of_dry_targets_at_a_frame(env: Any) -> None:
     assert bool(info["fail"]) and not bool(info["success"]) and bool(terminated) and float(reward) == 0.0
 
 
+def test_it_is_described(capsys: pytest.CaptureFixture[str]) -> None:
+    """Its observations, its info and its rewards, though functions of its goal have no docstrings."""
+    assert main(["describe", "--load", str(EXAMPLE), "-e", TASK, "--obs-mode", "state_dict"]) == 0
+    out = capsys.readouterr().out
+    assert "share of the targets that are dry" in out and "sparse" in out
+
+
 @pytest.mark.render
 def test_it_is_played_and_filmed(tmp_path: Path) -> None:
     film = tmp_path / "dry.mp4"

@@ -29,6 +29,7 @@ def test_it_ends_with_a_picture(tmp_path: Path) -> None:
     assert picture is not None and min(picture.shape[:2]) >= 256 and picture.std() > 20
 
 
+@pytest.mark.long
 def test_it_runs_where_nothing_draws(tmp_path: Path) -> None:
     out = run(tmp_path, HAZARD_MS_RENDER="none")
     assert "picture" not in out and not list(tmp_path.iterdir())

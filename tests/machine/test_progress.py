@@ -35,6 +35,7 @@ def test_a_fault_is_not_swallowed() -> None:
         raise KeyError
 
 
+@pytest.mark.long
 def test_compiling_kernels_is_told_where_none_are_kept(tmp_path: Path) -> None:
     code = (
         "from hazard_ms.machine import progress; progress.PATIENCE = 0.2\n"

@@ -151,17 +151,12 @@ def test_target_table_tells_properties_but_no_places() -> None:
     world.held[0, 2] = world.safe[1, 0] = True
     table = TargetTable(world)
     assert table.index.tolist() == [[1, 2], [0, -1]]
-    seen = table.observe(world)
-    assert set(seen) == {"value", "properties", "held", "rescued"}
-    assert seen["value"].tolist() == [[1.0, 1.0], [5.0, 0.0]]
-    assert seen["held"].tolist() == [[0.0, 1.0], [0.0, 0.0]]
-    assert seen["rescued"].tolist() == [[0.0, 0.0], [1.0, 0.0]]
-    backpack = CATEGORIES["backpack"]
-    assert seen["properties"][1, 0].tolist() == [
-        float(backpack.flammable),
-        float(backpack.waterproof),
-        backpack.ignition_temperature,
-    ]
+    assert table.of(world.value).tolist() == [[1.0, 1.0], [5.0, 0.0]]
+    backpack, (told,) = CATEGORIES["backpack"], table.rows(world, 1)
+    assert (told.flammable, told.waterproof) == (backpack.flammable, backpack.waterproof)
+    assert told.ignition_temperature == backpack.ignition_temperature
+    assert (told.value, told.held, told.rescued) == (5.0, False, True)
+    assert not hasattr(told, "position")
     rows = table.rows(world, 0, damaged={2})
     assert [(r.name, r.held, r.damaged, r.rescued) for r in rows] == [
         ("bottle_1", False, False, False),

@@ -23,7 +23,7 @@ LAYERS = (  # a room may import only from rooms to its left, or from those besid
     ("tasks",),
     ("sensing",),
     ("env", "wrappers", "maniskill"),
-    ("skills",),
+    ("skills", "planning"),
     ("agents",),
     ("evaluation",),
     ("pictures",),

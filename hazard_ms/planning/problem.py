@@ -1,0 +1,92 @@
+"""The problem of a rescue, and its plan: targets lose value when they are damaged, there is one hand, and no time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from hazard_ms.planning.travel import Spot, Travel, refuse_unless_frames
+
+
+class Stow(NamedTuple):
+    """One way of putting a target away: the frame at which it is safe, where one stands then, the cart or -1."""
+
+    safe: float
+    spot: Spot
+    cart: int
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """PlannedRescue as much value as possible by `limit`, with one hand.
+
+    A target is met, picked up and put into the bag there, or carried to a cart where `travel` has carts. It counts
+    its value if it is safe by `damaged_at`, else `damaged_share` of it. Frames may be fractions.
+    """
+
+    travel: Travel
+    values: Sequence[float]  # [M]
+    damaged_at: Sequence[float]  # last frame at which each target is whole; inf: it never is damaged, [M]
+    pick: Sequence[float]  # frames that picking up takes, [M]
+    drop: Sequence[float]  # frames that putting away takes: into the bag [M], else into each cart [C]
+    limit: float  # last frame at which a rescue counts
+    frame: float = 0.0  # now
+    holding: int | None = None  # the target in the hand: it must be put away first
+    damaged_share: float = 0.5  # of its value that a damaged target counts
+
+    def __post_init__(self) -> None:
+        """Raises ValueError for wrong lengths, for NaN, and for what is negative or infinite but must not be."""
+        targets, carts = self.travel.targets, self.travel.carts
+        lengths = {"values": targets, "damaged_at": targets, "pick": targets, "drop": carts or targets}
+        for name, length in lengths.items():
+            numbers = np.array(getattr(self, name), np.float64)
+            if numbers.shape != (length,):
+                raise ValueError(f"{name} must have shape ({length},), got {numbers.shape}")
+            refuse_unless_frames(numbers, name)
+            if name != "damaged_at" and not np.isfinite(numbers).all():
+                raise ValueError(f"{name} must hold finite numbers, got {numbers.max()}")
+            object.__setattr__(self, name, tuple(numbers.tolist()))
+        for name in ("limit", "frame"):
+            if not 0 <= getattr(self, name) < np.inf:
+                raise ValueError(f"{name} must be a frame from 0 on, got {getattr(self, name)}")
+        if not 0 <= self.damaged_share <= 1:
+            raise ValueError(f"damaged_share must be from 0 to 1, got {self.damaged_share}")
+        if self.holding is not None and not 0 <= self.holding < targets:
+            raise ValueError(f"holding must be None or a target from 0 to {targets - 1}, got {self.holding}")
+
+    def worth(self, target: int, safe: float) -> float:
+        """The value that the target counts if it is safe at a frame, the limit not considered."""
+        return self.values[target] * (1.0 if safe <= self.damaged_at[target] else self.damaged_share)
+
+    def stows(self, target: int, spot: Spot, frame: float) -> Iterator[Stow]:
+        """All ways of putting away a target that is in the hand at a spot and frame."""
+        if not self.travel.carts:
+            yield Stow(frame + self.drop[target], spot, -1)
+        else:
+            for cart, way in enumerate(self.travel.to_carts(spot)):
+                yield Stow(frame + way + self.drop[cart], (self.travel.targets + cart, 0), cart)
+
+
+class PlannedRescue(NamedTuple):
+    """One step of a plan. `met` is the frame at which it is reached, or now for what is in the hand already."""
+
+    target: int
+    met: float
+    safe: float  # frame
+    value: float  # that it adds
+    cart: int  # -1: the bag
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The order of rescues that a search found, and what is proven about it."""
+
+    rescues: tuple[PlannedRescue, ...]
+    value: float
+    frame: float  # at which the last rescue is done; now where there is none
+    exact: bool  # proven: no plan is worth more, and none that is worth as much is done earlier
+    gap: float  # at most so much more value could be rescued
+    labels: int  # partial plans that were kept

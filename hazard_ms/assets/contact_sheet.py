@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.assets.index import asset, asset_ids, asset_path
 from hazard_ms.assets.rows import Asset
+from hazard_ms.machine.files import write
 from hazard_ms.machine.render_backend import DEVICES, backend
 
 TILE = 220  # edge of a picture [pixels]
@@ -48,8 +49,7 @@ def save_sheet(path: Path, ids: Sequence[str] | None = None, columns: int = 9) -
     if path.suffix.lower() not in (".png", ".jpg", ".jpeg"):
         raise ValueError(f"a contact sheet must be a .png, .jpg or .jpeg file, got {path}")
     sheet = contact_sheet(ids, columns)
-    if not cv2.imwrite(str(path), sheet[..., ::-1]):
-        raise ValueError(f"{path} cannot be written: its folder must exist and be writable")
+    write(path, cv2.imencode(path.suffix.lower(), sheet[..., ::-1])[1].tobytes())
 
 
 class Studio:

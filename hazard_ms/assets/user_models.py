@@ -11,6 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from hazard_ms.assets.foreign import read_foreign
 from hazard_ms.assets.rows import Asset, read_row
 from hazard_ms.assets.shipped import shipped_index
 from hazard_ms.spec.catalogue import CATEGORIES
@@ -60,16 +61,14 @@ def _user_index(folder: Path, state: tuple[int, int, int]) -> dict[str, Asset]:
 def user_rows(folder: Path) -> list[Any]:
     """The rows of the index in `folder`, unchecked; empty if there is no index.
 
-    Raises ValueError for an index that is too large or not a list.
+    Raises ValueError for an index that is too large, not a regular file, or not a list.
     """
     file = confined(folder, "index.json")
-    if not file.is_file():
+    if not file.exists():
         return []
-    if file.stat().st_size > LARGEST_INDEX:
-        raise ValueError(f"{file} must have at most {LARGEST_INDEX} bytes, got {file.stat().st_size}")
     try:
-        rows = json.loads(file.read_bytes())
-    except (RecursionError, ValueError) as error:
+        rows = json.loads(read_foreign(file, LARGEST_INDEX))
+    except (RecursionError, json.JSONDecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"{file} is not valid JSON: {error}") from None
     if not isinstance(rows, list):
         raise ValueError(f"{file} must hold a list of rows, got {rows!r:.100}")
@@ -103,6 +102,11 @@ def read_user_row(row: Any, folder: Path) -> Asset:
     )
     if not all(math.isfinite(v) for v in (*numbers, *a.extent, a.mass)):
         raise ValueError(f"numbers of asset {a.id!r} must be finite, got {numbers!r:.200}")
+    for file, suffix in ((a.visual, ".glb"), (a.hulls, ".ply")):
+        if file and not file.endswith(suffix):
+            raise ValueError(
+                f"files of asset {a.id!r} must be a .glb and a .ply, got {file!r:.100}: hazard-ms assets remove {a.id}"
+            )
     visual, hulls = (str(confined(folder, file)) if file else "" for file in (a.visual, a.hulls))
     for path in (visual, hulls):
         if path and not Path(path).is_file():

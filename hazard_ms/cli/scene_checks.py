@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from hazard_ms.assets.foreign import printable
 from hazard_ms.spec import SceneSpec
 
 LONGEST = 120.0  # that the check of one scene may take before it counts as failed [s]
@@ -25,8 +26,8 @@ class CheckedScene:
     def line(self) -> str:
         """A line for people, or several where there are problems."""
         if self.problems:
-            return "\n".join([f"PROBLEM {self.name}", *(f"    {p}" for p in self.problems)])
-        return f"ok {self.name:18s} {self.size}, generated in {self.spent:.2f} s"
+            return "\n".join([f"PROBLEM {printable(self.name)}", *(f"    {printable(p)}" for p in self.problems)])
+        return f"ok {printable(self.name):18s} {self.size}, generated in {self.spent:.2f} s"
 
 
 def find(name: str) -> SceneSpec:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from hazard_ms.assets.foreign import printable, read_foreign
 from hazard_ms.scenes.schema import LARGEST_FILE, from_json
 from hazard_ms.spec import SceneSpec, Task
 
@@ -38,22 +39,18 @@ def read_scenes(scenes: Any) -> dict[str, SceneSpec]:
     for path in (p for given in paths for p in _files(Path(given))):
         spec = read_scene(path)
         if spec.name in found:
-            raise ValueError(f"{path}: names of scenes must differ, got {spec.name!r} twice")
+            raise ValueError(f"{printable(str(path))}: names of scenes must differ, got {spec.name!r} twice")
         found[spec.name] = spec
     return found
 
 
 def read_scene(path: Path) -> SceneSpec:
     """The scene in a JSON file. Raises ValueError that names the file and what is wrong with it."""
-    try:
-        with path.open("rb") as file:
-            raw = file.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
+    raw = read_foreign(path, LARGEST_FILE)
     try:
         return from_json(raw)
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+        raise ValueError(f"{printable(str(path))}: {error}") from None
 
 
 def _files(given: Path) -> list[Path]:

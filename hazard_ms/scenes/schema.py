@@ -178,8 +178,9 @@ def whole_number(digits: str) -> int:
 
 def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """An object of JSON. Raises ValueError for a key that stands in it twice."""
-    made = dict(pairs)
-    if len(made) != len(pairs):
-        twice = next(k for k, _ in pairs if sum(k == other for other, _ in pairs) > 1)
-        raise ValueError(f"keys of an object must differ, got {twice!r:.100} twice")
+    made: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in made:
+            raise ValueError(f"keys of an object must differ, got {key!r:.100} twice")
+        made[key] = value
     return made

@@ -46,7 +46,7 @@ def test_an_interrupted_add_leaves_nothing_behind(files: Path, tmp_path: Path) -
     env = {**os.environ, "HAZARD_MS_ASSETS": str(tmp_path)}
     words = ["assets", "add", str(files / "My Flask.glb"), "--category", "bottle", "--licence", "own work"]
     job = subprocess.Popen([sys.executable, "-m", "hazard_ms.cli", *words], env=env, start_new_session=True)
-    until = time.monotonic() + 60
+    until = time.monotonic() + 250
     while not list(tmp_path.glob(".adding-*")) and time.monotonic() < until:
         time.sleep(0.01)
     os.killpg(job.pid, signal.SIGKILL)  # the whole group: the converter too

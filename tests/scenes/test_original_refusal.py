@@ -104,7 +104,7 @@ def test_large_files_are_refused_at_once(tmp_path: Path) -> None:
     with (where / "log.txt").open("wb") as file:
         file.truncate(100_000_000)
     before = time.process_time()
-    with pytest.raises(ValueError, match="at most 8000000 bytes, got more"):
+    with pytest.raises(ValueError, match="at most 8000000 bytes, got 100000000"):
         read(where)
     assert time.process_time() - before < 1.0
 

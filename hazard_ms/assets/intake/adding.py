@@ -17,12 +17,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from hazard_ms.assets.foreign import printable
 from hazard_ms.assets.index import asset_ids
 from hazard_ms.assets.intake.conversion import convert, preview
 from hazard_ms.assets.intake.model import Model
 from hazard_ms.assets.rows import Asset
 from hazard_ms.assets.shipped import root
 from hazard_ms.assets.user_models import LICENCE, USER_ID, confined, read_user_row, user_root, user_rows
+from hazard_ms.machine.files import write
 from hazard_ms.spec.catalogue import CATEGORIES, category
 
 FILES = ("model.glb", "hulls.ply", "preview.png")  # of a model, in its own folder
@@ -67,7 +69,7 @@ def remove(name: str) -> None:
     with _locked(folder) as rows:
         kept = [row for row in rows if not (isinstance(row, dict) and row.get("id") == name)]
         if len(kept) == len(rows):
-            there = ", ".join(str(row.get("id")) for row in rows if isinstance(row, dict)) or "none"
+            there = ", ".join(printable(str(row.get("id"))) for row in rows if isinstance(row, dict)) or "none"
             raise ValueError(f"a model to remove must be one of {there} in {folder}, got {name!r:.100}")
         _write_index(folder, kept)
         if USER_ID.fullmatch(name):
@@ -179,14 +181,4 @@ def _row(model: Model, name: str, mass: float | None, facts: dict[str, Any], mad
 
 def _write_index(folder: Path, rows: list[Any]) -> None:
     """Replace the index at once: readers see the old one or the new one."""
-    text = "[\n" + ",\n".join(json.dumps(row, ensure_ascii=False) for row in rows) + "\n]\n"
-    handle, pending = tempfile.mkstemp(prefix=".index-", dir=folder)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(pending, folder / "index.json")
-    except BaseException:
-        Path(pending).unlink(missing_ok=True)
-        raise
+    write(folder / "index.json", "[\n" + ",\n".join(json.dumps(row, ensure_ascii=False) for row in rows) + "\n]\n")

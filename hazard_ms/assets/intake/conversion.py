@@ -5,43 +5,52 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+from hazard_ms.assets.foreign import printable
 from hazard_ms.assets.intake.model import Model
+from hazard_ms.assets.intake.worker import PROCESSOR_TIME
 from hazard_ms.assets.rows import Asset
 from hazard_ms.spec.catalogue import CATEGORIES
 
-TIME = 300.0  # of a conversion, at most [s]; 200,000 triangles take 50 [ours]
+HANGING = 3600.0  # when a conversion counts as hanging [s]; a busy machine may take long for a good model [ours]
+THREADS = "2"  # of each library: memory of threads counts, too [ours]
 
 
 def convert(model: Model, made: Path, size: float | None) -> dict[str, Any]:
     """Convert a model into the folder `made`, in a process of its own, and return what was measured on it.
 
-    Raises ValueError with its message, or if it crashed or took too long.
+    Raises ValueError with its message, or if it crashed, hung, or needed more processor time than is allowed.
     """
     order = {**dataclasses.asdict(model), "size": size, "kind": CATEGORIES[model.category].kind}
     package = str(Path(__file__).resolve().parents[3])
     path = os.pathsep.join(p for p in (package, os.environ.get("PYTHONPATH", "")) if p)
-    what = Path(model.parts[0].file).name
+    what = printable(Path(model.parts[0].file).name)
     try:
         done = subprocess.run(
             [sys.executable, "-m", "hazard_ms.assets.intake.worker"],
             input=json.dumps(order),
             capture_output=True,
             text=True,
+            errors="replace",
             cwd=made,
-            env={**os.environ, "PYTHONPATH": path},
-            timeout=TIME,
+            env={**os.environ, "PYTHONPATH": path, "OMP_NUM_THREADS": THREADS, "OPENBLAS_NUM_THREADS": THREADS},
+            timeout=HANGING,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        raise ValueError(f"{what} must be converted within {TIME:.0f} s, got no result: simplify it first") from None
+        raise ValueError(f"{what} must be converted within {HANGING:.0f} s, got no result: simplify it first") from None
+    if done.returncode == -signal.SIGXCPU:
+        raise ValueError(
+            f"{what} must be converted within {PROCESSOR_TIME} s of processor time, got no result: simplify it first"
+        )
     facts = made / "facts.json"
     if done.returncode != 0 or not facts.is_file():
-        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+        last = printable((done.stderr.strip().splitlines() or ["no message"])[-1])
         raise ValueError(f"{what} could not be converted: the worker ended with {done.returncode}: {last:.300}")
     found: dict[str, Any] = json.loads(facts.read_text())
     facts.unlink()

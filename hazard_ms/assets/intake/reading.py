@@ -5,10 +5,7 @@ Formats are glb, gltf (version 2), obj, stl and ply, without archives, addresses
 
 from __future__ import annotations
 
-import base64
-import binascii
 import io
-import json
 import re
 import struct
 from pathlib import Path
@@ -17,56 +14,58 @@ from urllib.parse import unquote
 
 import numpy as np
 import trimesh
-from PIL import Image
 
+from hazard_ms.assets.foreign import printable, read_foreign
+from hazard_ms.assets.intake.gltf import prepared_glb, prepared_gltf
+from hazard_ms.assets.intake.textures import Textures
 from hazard_ms.assets.user_models import confined
 
 FORMATS = (".glb", ".gltf", ".obj", ".stl", ".ply")
 LARGEST_FILE = 64_000_000  # of a model, and of each file that it names [bytes] [ours]
-LARGEST_JSON = 8_000_000  # of what describes a glTF [bytes] [ours]
 MOST_FACES = 200_000  # the shipped models have 8,200 at most [ours]
 MOST_FILES = 64  # beside a model [ours]
-MOST_NODES = 10_000  # of a glTF [ours]
-LARGEST_IMAGE = 8192  # edge of a texture [pixels] [ours]
-EXTENSIONS = ("KHR_materials_", "KHR_lights_punctual")  # of those that a glTF may require: they do not change its shape
-Image.MAX_IMAGE_PIXELS = LARGEST_IMAGE**2
+MOST_CORNERS = 600_000  # of all parts, each as often as it is placed [ours]
+LONGEST_REASON = 300  # of what a library says about a broken file [characters] [ours]
 
 
 def read_model(path: Path) -> trimesh.Scene:
-    """The model in `path`, in its own frame. Raises ValueError that names what is wrong with it."""
-    kind = path.suffix.lower()
+    """The model in `path`, in its own frame, its pictures small. Raises ValueError that names what is wrong with it."""
+    kind, name = path.suffix.lower(), printable(path.name)
     if kind not in FORMATS:
-        raise ValueError(f"a model must be a file {', '.join(FORMATS)}, got {path.name}")
-    data = read_bytes(path, path.name)
-    CHECKS[kind](data, path.name)
-    beside = Beside(path.parent)
+        raise ValueError(f"a model must be a file {', '.join(FORMATS)}, got {name}")
+    data = read_foreign(path, LARGEST_FILE, name)
+    textures = Textures()
+    beside = Beside(path.parent, textures, BEFORE_PICTURES[kind])
+    if kind in CHECKS:
+        CHECKS[kind](data, name)
+    else:
+        prepared = prepared_glb if kind == ".glb" else prepared_gltf
+        data = prepared(data, name, beside.get, textures)
     try:
         scene = trimesh.load_scene(io.BytesIO(data), file_type=kind[1:], resolver=beside, process=False)
     except Exception as error:  # of whatever kind trimesh raises for broken files
         if not beside.refused:
-            raise ValueError(f"{path.name} cannot be read: {type(error).__name__}: {error}") from None
+            reason = printable(f"{type(error).__name__}: {error}")[:LONGEST_REASON]
+            raise ValueError(f"{name} cannot be read: {reason}") from None
     if beside.refused:  # trimesh goes on without what it did not get
-        raise ValueError(f"{path.name}: {beside.refused[0]}")
-    _check(scene, path.name)
+        raise ValueError(f"{name}: {beside.refused[0]}")
+    _check(scene, name)
     return scene
 
 
-def read_bytes(path: Path, name: str) -> bytes:
-    """The content of a file. Raises ValueError if there is none, or if it is too large."""
-    if not path.is_file():
-        raise ValueError(f"there is no file {name}")
-    if path.stat().st_size > LARGEST_FILE:
-        raise ValueError(f"{name} must have at most {LARGEST_FILE} bytes, got {path.stat().st_size}")
-    return path.read_bytes()
-
-
 class Beside(trimesh.resolvers.Resolver):
-    """Hands out files of one folder, and remembers what it refused. Raises ValueError for all other files."""
+    """Hands out files of one folder, and remembers what it refused. Raises ValueError for all other files.
 
-    def __init__(self, folder: Path) -> None:
+    The first `plain` files are handed out as they are; all that are asked for later are pictures, and become small.
+    """
+
+    def __init__(self, folder: Path, textures: Textures, plain: int) -> None:
         self.folder = folder
         self.refused: list[str] = []
-        self.count = 0
+        self._textures = textures
+        self._plain = plain
+        self._count = 0
+        self._pictures: dict[str, bytes] = {}
 
     def get(self, key: str) -> bytes:
         """The content of the file that the model names `key`. Raises ValueError if that is not a file beside it."""
@@ -77,7 +76,6 @@ class Beside(trimesh.resolvers.Resolver):
             raise ValueError(str(error)) from None
 
     def _get(self, key: str) -> bytes:
-        self.count += 1
         name = unquote(key).strip().replace("\\", "/")
         if (
             re.match(r"[A-Za-z][A-Za-z0-9+.\-]*:", name)
@@ -86,9 +84,16 @@ class Beside(trimesh.resolvers.Resolver):
             or "\0" in name
         ):
             raise ValueError(f"files that a model names must lie beside it, got {key!r:.200}")
-        if self.count > MOST_FILES:
+        if name in self._pictures:
+            return self._pictures[name]
+        if self._count == MOST_FILES:
             raise ValueError(f"a model must name at most {MOST_FILES} files, got more")
-        return read_bytes(confined(self.folder, name), name)
+        self._count += 1
+        data = read_foreign(confined(self.folder, name), LARGEST_FILE, name[:LONGEST_REASON])
+        if self._count <= self._plain:
+            return data
+        self._pictures[name] = self._textures.small(data, name)
+        return self._pictures[name]
 
     def keys(self) -> list[str]:
         return []
@@ -112,9 +117,13 @@ def _check(scene: trimesh.Scene, name: str) -> None:
         raise ValueError(f"{name} must hold triangles, got none")
     try:
         placed = [scene.graph[node] for node in scene.graph.nodes_geometry]
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"{name}: its parts cannot be placed: {error}") from None
-    _few(sum(len(meshes[geometry].faces) for _, geometry in placed if geometry in meshes), name)
+    except Exception as error:  # likewise
+        raise ValueError(f"{name}: its parts cannot be placed: {error!r:.200}") from None
+    shown = [meshes[geometry] for _, geometry in placed if geometry in meshes]
+    _few(sum(len(mesh.faces) for mesh in shown), name)
+    corners = sum(len(mesh.vertices) for mesh in shown)
+    if corners > MOST_CORNERS:
+        raise ValueError(f"{name} must have at most {MOST_CORNERS} corners, got {corners}: simplify it first")
     for matrix, geometry in placed:
         if geometry in meshes:
             mesh = meshes[geometry]
@@ -127,49 +136,6 @@ def _check(scene: trimesh.Scene, name: str) -> None:
 def _few(faces: int, name: str) -> None:
     if faces > MOST_FACES:
         raise ValueError(f"{name} must have at most {MOST_FACES} triangles, got {faces}: simplify it first")
-
-
-def _check_glb(data: bytes, name: str) -> None:
-    if len(data) < 20 or data[:4] != b"glTF":
-        raise ValueError(f"{name} must be a GLB file, got something else")
-    version, _, length, chunk = struct.unpack("<IIII", data[4:20])
-    if version != 2 or chunk != 0x4E4F534A or length > len(data) - 20:
-        raise ValueError(f"{name} must be a GLB file of version 2 with a whole JSON chunk first, got something else")
-    _check_gltf(data[20 : 20 + length], name)
-
-
-def _check_gltf(data: bytes, name: str) -> None:
-    """Refuse a glTF whose JSON already says that it is too large, or needs an extension that we do not read."""
-    if len(data) > LARGEST_JSON:
-        raise ValueError(f"the JSON of {name} must have at most {LARGEST_JSON} bytes, got {len(data)}")
-    try:
-        tree = json.loads(data)
-        needed = [e for e in tree.get("extensionsRequired", []) if not e.startswith(EXTENSIONS)]
-        counts = [int(a["count"]) for a in tree.get("accessors", [])]
-        nodes = len(tree.get("nodes", []))
-        uris = [str(each["uri"]) for what in ("buffers", "images") for each in tree.get(what, []) if "uri" in each]
-    except (ValueError, RecursionError, AttributeError, KeyError, TypeError, UnicodeDecodeError) as error:
-        raise ValueError(f"{name} must be a valid glTF, got {type(error).__name__}: {error}") from None
-    if needed:
-        raise ValueError(
-            f"{name} must be saved without compression and the like, got {', '.join(map(str, needed))!r:.200}"
-        )
-    if any(c < 0 for c in counts) or sum(counts) > 12 * MOST_FACES:
-        raise ValueError(
-            f"{name} must hold at most {12 * MOST_FACES} numbers of corners, got {sum(counts)}: simplify it first"
-        )
-    if nodes > MOST_NODES:
-        raise ValueError(f"{name} must have at most {MOST_NODES} nodes, got {nodes}")
-    for uri in uris:
-        if uri.startswith("data:"):
-            _check_data(uri, name)
-
-
-def _check_data(uri: str, name: str) -> None:
-    try:
-        base64.b64decode(uri.partition(",")[2], validate=True)
-    except binascii.Error as error:
-        raise ValueError(f"data URIs of {name} must be base64: {error}") from None
 
 
 def _check_obj(data: bytes, name: str) -> None:
@@ -198,4 +164,11 @@ def _check_ply(data: bytes, name: str) -> None:
         )
 
 
-CHECKS = {".glb": _check_glb, ".gltf": _check_gltf, ".obj": _check_obj, ".stl": _check_stl, ".ply": _check_ply}
+CHECKS = {".obj": _check_obj, ".stl": _check_stl, ".ply": _check_ply}
+BEFORE_PICTURES = {  # files that a format asks for before its pictures: buffers, the library of materials
+    ".glb": MOST_FILES,
+    ".gltf": MOST_FILES,
+    ".obj": 1,
+    ".stl": 0,
+    ".ply": 0,
+}

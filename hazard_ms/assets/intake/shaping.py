@@ -1,4 +1,4 @@
-"""Turns a model into our frame: metres, z up, base at z = 0, centred in x and y, facing -y; textures become small."""
+"""Turns a model into our frame: metres, z up, base at z = 0, centred in x and y, facing -y."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from trimesh.visual.material import PBRMaterial
 
 from hazard_ms.assets.rows import LARGEST
 
-TEXTURE_SIZE = 512  # longest edge [pixels]
 SMALLEST = 0.0005  # edge of a model [m]
 AXES = {"x": (1, 0, 0), "-x": (-1, 0, 0), "y": (0, 1, 0), "-y": (0, -1, 0), "z": (0, 0, 1), "-z": (0, 0, -1)}
 CREASE = np.radians(40)  # sharper edges are seen as edges
@@ -130,25 +129,15 @@ def _linear(srgb: Any) -> list[float]:
     return [*np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4).round(5).tolist(), 1.0]
 
 
-def texture(image: Image.Image, pixels: int = TEXTURE_SIZE) -> Image.Image:
-    """The image with its longest edge at most `pixels`, as JPEG, or as PNG if parts are cut out.
-
-    Raises ValueError if it cannot be read.
-    """
-    try:
-        image = image.convert("RGBA")
-    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
-        raise ValueError(f"a texture cannot be read: {error}") from None
-    scale = pixels / max(image.size)
-    if scale < 1.0:
-        width, height = image.size
-        image = image.resize((max(1, round(width * scale)), max(1, round(height * scale))), Image.Resampling.LANCZOS)
+def texture(image: Image.Image) -> Image.Image:
+    """The image, made small when it was read, as JPEG, or as PNG if parts are cut out."""
+    image = image.convert("RGBA")
     data = io.BytesIO()
     if np.asarray(image)[..., 3].min() < 250:
         image.save(data, "PNG")
     else:
         image.convert("RGB").save(data, "JPEG", quality=85)
-    return Image.open(io.BytesIO(data.getvalue()))
+    return Image.open(io.BytesIO(data.getvalue()), formats=("PNG", "JPEG"))
 
 
 def write(scene: trimesh.Scene, path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Converts one model in a process of its own, with limits on memory and files, so that a hostile one ends no other.
+"""Converts one model in a process of its own, within a budget of memory and time, so that a hostile one ends no other.
 
 `hazard_ms.assets.intake.conversion` starts it. It reads the order from standard input, and writes model.glb, hulls.ply
 and facts.json into the folder in which it runs, nothing else.
@@ -11,15 +11,21 @@ import sys
 from pathlib import Path
 from typing import Any
 
-MEMORY = 8 << 30  # address space, at most [bytes]; SAPIEN and CoACD take 3 of these [ours]
+MEMORY = 800_000_000  # of its own, at most [bytes]; with the libraries' code this is 1 GB [ours]
+PROCESSOR_TIME = 120  # at most [s]; 200,000 triangles take 50 [ours]
 WRITTEN = 256 << 20  # each file, at most [bytes] [ours]
 
 
 def limit() -> None:
-    """Limit memory and files to the needs of the largest model that is accepted."""
+    """Limit memory, processor time and files to the needs of the largest model that is accepted."""
     import resource
 
-    for what, most in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_FSIZE, WRITTEN), (resource.RLIMIT_CORE, 0)):
+    for what, most in (
+        (resource.RLIMIT_DATA, MEMORY),
+        (resource.RLIMIT_CPU, PROCESSOR_TIME),
+        (resource.RLIMIT_FSIZE, WRITTEN),
+        (resource.RLIMIT_CORE, 0),
+    ):
         _, hard = resource.getrlimit(what)
         resource.setrlimit(what, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
 
@@ -72,12 +78,16 @@ def assembled(order: dict[str, Any]) -> Any:
 def main() -> int:
     """Convert the model that standard input orders; a refusal is written to facts.json, too."""
     limit()
+    from hazard_ms.assets.intake.textures import forbid_other_formats
+
+    forbid_other_formats()
     try:
         facts = convert(json.load(sys.stdin))
     except ValueError as error:
         facts = {"refused": str(error)}
     except (MemoryError, RecursionError) as error:
-        facts = {"refused": f"it needs too much memory ({type(error).__name__})"}
+        needed = f"a model must need at most {MEMORY // 10**6} MB of memory, got more"
+        facts = {"refused": f"{needed} ({type(error).__name__}): simplify it first"}
     Path("facts.json").write_text(json.dumps(facts))
     return 0
 

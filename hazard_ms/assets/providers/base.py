@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import abc
 import gzip
+import io
 import json
 import os
+import zlib
 from pathlib import Path
 from typing import Any, ClassVar
 
+from hazard_ms.assets.foreign import printable, read_foreign
 from hazard_ms.assets.intake.model import Model
 from hazard_ms.assets.user_models import confined
 
@@ -91,10 +94,11 @@ class Provider(abc.ABC):
 def read_json(path: Path) -> Any:
     """The content of a JSON file, .gz or not. Raises ValueError if it is too large or not valid JSON."""
     try:
-        with gzip.open(path) if path.suffix == ".gz" else path.open("rb") as file:
-            data = file.read(LARGEST_JSON + 1)
+        data = read_foreign(path, LARGEST_JSON)
+        if path.suffix == ".gz":
+            data = gzip.GzipFile(fileobj=io.BytesIO(data)).read(LARGEST_JSON + 1)
         if len(data) > LARGEST_JSON:
             raise ValueError(f"it must have at most {LARGEST_JSON} bytes, got more")
         return json.loads(data)
-    except (OSError, EOFError, RecursionError, ValueError) as error:
-        raise ValueError(f"{path} cannot be read: {error}") from None
+    except (OSError, EOFError, RecursionError, ValueError, zlib.error) as error:
+        raise ValueError(f"{printable(str(path))} cannot be read: {error}") from None

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.assets.foreign import read_foreign
 from hazard_ms.assets.intake.model import Model, ModelPart
 from hazard_ms.assets.providers.base import DOWNLOAD, Provider, read_json
 from hazard_ms.assets.user_models import confined
@@ -86,11 +87,9 @@ def parts(urdf: Path) -> tuple[ModelPart, ...]:
 
     Raises ValueError for a URDF that cannot be read.
     """
-    data = urdf.read_bytes() if urdf.stat().st_size <= LARGEST_URDF else b""
+    data = read_foreign(urdf, LARGEST_URDF)
     if not data or b"<!" in data.replace(b"<!--", b""):
-        raise ValueError(
-            f"{urdf} must be a plain URDF of at most {LARGEST_URDF} bytes, got none, a larger one, or one with entities"
-        )
+        raise ValueError(f"{urdf} must be a plain URDF, got an empty file, or one with entities")
     try:
         tree = ET.fromstring(data)  # noqa: S314
         places = _places(tree)

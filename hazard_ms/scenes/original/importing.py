@@ -7,6 +7,8 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from hazard_ms.assets.foreign import printable
+
 LOG = "log.txt"  # a folder that holds one is a scene
 MOST_SCENES = 2000  # in one import
 
@@ -27,11 +29,13 @@ def import_scenes(paths: Sequence[Path], out: Path) -> int:
         try:
             found = read(folder)
             if found.spec.name in written:
-                raise ValueError(f"{folder}: names of scenes must differ, got {found.spec.name!r} twice")
+                raise ValueError(
+                    f"{printable(str(folder))}: names of scenes must differ, got {found.spec.name!r} twice"
+                )
             _write(target, found.spec.name, to_json(found.spec))
         except ValueError as error:
             failed += 1
-            print(f"hazard-ms: {error}", file=sys.stderr)
+            print(f"hazard-ms: {printable(str(error))}", file=sys.stderr)
             continue
         written.add(found.spec.name)
         spec = found.spec
@@ -43,15 +47,17 @@ def import_scenes(paths: Sequence[Path], out: Path) -> int:
         }
         print(f"{spec.name}: " + ", ".join(f"{len(things)} {what}" for what, things in parts.items()))
         for note in found.notes:
-            print(f"  {note}")
-    print(f"{len(written)} scenes in {target}" + (f", {failed} could not be read" if failed else ""))
+            print(f"  {printable(note)}")
+    print(f"{len(written)} scenes in {printable(str(target))}" + (f", {failed} could not be read" if failed else ""))
     return 1 if failed else 0
 
 
 def _folders(path: Path) -> Iterator[Path]:
     """The scene folders that a path means: itself, or those in it, or those in folders in it."""
     if not path.is_dir():
-        raise ValueError(f"a scene must be a folder that exists, or a folder of such folders, got {path}")
+        raise ValueError(
+            f"a scene must be a folder that exists, or a folder of such folders, got {printable(str(path))}"
+        )
     path = path.resolve()
     found = (
         [path]
@@ -59,7 +65,9 @@ def _folders(path: Path) -> Iterator[Path]:
         else sorted(f.parent for depth in ("*", "*/*") for f in path.glob(f"{depth}/{LOG}"))
     )
     if not found or len(found) > MOST_SCENES:
-        raise ValueError(f"{path} must hold 1 to {MOST_SCENES} scene folders, each with a {LOG}, got {len(found)}")
+        raise ValueError(
+            f"{printable(str(path))} must hold 1 to {MOST_SCENES} scene folders, each with a {LOG}, got {len(found)}"
+        )
     yield from found
 
 
@@ -67,7 +75,7 @@ def _target(out: Path) -> Path:
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise ValueError(f"{out} cannot be made: {error.strerror}") from None
+        raise ValueError(f"{printable(str(out))} cannot be made: {error.strerror}") from None
     return out.resolve()
 
 
@@ -75,7 +83,7 @@ def _write(target: Path, name: str, text: str) -> None:
     """Write `name`.json into `target`, nowhere else: links are replaced, not followed."""
     path = target / f"{name}.json"
     if path.parent != target or path.is_dir():
-        raise ValueError(f"a scene must be written to a file directly in {target}, got {path}")
+        raise ValueError(f"a scene must be written to a file directly in {printable(str(target))}, got {path.name!r}")
     part = target / f".{name}.{os.getpid()}.part"
     try:
         part.unlink(missing_ok=True)
@@ -83,4 +91,4 @@ def _write(target: Path, name: str, text: str) -> None:
             file.write(text)
         part.replace(path)
     except OSError as error:
-        raise ValueError(f"{path} cannot be written: {error.strerror}") from None
+        raise ValueError(f"{printable(str(path))} cannot be written: {error.strerror}") from None

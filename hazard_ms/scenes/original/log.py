@@ -8,14 +8,14 @@ of IGNORED change nothing that we read: pictures, precision, and the letting go 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from hazard_ms.scenes.original.axes import AXES, about, from_euler, inverse, looking, times, turn
+from hazard_ms.assets.foreign import printable
+from hazard_ms.scenes.original.axes import AXES, about, from_euler, looking, times
 from hazard_ms.scenes.original.reading import Record, read_commands
-from hazard_ms.spec import UPRIGHT, Quat, Vec3
+from hazard_ms.scenes.original.things import Log, Thing
+from hazard_ms.spec import UPRIGHT
 
-TDW_MASS = 1.0  # of things whose mass is never set [kg]: docs/physics.md 0.2
 MOST_THINGS = 1000  # that one log may add
 IGNORED = frozenset(
     "set_screen_size set_target_framerate set_render_quality set_render_order set_post_process set_shadow_strength "
@@ -23,49 +23,6 @@ IGNORED = frozenset(
     "step_physics simulate_physics send_log_messages set_object_collision_detection_mode set_color set_visual_material "
     "set_semantic_material_to do_nothing set_error_handling terminate".split()
 )
-
-
-@dataclass
-class Thing:
-    """An object of the original, in the original's frame, as far as the log has come."""
-
-    id: int
-    name: str  # of its model
-    category: str  # in the original's words
-    place: str  # of the command that added it, for errors
-    position: Vec3  # of its pivot: the middle of its base [m]
-    rotation: Quat
-    scale_factor: float  # as it was added; the model's table says what size that is
-    scale: Vec3 = (1.0, 1.0, 1.0)  # set after that
-    kinematic: bool = False
-    mass: float = TDW_MASS  # [kg]
-    friction: float | None = None  # [-]
-    parent: int | None = None
-    # heights above the base at which it holds other things, at its scale factor [m]
-    floors: list[float] = field(default_factory=list)
-
-
-class Log:
-    """The things that a log has added so far, and its room."""
-
-    def __init__(self) -> None:
-        self.things: dict[int, Thing] = {}
-        self.room = ""
-
-    def thing(self, r: Record, key: str = "id") -> Thing:
-        """The thing that a command names. Raises ValueError if there is none."""
-        if r.id(key) not in self.things:
-            raise ValueError(f"{r.place}: {key} must be that of an object that exists here, got {r.id(key)}")
-        return self.things[r.id(key)]
-
-    def carry(self, thing: Thing, position: Vec3, rotation: Quat) -> None:
-        """Move a thing to `position` [m] and `rotation`, with all that is parented to it."""
-        turned, pivot = times(rotation, inverse(thing.rotation)), thing.position
-        thing.position, thing.rotation = position, rotation
-        for child in self.things.values():
-            if child.parent == thing.id:
-                x, y, z = turn(turned, _minus(child.position, pivot))
-                self.carry(child, (position[0] + x, position[1] + y, position[2] + z), times(turned, child.rotation))
 
 
 def replay(path: Path) -> Log:
@@ -85,12 +42,10 @@ def replay(path: Path) -> Log:
         carry_out, must, may = COMMANDS[kind]
         carry_out(log, r.only(("$type", *must.split()), tuple(may.split())))
     if not log.room:
-        raise ValueError(f"{path}, line 1: a log of the original benchmark must have a command add_scene, got none")
+        raise ValueError(
+            f"{printable(str(path))}, line 1: a log of the original benchmark must have a command add_scene, got none"
+        )
     return log
-
-
-def _minus(a: Vec3, b: Vec3) -> Vec3:
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
 def _add_scene(log: Log, r: Record) -> None:
@@ -119,9 +74,10 @@ def _positive(r: Record, key: str, default: float | None = None) -> float:
 
 def _destroy(log: Log, r: Record) -> None:
     gone = log.thing(r)
+    log.attach(gone, None)
+    for child in log.children.pop(gone.id, ()):
+        log.things[child].parent = None
     del log.things[gone.id]
-    for other in log.things.values():
-        other.parent = None if other.parent == gone.id else other.parent
 
 
 def _scale(log: Log, r: Record) -> None:
@@ -132,7 +88,7 @@ def _scale(log: Log, r: Record) -> None:
 
 
 def _euler(log: Log, r: Record) -> None:
-    log.carry(log.thing(r), log.thing(r).position, from_euler(r.vector("euler_angles")))
+    log.carry(r, log.thing(r).position, from_euler(r.vector("euler_angles")))
 
 
 def _rotate_to(log: Log, r: Record) -> None:
@@ -141,7 +97,7 @@ def _rotate_to(log: Log, r: Record) -> None:
     length = (w * w + x * x + y * y + z * z) ** 0.5
     if abs(length - 1.0) > 1e-3:
         r.refuse("rotation", "a unit quaternion")
-    log.carry(log.thing(r), log.thing(r).position, (w / length, x / length, y / length, z / length))
+    log.carry(r, log.thing(r).position, (w / length, x / length, y / length, z / length))
 
 
 def _rotate_by(log: Log, r: Record) -> None:
@@ -151,20 +107,18 @@ def _rotate_by(log: Log, r: Record) -> None:
     if r.flag("use_centroid", False):
         r.refuse("use_centroid", "false: the pivot")
     by = about(AXES[r.text("axis")], r.number("angle"))
-    log.carry(
-        thing, thing.position, times(by, thing.rotation) if r.flag("is_world", True) else times(thing.rotation, by)
-    )
+    log.carry(r, thing.position, times(by, thing.rotation) if r.flag("is_world", True) else times(thing.rotation, by))
 
 
 def _look(log: Log, r: Record) -> None:
     thing = log.thing(r)
-    log.carry(thing, thing.position, looking(thing.position, r.vector("position")))
+    log.carry(r, thing.position, looking(thing.position, r.vector("position")))
 
 
 def _teleport(log: Log, r: Record) -> None:
     if not r.flag("absolute", True) or r.flag("physics", False):
         raise ValueError(f"{r.place}: absolute must be true and physics false, got other values")
-    log.carry(log.thing(r), r.vector("position"), log.thing(r).rotation)
+    log.carry(r, r.vector("position"), log.thing(r).rotation)
 
 
 def _kinematic(log: Log, r: Record) -> None:
@@ -184,19 +138,18 @@ def _material(log: Log, r: Record) -> None:
 
 def _parent(log: Log, r: Record) -> None:
     thing, above = log.thing(r), log.thing(r, "parent_id")
-    thing.parent = above.id
-    seen = {thing.id}
-    while above.parent is not None and above.id not in seen:
-        seen.add(above.id)
+    log.attach(thing, above.id)
+    while above.parent is not None and above.id != thing.id:
+        log.step(r.place)
         above = log.things[above.parent]
-    if above.id in seen:
+    if above.id == thing.id:
         raise ValueError(
             f"{r.place}: the parent of an object must not be attached to it, got {above.id} for {thing.id}"
         )
 
 
 def _unparent(log: Log, r: Record) -> None:
-    log.thing(r).parent = None
+    log.attach(log.thing(r), None)
 
 
 def _container(log: Log, r: Record) -> None:

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from hazard_ms.assets import primitives
 from hazard_ms.assets.index import asset, asset_ids
-from hazard_ms.scenes.original.log import Thing
+from hazard_ms.scenes.original.things import Thing
 from hazard_ms.spec import Vec3
 from hazard_ms.spec.catalogue import CATEGORIES
 

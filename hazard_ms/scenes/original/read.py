@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hazard_ms.assets.foreign import printable
 from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes, schema
 from hazard_ms.scenes.generate.arrangement import RESTING_HEIGHT
@@ -31,11 +32,12 @@ from hazard_ms.scenes.original.axes import (
     times,
     turn,
 )
-from hazard_ms.scenes.original.log import Log, Thing, replay
+from hazard_ms.scenes.original.log import replay
 from hazard_ms.scenes.original.models import category_of, room_box, size_of, stand_in
 from hazard_ms.scenes.original.reading import Record, read_object
 from hazard_ms.scenes.original.start import start
 from hazard_ms.scenes.original.street import place_of, street
+from hazard_ms.scenes.original.things import Log, Thing
 from hazard_ms.spec import Body, Fixture, Quat, Room, SceneSpec, Vec3
 
 FLOOD_SIDES = {"x_max": "east", "x_min": "west", "z_max": "north", "z_min": "south"}
@@ -56,7 +58,8 @@ def read(folder: Path) -> Found:
     """The scene in `folder`. Raises ValueError that names file and line for anything that is not as it must be."""
     if not re.fullmatch(schema.NAME.pattern, folder.name) or len(folder.name) > schema.LONGEST_TEXT:
         raise ValueError(
-            f"a folder must be named with letters, digits and _ . : -, for it names the scene, got {folder}"
+            f"a folder must be named with letters, digits and _ . : -, for it names the scene, "
+            f"got {printable(str(folder))}"
         )
     log, info = replay(folder / "log.txt"), read_object(folder / "info.json")
     info.only(("task", "containers", "agent", "targets", "other"))
@@ -66,7 +69,7 @@ def read(folder: Path) -> Found:
     make = _outdoors if info.text("task") == "wind" else _indoors
     spec = make(folder, log, info, notes)
     try:
-        schema.check(spec)
+        schema.from_json(schema.to_json(spec))  # what cannot be read back is not written
     except ValueError as error:
         raise ValueError(f"{info.place}: {error}") from None
     return Found(spec, tuple(dict.fromkeys(notes)))

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
+from hazard_ms.assets.foreign import printable, read_foreign
 from hazard_ms.scenes.schema import unique_keys, whole_number
 
 LARGEST_FILE = 8_000_000  # [bytes]; the largest published log has 200,000
@@ -96,10 +97,10 @@ class Record:
 
 def read_object(path: Path) -> Record:
     """The one JSON object of a file. Raises ValueError for anything else."""
-    values = list(_values(path))
+    values, shown = list(_values(path)), printable(str(path))
     if len(values) != 1 or not isinstance(values[0][1], dict):
-        raise ValueError(f"{path}, line 1: a file must hold one JSON object, got {len(values)} values")
-    return Record(values[0][1], f"{path}, line 1")
+        raise ValueError(f"{shown}, line 1: a file must hold one JSON object, got {len(values)} values")
+    return Record(values[0][1], f"{shown}, line 1")
 
 
 def read_commands(path: Path) -> Iterator[Record]:
@@ -107,19 +108,20 @@ def read_commands(path: Path) -> Iterator[Record]:
 
     Raises ValueError that names the line for anything that is not a command.
     """
+    shown = printable(str(path))
     for line, commands in _values(path):
         if not isinstance(commands, list):
-            raise ValueError(f"{path}, line {line}: a line must be a list of commands, got {commands!r:.100}")
+            raise ValueError(f"{shown}, line {line}: a line must be a list of commands, got {commands!r:.100}")
         for number, command in enumerate(commands, 1):
-            place = f"{path}, line {line}, command {number}"
+            place = f"{shown}, line {line}, command {number}"
             if not isinstance(command, dict) or not isinstance(command.get("$type"), str):
                 raise ValueError(f"{place}: a command must be an object with a '$type', got {command!r:.100}")
-            yield Record(command, f"{place} ({command['$type']:.60})")
+            yield Record(command, f"{place} ({printable(command['$type'][:60])})")
 
 
 def _values(path: Path) -> Iterator[tuple[int, Any]]:
     """The JSON values of a file one after the other, each with the line on which it starts."""
-    text = _text(path)
+    text, shown = _text(path), printable(str(path))
     decoder = json.JSONDecoder(
         parse_constant=_not_finite, parse_int=whole_number, parse_float=_finite, object_pairs_hook=unique_keys
     )
@@ -130,30 +132,25 @@ def _values(path: Path) -> Iterator[tuple[int, Any]]:
             value, at = decoder.raw_decode(text, at)
         except json.JSONDecodeError as error:
             raise ValueError(
-                f"{path}, line {error.lineno}, column {error.colno}: not valid JSON: {error.msg}"
+                f"{shown}, line {error.lineno}, column {error.colno}: not valid JSON: {error.msg}"
             ) from None
         except (RecursionError, ValueError) as error:
-            raise ValueError(f"{path}, line {line}: {error}") from None
+            raise ValueError(f"{shown}, line {line}: {error}") from None
         yield line, value
 
 
 def _text(path: Path) -> str:
-    try:
-        if not path.is_file():
-            raise ValueError(
-                f"{path}: there is no such file; a scene's folder holds log.txt and info.json, indoors flood.json, too"
-            )
-        with path.open("rb") as file:
-            raw = file.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read: {error.strerror}") from None
-    if len(raw) > LARGEST_FILE:
-        raise ValueError(f"{path} must have at most {LARGEST_FILE} bytes, got more")
+    shown = printable(str(path))
+    if not path.exists():
+        raise ValueError(
+            f"{shown}: there is no such file; a scene's folder holds log.txt and info.json, indoors flood.json, too"
+        )
+    raw = read_foreign(path, LARGEST_FILE)
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        raise ValueError(f"{path}, line {line}: not UTF-8: {error.reason}") from None
+        raise ValueError(f"{shown}, line {line}: not UTF-8: {error.reason}") from None
 
 
 def _not_finite(word: str) -> NoReturn:

@@ -6,7 +6,7 @@ Torch is imported only where a tensor can be what is checked, so that names can 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -14,10 +14,15 @@ import numpy as np
 SEED_END = 2**32  # numpy's seeds end there, and ManiSkill draws with numpy
 SIM_BACKENDS = ("auto", "cpu", "gpu", "cuda", "physx_cpu", "physx_cuda")
 RENDER_BACKENDS = ("auto", "cpu", "gpu", "cuda", "sapien_cpu", "sapien_cuda", "none", "pci")
+FAR = 1e9  # no length [m] or angle [rad] that users give is as large [ours]
 SHOWN = 12  # names that an error lists; where there are more, it names the nearest
 NEAREST = 5  # names that an error suggests where it cannot list all
 LEAST_PIXELS = 16  # of a camera's image each way: the hazard image has as many samples
 OPTIONS = ("scene", "reconfigure", "env_idx", "reset_to_env_states")
+# torch's numbers that actions and states may hold: all that numpy or learners compute with
+PLAIN_DTYPES = {"float16", "bfloat16", "float32", "float64"} | {
+    f"{u}int{n}" for u in ("", "u") for n in (8, 16, 32, 64)
+}
 
 
 def one_of(value: Any, allowed: Iterable[str], what: str, listing: str = "", shown: int = SHOWN) -> str:
@@ -45,6 +50,15 @@ def whole(value: Any, low: int, high: int, what: str) -> int:
     return int(value)
 
 
+def finite(values: Any, count: int, what: str) -> tuple[float, ...]:
+    """`count` numbers as floats. Raises ValueError for other things, and for numbers that are not finite."""
+    listed = list(values) if isinstance(values, (tuple, list)) else []
+    plain = [isinstance(v, (int, float, np.integer, np.floating)) and not isinstance(v, bool) for v in listed]
+    if len(listed) != count or not all(plain) or not all(abs(v) < FAR for v in listed):
+        raise ValueError(f"{what} must be {count} finite numbers, got {values!r:.100}")
+    return tuple(float(v) for v in listed)
+
+
 def flag(value: Any, what: str) -> bool:
     """`value` if it is True or False. Raises ValueError for all else, numbers among them."""
     if not isinstance(value, (bool, np.bool_)):
@@ -53,9 +67,14 @@ def flag(value: Any, what: str) -> bool:
 
 
 def seeds(value: Any, num_envs: int) -> Any:
-    """The `seed` of a reset: None, one seed, or a list of one per environment. Raises ValueError for all else."""
+    """The `seed` of a reset: None, one seed, or a list of one per environment. Raises ValueError for all else.
+
+    An array without axes, np.array(3), is the seed that it holds.
+    """
     if value is None:
         return None
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
     if isinstance(value, (list, tuple, np.ndarray)):
         if len(value) not in (1, num_envs):
             raise ValueError(f"seed must have 1 or {num_envs} (num_envs) entries, got {len(value)}")
@@ -76,17 +95,19 @@ def options(value: Any, num_envs: int) -> dict[str, Any]:
     if "reconfigure" in value:
         flag(value["reconfigure"], "reset option 'reconfigure'")
     if "env_idx" in value:
-        import torch
-
-        given = value["env_idx"]
-        rows = given.tolist() if isinstance(given, (np.ndarray, torch.Tensor)) else given
-        whole_rows = isinstance(rows, (list, tuple)) and all(type(r) is int and 0 <= r < num_envs for r in rows)
-        if not rows or not whole_rows or len(set(rows)) < len(rows):
-            raise ValueError(
-                f"reset option 'env_idx' must be a list of indices from 0 to {num_envs - 1}, got {given!r}"
-            )
-        return {**value, "env_idx": torch.tensor(rows)}
+        return {**value, "env_idx": rows(value["env_idx"], num_envs, "reset option 'env_idx'")}
     return dict(value)
+
+
+def rows(value: Any, num_envs: int, what: str) -> Any:
+    """The numbers of some of `num_envs` environments as a tensor, [R]. Raises ValueError for all else."""
+    import torch
+
+    listed = numbers(value, what).tolist() if isinstance(value, (np.ndarray, torch.Tensor)) else value
+    known = isinstance(listed, (list, tuple)) and all(type(r) is int and 0 <= r < num_envs for r in listed)
+    if not known or not listed or len(set(listed)) < len(listed):
+        raise ValueError(f"{what} must be a list of indices from 0 to {num_envs - 1}, got {value!r:.100}")
+    return torch.tensor(listed)
 
 
 def backends(num_envs: int, sim: Any, render: Any) -> None:
@@ -120,37 +141,56 @@ def cameras(configs: Any) -> None:
                 whole(part[name], LEAST_PIXELS, 2**15, f"{name} in sensor_configs")
 
 
-def action(value: Any, space: Any, num_envs: int, modes: Iterable[str] = ()) -> Any:
-    """A low-level action: None (no new command), an array of the action space's shape, or a dict with a control mode.
+def action(value: Any, num_envs: int, mode: str, sizes: Callable[[str], int], modes: Iterable[str] = ()) -> Any:
+    """A low-level action as float32, [E, D]; None (no new command) stays None, a dict keeps its control mode.
 
-    Raises ValueError for another type or shape, and for numbers that are not finite.
+    `mode` is the present control mode, `sizes` gives the length D of an action in each of the `modes`. Raises
+    ValueError for another type or shape, and for numbers that are not finite in float32.
     """
     if value is None:
-        return value
-    if isinstance(value, dict):
-        if set(value) != {"control_mode", "action"}:
-            raise ValueError(f"an action dict must have control_mode and action, got {sorted(map(str, value))}")
-        one_of(value["control_mode"], modes, "control_mode")
-        array = _numbers(value["action"])
-        if array.ndim != 2 or array.shape[0] != num_envs:
-            raise ValueError(f"the action in a dict must have shape ({num_envs}, n), got {tuple(array.shape)}")
-        return value
-    array = _numbers(value)
-    shapes = [(num_envs, *space.shape)] + ([space.shape] if num_envs == 1 else [])
-    if tuple(array.shape) not in shapes:
-        raise ValueError(f"action must have shape {' or '.join(map(str, shapes))}, got {tuple(array.shape)}")
-    return value
+        return None
+    if not isinstance(value, dict):
+        return _commands(value, num_envs, mode, sizes(mode))
+    if set(value) != {"control_mode", "action"}:
+        raise ValueError(f"an action dict must have control_mode and action, got {sorted(map(str, value))}")
+    mode = one_of(value["control_mode"], modes, "control_mode")
+    return {"control_mode": mode, "action": _commands(value["action"], num_envs, mode, sizes(mode))}
 
 
-def _numbers(value: Any) -> Any:
+def _commands(value: Any, num_envs: int, mode: str, size: int) -> Any:
+    given = numbers(value, "action")
+    shapes = [(num_envs, size)] + ([(size,)] if num_envs == 1 else [])
+    if tuple(given.shape) not in shapes:
+        allowed = " or ".join(map(str, shapes))
+        raise ValueError(f"action must have shape {allowed} in control mode {mode!r}, got {tuple(given.shape)}")
+    made = given.float().reshape(num_envs, size)
+    finite = made.isfinite()
+    if not bool(finite.all()):
+        worst = given.reshape(num_envs, size)[~finite][0].item()
+        raise ValueError(f"action must hold numbers that are finite in float32, got {worst}")
+    return made
+
+
+def numbers(value: Any, what: str, flags: bool = False) -> Any:
+    """An array or tensor of plain numbers, [...], as a tensor of its own; with `flags` also one of booleans.
+
+    Raises ValueError for other types, for numbers of other types, and for tensors that are not dense.
+    """
     import torch
 
-    if not isinstance(value, (np.ndarray, torch.Tensor)):
-        raise ValueError(f"action must be a numpy array or a torch tensor, got {type(value).__name__}")
-    array = torch.as_tensor(value)
-    if array.dtype == torch.bool or array.is_complex():
-        raise ValueError(f"action must hold floating-point or whole numbers, got dtype {array.dtype}")
-    finite = array.isfinite()
-    if not bool(finite.all()):
-        raise ValueError(f"action must hold finite numbers, got {float(array[~finite][0])}")
-    return array
+    kinds = ("iufb" if flags else "iuf", PLAIN_DTYPES | {"bool"} if flags else PLAIN_DTYPES)
+    if isinstance(value, np.ma.MaskedArray) or not isinstance(value, (np.ndarray, torch.Tensor)):
+        raise ValueError(f"{what} must be a numpy array or a torch tensor, got {type(value).__name__}")
+    if isinstance(value, torch.Tensor) and (value.layout is not torch.strided or value.is_nested or value.is_meta):
+        raise ValueError(f"{what} must be a dense tensor with numbers in it, got {value.layout} on {value.device}")
+    plain = value.dtype.kind in kinds[0] if isinstance(value, np.ndarray) else str(value.dtype)[6:] in kinds[1]
+    if not plain:
+        raise ValueError(f"{what} must hold floating-point or whole numbers, got dtype {value.dtype}")
+    if isinstance(value, torch.Tensor):
+        return value.detach().clone()
+    # torch knows neither swapped bytes nor long double, nor the second name that numpy has for some types
+    dtype = np.dtype(f"{value.dtype.kind}{min(value.dtype.itemsize, 8)}")
+    made = np.empty(value.shape, dtype)
+    with np.errstate(over="ignore"):
+        made[...] = value
+    return torch.from_numpy(made)

@@ -11,6 +11,7 @@ from mani_skill.sensors.camera import CameraConfig
 from mani_skill.utils.structs.types import SimConfig
 from torch import Tensor
 
+from hazard_ms import checks
 from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.grasp import Hand
 from hazard_ms.episode.situation import Situation
@@ -19,7 +20,7 @@ from hazard_ms.scenes.choice import SceneChoice
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.labels import labels_of
 from hazard_ms.sensing.observations import Observer
-from hazard_ms.simulation import building
+from hazard_ms.simulation import building, clearance
 from hazard_ms.simulation.lighting import Lighting
 from hazard_ms.simulation.viewpoint import corner_view
 from hazard_ms.simulation.world import World
@@ -73,6 +74,7 @@ class BuiltEnv(BaseEnv):
 
     def _after_reconfigure(self, options: dict[str, Any]) -> None:
         self.world.handles = building.connect(self.scene, self.specs, self.actors, self.device)
+        self.agent.controller.reset()  # ManiSkill does it only after a state is restored, which needs its targets
         labels = labels_of(self.scene, self.actors, self.agent.robot, self.bags)
         cameras = (self._sensors, self._human_render_cameras)
         display = Display(self.situation, self.scene, self.bags, self.lights, cameras, self.effects_mode)
@@ -104,6 +106,31 @@ class BuiltEnv(BaseEnv):
         self.episode.watch(self.agent.robot.get_qpos())
         self.episode.advance(self.control_timestep)
         self.episode.use_hand(self.agent.gripper_pose(), self.agent.grip_closed(), self.agent.bag_position())
+
+    def place_robot(self, position: tuple[float, float], heading: float, env: int = 0) -> None:
+        """Put the robot of environment `env` at `position` x, y [m] with `heading` [rad], tucked and at rest.
+
+        Raises ValueError where it would touch a thing or a wall; then it stays where it is.
+        """
+        (x, y), (angle,) = checks.finite(position, 2, "position"), checks.finite((heading,), 1, "heading")
+        radius = self.agent.build.radius
+        touched = clearance.obstacle(self.world, checks.whole(env, 0, self.num_envs - 1, "env"), (x, y), radius)
+        if touched:
+            raise ValueError(
+                f"the robot's place must be {radius} m clear of all things, got ({x:g}, {y:g}), too near to {touched}: "
+                "hazard_ms.simulation.clearance.clear_points lists places"
+            )
+        rows = torch.tensor([env], device=self.device)
+        self.scene._reset_mask[:] = False
+        self.scene._reset_mask[rows] = True
+        self.agent.place(rows, torch.tensor([[x, y]]), torch.tensor([angle]))
+        if self.gpu_sim_enabled:
+            self.scene._gpu_apply_all()
+            self.scene.px.gpu_update_articulation_kinematics()
+            self.scene._gpu_fetch_all()
+        self.agent.controller.reset()  # commands that go on from the last one go on from here
+        self.scene._reset_mask[:] = True
+        self.episode.see(self.agent)
 
     @property
     def hand(self) -> Hand:

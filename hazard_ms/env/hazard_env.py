@@ -14,7 +14,7 @@ from mani_skill.utils.common import to_numpy
 from torch import Tensor
 
 from hazard_ms import checks
-from hazard_ms.env import keywords
+from hazard_ms.env import inputs, keywords, states
 from hazard_ms.env.built import BuiltEnv
 from hazard_ms.env.spaces import bounded
 from hazard_ms.episode import rewards, snapshot
@@ -119,17 +119,15 @@ class HazardEnv(BuiltEnv):
 
         `seed`: 0 to 2**32 - 1, or one per environment; `options`: {"scene": name or names, "env_idx": ...}.
 
-        Raises ValueError for seeds and options that are not allowed.
+        Raises ValueError for seeds and options that are not allowed; the episode is left unchanged.
         """
-        seed = checks.seeds(seed, self.num_envs)
-        options = checks.options(options, self.num_envs)
-        if "env_idx" in options:
-            options["env_idx"] = options["env_idx"].to(self.device)
+        seed, options = inputs.reset(self, seed, options)
         whole = len(options.get("env_idx", range(self.num_envs))) == self.num_envs
         if whole and self.scene_turns.next(seed is not None):
             options["reconfigure"] = True
-        if "scene" in options:
-            self.choice.names(options["scene"], [0] * self.num_envs)
+        if inputs.STATES in options:
+            options["scene"] = [s.name for s in self.specs]  # wherever scenes are rebuilt anyway
+        elif "scene" in options:
             options["reconfigure"] = True
         elif seed is not None and "env_idx" not in options and self._other_scenes(seed):
             options["reconfigure"] = True
@@ -149,10 +147,7 @@ class HazardEnv(BuiltEnv):
 
         Raises ValueError for an action of a wrong type, shape or number; the episode is left unchanged.
         """
-        action = checks.action(
-            action, self._orig_single_action_space, self.num_envs, self.agent.supported_control_modes
-        )
-        obs, reward, terminated, _, info = super().step(action)
+        obs, reward, terminated, _, info = super().step(inputs.action(self, action))
         if not none_set(self.episode.sim_error):
             obs = finite(obs)
         return (
@@ -165,10 +160,7 @@ class HazardEnv(BuiltEnv):
 
     def advance(self, action: Any) -> dict[str, Any]:
         """One frame like `step`, without observation and reward: what skills use between decisions. Returns info."""
-        action = checks.action(
-            action, self._orig_single_action_space, self.num_envs, self.agent.supported_control_modes
-        )
-        self._step_action(action)
+        self._step_action(inputs.action(self, action))
         self._elapsed_steps += 1
         return self.get_info()
 
@@ -232,15 +224,21 @@ class HazardEnv(BuiltEnv):
 
     def get_state_dict(self) -> dict[str, Any]:
         """ManiSkill's simulation and controllers, and under "hazard_ms" hazards, damage, rescue, hand and chance."""
-        return {**super().get_state_dict(), "hazard_ms": snapshot.save(self.episode)}
+        return {**snapshot.copied(super().get_state_dict()), "hazard_ms": snapshot.save(self.episode)}
 
     def set_state_dict(self, state: dict[str, Any], env_idx: Tensor | None = None) -> None:
-        """Restore what `get_state_dict` gave: hazards, damage, chance exactly; bodies within docs/reliability.md M4."""
-        rows = torch.arange(self.num_envs, device=self.device) if env_idx is None else env_idx
+        """Restore what `get_state_dict` gave: hazards, damage, chance exactly; bodies within docs/reliability.md M4.
+
+        Raises ValueError for a state of another environment or scene, and for numbers that no sound simulation has;
+        the episode is left unchanged.
+        """
+        every = list(range(self.num_envs))
+        rows = checks.rows(every if env_idx is None else env_idx, self.num_envs, "env_idx").to(self.device)
+        state = states.checked(state, self.get_state_dict(), self.episode, len(rows))
         plain = super().set_state_dict
         snapshot.put_back(self.episode, self.agent, state, rows, lambda rest: plain(rest, env_idx))
         self._elapsed_steps[rows] = self.world.frame[rows].to(self._elapsed_steps)
 
     def set_state(self, state: Any, env_idx: Tensor | None = None) -> None:
-        """Restore a flat state, [E, D], as `get_state` gave it."""
-        self.set_state_dict(snapshot.unflatten(torch.as_tensor(state), self.get_state_dict()), env_idx)
+        """Restore a flat state, [E, D], as `get_state` gave it. Raises ValueError as `set_state_dict` does."""
+        self.set_state_dict(snapshot.unflatten(checks.numbers(state, "the flat state"), self.get_state_dict()), env_idx)

@@ -24,7 +24,7 @@ PUT_AWAY_HEIGHT = -10.0  # height at which things in the bag wait, out of sight 
 class Hand(State):
     """The hand of each agent: what it holds, and how."""
 
-    held: Tensor = quantity("E", "", "index of the held body, -1 for none", dtype="int", fill=-1)
+    held: Tensor = quantity("E", "", "index of the held body, -1 for none", dtype="int", fill=-1, low=-1, high="B")
     closed: Tensor = quantity("E", "", "gripper was commanded shut in the last frame", dtype="bool")
     offset: Tensor = quantity("E 3", "m", "base of the held body in the gripper's frame")
     turn: Tensor = quantity("E 4", "", "rotation of the held body in the gripper's frame")

@@ -16,7 +16,7 @@ class Damage(State):
     """Things that any hazard ever damaged. Nothing heals, and what is safe can no longer be damaged."""
 
     damaged: Tensor = quantity("E B", "", "was damaged at some time", dtype="bool")
-    frame: Tensor = quantity("E B", "frame", "when it was first damaged; -1: never", dtype="int", fill=-1)
+    frame: Tensor = quantity("E B", "frame", "when it was first damaged; -1: never", dtype="int", fill=-1, low=-1)
 
     def add(self, now: Tensor, world: World) -> None:
         """Record the things that a hazard is damaging `now`, bool [E, B]."""
@@ -32,7 +32,7 @@ class Rescue(State):
     """Things that are safe, since when, and whether they were damaged by then. It alone decides `world.safe`."""
 
     safe: Tensor = quantity("E B", "", "rescued", dtype="bool")
-    frame: Tensor = quantity("E B", "frame", "when it was rescued; -1: not yet", dtype="int", fill=-1)
+    frame: Tensor = quantity("E B", "frame", "when it was rescued; -1: not yet", dtype="int", fill=-1, low=-1)
     damaged: Tensor = quantity("E B", "", "was damaged when it was rescued", dtype="bool")
 
     def mark(self, world: World, now: Tensor, damage: Damage) -> None:

@@ -33,36 +33,16 @@ def save(episode: Episode) -> dict[str, Any]:
     return made
 
 
-def restore(episode: Episode, saved: dict[str, Any] | None, rows: Tensor) -> None:
-    """Write the records `saved` by `save`, [R, N], into the environments `rows` [R], and all that follows from them.
-
-    Raises ValueError for a state of another environment or scene, before anything is written.
-    """
-    if saved is None:
-        raise ValueError(
-            "the state must have an entry 'hazard_ms', as get_state_dict of this environment gives it, got none"
-        )
-    world, ready = episode.world, {}
-    for name, part in episode.parts.items():
-        now = part.save()
-        if set(saved.get(name, {})) != set(now):
-            raise ValueError(
-                f"the state's {name!r} must have {sorted(now)}, got {sorted(saved.get(name, {}))}: another environment"
-            )
-        sizes = {k: v[0].numel() for k, v in now.items()}
-        for k, size in sizes.items():
-            if torch.as_tensor(saved[name][k]).numel() != size * len(rows):
-                raise ValueError(
-                    f"the state's {name}.{k} must have {size} numbers for each of {len(rows)} environments, "
-                    f"got {torch.as_tensor(saved[name][k]).numel()} in all: another scene"
-                )
-        ready[name] = {k: torch.as_tensor(saved[name][k]).reshape(len(rows), *now[k].shape[1:]) for k in now}
+def restore(episode: Episode, saved: dict[str, Any], rows: Tensor) -> None:
+    """Write the records `saved` by `save`, [R, N], into the environments `rows` [R], and all that follows from them."""
+    world = episode.world
     episode.thaw(rows)
     for name, part in episode.parts.items():
-        part.restore(ready[name], rows)
-    chance, words = world.chance, torch.as_tensor(saved["chance"]["seed"]).reshape(len(rows), 2).long()
-    chance.seed[rows] = (words[:, 0] + words[:, 1] * WORD).to(chance.seed)
-    chance.frame[rows] = torch.as_tensor(saved["chance"]["frame"]).reshape(len(rows)).to(chance.frame)
+        shapes = {k: v.shape[1:] for k, v in part.save().items()}
+        part.restore({k: v.reshape(len(rows), *shapes[k]) for k, v in saved[name].items()}, rows)
+    chance, words = world.chance, saved["chance"]["seed"]
+    chance.seed[rows] = words[:, 0] + words[:, 1] * WORD
+    chance.frame[rows] = saved["chance"]["frame"][:, 0]
     episode.sim_error[rows] = False  # only states of a sound simulation are restored
     world.safe[rows] = episode.rescue.safe[rows]
     world.away[rows] = episode.rescue.safe[rows] & episode.safe_place.carried
@@ -75,10 +55,10 @@ def put_back(
 ) -> None:
     """Restore a `state` from `get_state_dict` in the environments `rows` [R]; `plain` restores ManiSkill's own part.
 
-    Raises ValueError for a state of another environment or scene, before anything is written.
+    The state must have been checked: what is wrong with it is found too late here.
     """
-    state, world = batched(state), episode.world
-    restore(episode, state.get("hazard_ms"), rows)
+    world = episode.world
+    restore(episode, state["hazard_ms"], rows)
     plain({k: v for k, v in state.items() if k not in ("hazard_ms", "controller")})
     if "controller" in state:
         agent.set_controller_state(state["controller"])  # type: ignore[attr-defined]  # ManiSkill's agents have it
@@ -86,22 +66,21 @@ def put_back(
     episode.see(agent)
     episode.freeze(agent.gripper_pose())
     if world.handles is not None:
-        world.handles.put_to_sleep(torch.as_tensor(state["hazard_ms"]["bodies"]["asleep"]))
+        world.handles.put_to_sleep(state["hazard_ms"]["bodies"]["asleep"])
 
 
-def batched(state: Any) -> Any:
-    """`state` with a batch axis added to every entry without one: recorded states of one environment have none."""
-    if isinstance(state, dict):
-        return {k: batched(v) for k, v in state.items()}
-    value = torch.as_tensor(state)
-    return value[None] if value.ndim == 1 else value
+def copied(state: Any) -> Any:
+    """A copy of nested tensors, [E, ...] each."""
+    return {k: copied(v) for k, v in state.items()} if isinstance(state, dict) else state.clone()
 
 
 def unflatten(flat: Tensor, like: dict[str, Any]) -> dict[str, Any]:
-    """The nested state that ManiSkill flattened into `flat`, [E, D]; `like` is any state of the same environment.
+    """The nested state that ManiSkill flattened into `flat`, [E, D] or [D], with the type of `flat`.
 
-    Raises ValueError for a flat state of another length.
+    `like` is any state of the same environment. Raises ValueError for a flat state of another length.
     """
+    if flat.ndim not in (1, 2):
+        raise ValueError(f"the flat state must have shape (E, D) or (D,), got {tuple(flat.shape)}")
     made, end = _take(flat, like, 0)
     if end != flat.shape[-1]:
         raise ValueError(f"the flat state must have {end} numbers, got {flat.shape[-1]}")
@@ -115,6 +94,6 @@ def _take(flat: Tensor, like: dict[str, Any], start: int) -> tuple[dict[str, Any
             made[name], start = _take(flat, entry, start)
         else:
             width = entry.shape[-1]
-            made[name] = flat[..., start : start + width].to(entry.dtype)
+            made[name] = flat[..., start : start + width]
             start += width
     return made, start

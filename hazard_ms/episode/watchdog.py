@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 import tempfile
 from collections import deque
 from pathlib import Path
@@ -21,6 +22,7 @@ from hazard_ms.simulation.world import World
 MAX_SPEED = 50.0  # highest speed of a body [m/s]: nothing in a room moves faster (docs/reliability.md 5)
 MAX_SPIN = 1000.0  # highest angular velocity of a body [rad/s]; PhysX itself limits bodies to 100
 LOST = 5.0  # distance outside the room at which a body counts as lost [m] [ours]
+LONGEST_NAME = 80  # characters of a scene in the name of a file [ours]
 HISTORY = 20  # number of the last states that are written when an episode breaks [frames]
 
 
@@ -62,17 +64,38 @@ class FlightRecorder:
             {"frame": world.frame.clone(), "position": world.position.clone(), "velocity": world.velocity.clone()}
         )
 
-    def dump(self, world: World, env: int) -> Path:
-        """Write the last states of environment `env` as JSON to $HAZARD_MS_DUMPS, or the system's temporary folder."""
-        folder = Path(os.environ.get("HAZARD_MS_DUMPS", tempfile.gettempdir()))
-        folder.mkdir(parents=True, exist_ok=True)
+    def dump(self, world: World, env: int) -> str:
+        """Write the last states of environment `env` as JSON to $HAZARD_MS_DUMPS, or a new folder of our own.
+
+        Returns the path of the file, or why there is none: no episode may fail because its end cannot be written.
+        """
         rows = [{k: _plain(v[env]) for k, v in s.items()} for s in self.states]
-        seed = int(world.chance.seed[env])
-        path = folder / f"hazard_ms_sim_error_{world.specs[env].name.replace('/', '_')}_{seed}.json"
-        path.write_text(
-            json.dumps({"scene": world.specs[env].name, "seed": seed, "names": world.names[env], "states": rows})
-        )
-        return path
+        seed, scene = int(world.chance.seed[env]), world.specs[env].name
+        name = f"hazard_ms_sim_error_{re.sub('[^A-Za-z0-9_-]', '_', scene)[:LONGEST_NAME]}_{seed}_"
+        text = json.dumps({"scene": scene, "seed": seed, "names": world.names[env], "states": rows})
+        try:
+            return _written(name, text)
+        except OSError as error:
+            reason = error.strerror or str(error)
+            return f"not written: {reason}; set HAZARD_MS_DUMPS to a folder with free space that you may write to"
+
+
+def _written(name: str, text: str) -> str:
+    """Path of a new file with `text`, which only we may read, and whose name begins with `name`.
+
+    Raises OSError where it cannot be written; then there is none.
+    """
+    folder = os.environ.get("HAZARD_MS_DUMPS")
+    if folder:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    file, path = tempfile.mkstemp(".json", name, folder or tempfile.mkdtemp(prefix="hazard_ms_dump_"))
+    try:
+        with open(file, "w", encoding="utf-8") as opened:
+            opened.write(text)
+    except OSError:
+        os.unlink(path)
+        raise
+    return path
 
 
 def _plain(values: Tensor) -> Any:

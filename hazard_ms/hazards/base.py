@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import abc
 import dataclasses
+import math
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import torch
@@ -20,18 +21,37 @@ if TYPE_CHECKING:
 DTYPES = {"float": torch.float32, "int": torch.int64, "bool": torch.bool}
 
 
-def quantity(shape: str, unit: str, meaning: str, dtype: str = "float", fill: float = 0) -> Any:
+def quantity(
+    shape: str,
+    unit: str,
+    meaning: str,
+    dtype: str = "float",
+    fill: float = 0,
+    low: float = -math.inf,
+    high: float | str = math.inf,
+) -> Any:
     """A field of a state.
 
     `shape` names its axes: E environments, B bodies, a number, or a name that the hazard's `sizes` has. Raises
     ValueError for other shapes and types of numbers.
+
+    Saved states are restored only with numbers from `low` to `high`. A name as `high` is for indices: of things ("B"),
+    or into another quantity of the state.
     """
     if not shape.split() or shape.split()[0] != "E":
         raise ValueError(f"shape of the quantity {meaning!r} must begin with the axis E, got {shape!r}")
     if dtype not in DTYPES:
         raise ValueError(f"dtype of the quantity {meaning!r} must be one of {', '.join(DTYPES)}, got {dtype!r}")
     return dataclasses.field(
-        metadata={"shape": shape.split(), "unit": unit, "meaning": meaning, "dtype": dtype, "fill": fill}
+        metadata={
+            "shape": shape.split(),
+            "unit": unit,
+            "meaning": meaning,
+            "dtype": dtype,
+            "fill": fill,
+            "low": low,
+            "high": high,
+        }
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import sapien
 import torch
 from mani_skill.agents.controllers import PDBaseForwardVelControllerConfig
+from mani_skill.agents.controllers.base_controller import CombinedController
 from numpy.typing import NDArray
 from torch import Tensor
 
@@ -35,6 +36,8 @@ class PlanarRobot(Robot):
     uid: str  # ManiSkill's name of this kind of robot
     robot: Any  # ManiSkill's articulation
     controller: Any  # the controller of the present control mode
+    controllers: dict[str, Any]  # those made so far, by control mode
+    scene: Any  # ManiSkill's scene
     control_mode: str
     supported_control_modes: list[str]
     _default_control_mode: str
@@ -53,6 +56,15 @@ class PlanarRobot(Robot):
         """
         wanted = self._default_control_mode if control_mode is None else control_mode
         super().set_control_mode(one_of(wanted, self.supported_control_modes, "control_mode"))  # type: ignore[misc]
+        self.controller.set_drive_property()  # ManiSkill sets it only when it makes the controller
+
+    def action_size(self, control_mode: str) -> int:
+        """Length of an action in `control_mode`, one of the robot's. The present mode stays."""
+        if control_mode not in self.controllers:
+            parts = self._controller_configs[control_mode]  # type: ignore[attr-defined]  # ManiSkill's agents have it
+            made = CombinedController(parts, self.robot, self._control_freq, scene=self.scene)
+            self.controllers[control_mode] = made
+        return int(self.controllers[control_mode].single_action_space.shape[0])
 
     def base_controller(self, damping: float, force: float) -> PDBaseForwardVelControllerConfig:
         """The base's controller: `damping` [N s/m] and [N m s/rad], `force` per frame rate [N/Hz] and [N m/Hz]."""

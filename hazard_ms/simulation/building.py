@@ -89,7 +89,7 @@ def build_shell(scene: Any, spec: SceneSpec, env: int) -> None:
         builder.build_static(name=actor_name(env, f"shell_{i}_{box.name}"))
     builder = scene.create_actor_builder()
     builder.set_scene_idxs([env])
-    for slab in (*_enclosure(spec), *_partitions(spec)):
+    for slab in (*_enclosure(spec), *partitions(spec)):
         builder.add_box_collision(sapien.Pose(slab[0]), half_size=slab[1], material=_friction())
     builder.initial_pose = sapien.Pose()
     builder.build_static(name=actor_name(env, "enclosure"))
@@ -108,8 +108,8 @@ def _enclosure(spec: SceneSpec) -> Iterator[tuple[np.ndarray, np.ndarray]]:
             yield centre, half
 
 
-def _partitions(spec: SceneSpec) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Middles and half sizes [m] of the walls inside a room."""
+def partitions(spec: SceneSpec) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """The middle and the half size of each piece of the walls inside a room [m], [3] each."""
     names = tuple(f"wall_{p.name}_" for p in spec.room.partitions)
     for box in shell(spec.room) if names else ():
         if box.name.startswith(names):

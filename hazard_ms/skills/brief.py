@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from hazard_ms.sensing.target_table import Target
+from hazard_ms.spec.catalogue import DAMAGED_SHARE
 
 RANDOM_BYTES = 8  # size of an agent's random seed [bytes]
 
@@ -36,6 +37,7 @@ class Brief:
     frame_seconds: float  # duration of a frame [s]
     robot: str  # name of the robot
     random_seed: int  # seed of the agent's own randomness, derived one-way from that of the episode
+    damaged_share: float = DAMAGED_SHARE  # of its value that a target counts when it is rescued damaged
 
 
 def random_seed(seed: int) -> int:

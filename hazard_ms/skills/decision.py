@@ -27,7 +27,7 @@ class Action:
     target: str | None = None
 
     def __post_init__(self) -> None:
-        if self.verb not in VERBS:
+        if not isinstance(self.verb, str) or self.verb not in VERBS:
             raise ValueError(f"verb must be one of {', '.join(VERBS)}, got {self.verb!r}")
         if self.target is not None and not isinstance(self.target, str):
             raise ValueError(f"the target of {self.verb} must be the name of a thing, or None, got {self.target!r}")

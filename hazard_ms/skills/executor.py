@@ -111,7 +111,7 @@ class SkillEnv:
         )
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Decision, dict[str, Any]]:
-        """Start an episode, as the environment's own reset, with a first look."""
+        """Start an episode, as the environment's own reset, which says what it refuses, with a first look."""
         _, info = self.env.reset(seed=seed, options=options)
         world = self.base.world
         start = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))

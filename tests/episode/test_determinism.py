@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import subprocess
@@ -9,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import gymnasium as gym
 import pytest
 import torch
 
@@ -61,6 +63,14 @@ def test_same_bits_in_a_new_environment_and_with_shipped_physics() -> None:
 @pytest.fixture
 def env(request: pytest.FixtureRequest) -> Any:
     one = made(getattr(request, "param", "HazardFire-v1"))
+    yield one
+    one.close()
+
+
+@pytest.fixture(scope="module")
+def kitchen() -> Any:
+    one = made("HazardFire-v1")
+    one.reset(seed=0)
     yield one
     one.close()
 
@@ -134,11 +144,84 @@ def test_a_snapshot_of_moving_things_continues_nearly_the_same(env: Any) -> None
         assert name not in told or torch.equal(told[name], got[name]), name
 
 
+def test_what_is_in_the_bag_is_there_again_after_a_restore(env: Any) -> None:
+    env.reset(seed=0)
+    base = env.unwrapped
+    target = int(base.world.target[0].nonzero()[0, 0])
+    base.episode.rescue.mark(base.world, torch.arange(base.world.num_bodies)[None] == target, base.episode.damage)
+    base.world.away |= base.world.safe
+    saved = base.get_state_dict()
+    env.reset(seed=0)
+    assert not base.world.away.any()
+    base.set_state_dict(saved)
+    assert base.world.away[0].nonzero().flatten().tolist() == [target]
+    env.step(None)
+    assert float(base.world.position[0, target, 2]) < -5.0, "it waits out of sight"
+
+
+SPOILT = {
+    ("fire", "temperature"): [torch.nan, torch.inf, 1e30],
+    ("fire", "threshold"): [torch.nan, -torch.inf],
+    ("fire", "status"): [0.5, 3, -1],
+    ("fire", "flame_cell"): [10**7, -2],
+    ("damage", "damaged"): [2, 0.5, torch.nan],
+    ("damage", "frame"): [-2, 0.5],
+    ("hand", "held"): [-2, 10**6],
+    ("bodies", "asleep"): [2],
+    ("chance", "seed"): [-1, 2**16, 0.5],
+    ("chance", "frame"): [-1, 2**31],
+}
+
+
+@pytest.mark.parametrize(("part", "name"), SPOILT)
+def test_states_that_no_sound_simulation_has_are_refused(kitchen: Any, part: str, name: str) -> None:
+    base = kitchen.unwrapped
+    saved = base.get_state_dict()
+    for value in SPOILT[part, name]:
+        state = copy.deepcopy(saved)
+        entry = state["hazard_ms"][part][name].double()
+        entry[0, -1] = value
+        state["hazard_ms"][part][name] = entry
+        with pytest.raises(ValueError, match=f"state.hazard_ms.{part}.{name} must hold"):
+            base.set_state_dict(state)
+        now = base.get_state_dict()
+        for key in saved["hazard_ms"]:
+            for k, v in saved["hazard_ms"][key].items():
+                assert torch.equal(now["hazard_ms"][key][k], v), (key, k)
+
+
+def test_bodies_and_robots_must_be_turned_by_something_and_be_somewhere(kitchen: Any) -> None:
+    base = kitchen.unwrapped
+    saved = base.get_state_dict()
+    for kind in ("actors", "articulations"):
+        name = next(iter(saved[kind]))
+        for where, value in ((slice(3, 7), 0.0), (slice(3, 7), 2.0), (slice(0, 3), torch.nan), (slice(7, 9), 1e20)):
+            state = copy.deepcopy(saved)
+            state[kind][name][:, where] = value
+            with pytest.raises(ValueError, match=f"state.{kind}.{name} must hold"):
+                base.set_state_dict(state)
+            assert torch.equal(base.get_state_dict()[kind][name], saved[kind][name])
+
+
+def test_a_saved_state_is_a_copy_of_the_controllers_too() -> None:
+    """ManiSkill hands out the very tensor in which a controller keeps its target."""
+    env = gym.make("HazardFire-v1", obs_mode="none", render_backend="none", control_mode="pd_joint_target_delta_pos")
+    env.reset(seed=0)
+    saved = env.unwrapped.get_state_dict()
+    before = copy.deepcopy(saved["controller"])
+    env.unwrapped.agent.controller.controllers["arm"]._target_qpos += 1.0
+    assert torch.equal(saved["controller"]["arm"]["target_qpos"], before["arm"]["target_qpos"])
+    env.unwrapped.set_state_dict(saved)
+    env.unwrapped.agent.controller.controllers["arm"]._target_qpos += 1.0
+    assert torch.equal(saved["controller"]["arm"]["target_qpos"], before["arm"]["target_qpos"])
+    env.close()
+
+
 def test_a_state_of_another_environment_is_refused(env: Any) -> None:
     env.reset(seed=0)
     saved = env.unwrapped.get_state_dict()
     del saved["hazard_ms"]["damage"]
-    with pytest.raises(ValueError, match="the state's 'damage' must have"):
+    with pytest.raises(ValueError, match="state.hazard_ms must have an entry 'damage'"):
         env.unwrapped.set_state_dict(saved)
     with pytest.raises(ValueError, match="the flat state must have .* numbers, got 7"):
         env.unwrapped.set_state(torch.zeros(1, 7))

@@ -28,7 +28,7 @@ from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.failures import FAILURES
 
 pytestmark = pytest.mark.render
-QUIET = dict(deadline=5000, suppress_health_check=list(HealthCheck), database=None)
+QUIET = dict(deadline=None, suppress_health_check=list(HealthCheck), database=None)
 BUDGET = 5  # frames that an action which cannot be done may take
 ENOUGH = 40  # decisions until something is in the hand
 

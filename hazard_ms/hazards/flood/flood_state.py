@@ -25,7 +25,9 @@ class FloodState(State):
     under: Tensor = quantity("E B", "s", "how long every thing has been under water enough to be damaged")
     soaked: Tensor = quantity("E B", "", "share of its pores that are full of water")
     volume: Tensor = quantity("E B", "m^3", "volume of water that a dry, wholly immersed thing displaces")
-    shape: Tensor = quantity("E B", "", "its shape in water: 0 box, 1 upright cylinder, 2 ellipsoid", dtype="int")
+    shape: Tensor = quantity(
+        "E B", "", "its shape in water: 0 box, 1 upright cylinder, 2 ellipsoid", dtype="int", low=0, high=2
+    )
     drag_coefficient: Tensor = quantity("E B", "", "its drag coefficient")
     pores: Tensor = quantity("E B", "", "share of its volume that water takes in the end")
     soaking_time: Tensor = quantity("E B", "s", "time until 1 / e of its pores are left dry", fill=1.0)

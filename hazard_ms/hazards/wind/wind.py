@@ -51,7 +51,7 @@ class WindState(State):
     strength: Tensor = quantity("E B", "", "force over density, area and speed squared")
     sway: Tensor = quantity("E B 3", "", "sideways force over the force along the wind, the vector r")
     twist: Tensor = quantity("E B 3", "m", "torque over the force along the wind")
-    carts: Tensor = quantity("E C", "", "index of a cart, -1 for none", dtype="int", fill=-1)
+    carts: Tensor = quantity("E C", "", "index of a cart, -1 for none", dtype="int", fill=-1, low=-1, high="B")
     settled: Tensor = quantity("E B", "", "lies in a cart: the wind does not touch it any more", dtype="bool")
     corner: Tensor = quantity("E 2", "m", "south-west corner of the shelter map")
     loss: Tensor = quantity("E Y X", "", "share of the wind that is lost near the ground")

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.checks import flag, one_of, whole
+from hazard_ms.env import inputs
 from hazard_ms.machine.render_backend import backend
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Decision, Result
@@ -94,7 +95,11 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         """Start the episode of `seed`; without a seed, the next episode of the series that the last seed began.
 
         `options` are those of the task's own environment ({"scene": name}).
+
+        Raises ValueError for seeds and options that are not allowed; the episode is left unchanged.
         """
+        seed, _ = inputs.reset(self.skills.base, seed, options)
+        seed = seed[0] if isinstance(seed, list) else seed
         super().reset(seed=seed)
         drawn = int(self.np_random.integers(SEEDS)) if seed is None else seed
         self._decision, _ = self.skills.reset(seed=drawn, options=options)

@@ -9,6 +9,7 @@ from torch import Tensor
 from hazard_ms.hazards.base import quantity
 from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.hazards.fire.realistic import burning, radiation
+from hazard_ms.hazards.fire.realistic.fuels import CURVES
 
 HEATED = (  # names of the quantities that an update of heat changes
     *("temperature", "status", "burn_age", "burn_updates", "agent_temperature", "agent_dose", "heat_release"),
@@ -32,7 +33,9 @@ class BlazeState(FireState):
     peak: Tensor = quantity("E B", "kW", "peak of its heat release")
     decline: Tensor = quantity("E B", "s", "time from ignition to its decline")
     burn_end: Tensor = quantity("E B", "s", "time from ignition until it is burnt", fill=1.0)
-    curve: Tensor = quantity("E B", "", "row of its measured curve; -1 for none", dtype="int", fill=-1)
+    curve: Tensor = quantity(
+        "E B", "", "row of its measured curve; -1 for none", dtype="int", fill=-1, low=-1, high=len(CURVES) - 1
+    )
     soot_yield: Tensor = quantity("E B", "kg/kJ", "soot per heat")
     flame_age: Tensor = quantity("E F", "s", "time since the flame appeared")
     flame_peak: Tensor = quantity("E F", "kW", "heat release of the flame once grown")

@@ -1,0 +1,66 @@
+"""Checks what users hand to a running environment, before anything changes in it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from hazard_ms import checks
+from hazard_ms.env import states
+from hazard_ms.env.built import BuiltEnv
+from hazard_ms.episode import snapshot
+
+STATES = "reset_to_env_states"
+
+
+def action(env: BuiltEnv, value: Any) -> Any:
+    """The action `value` as the simulator takes it: see `checks.action`. Raises ValueError for what it cannot take."""
+    agent = env.agent
+    return checks.action(value, env.num_envs, agent.control_mode, agent.action_size, agent.supported_control_modes)
+
+
+def reset(env: BuiltEnv, seed: Any, options: Any) -> tuple[Any, dict[str, Any]]:
+    """The `seed` and the `options` of a reset as the simulator takes them.
+
+    Raises ValueError for what is not allowed.
+    """
+    seed = checks.seeds(seed, env.num_envs)
+    options = checks.options(options, env.num_envs)
+    rows = options.get("env_idx", torch.arange(env.num_envs)).to(env.device)
+    if "env_idx" in options:
+        options["env_idx"] = rows
+    if "scene" in options:
+        env.choice.names(options["scene"], [0] * env.num_envs)
+    due = env.reconfiguration_freq != 0 and env._reconfig_counter == 0
+    if len(rows) < env.num_envs and (due or options.get("reconfigure") or "scene" in options):
+        raise ValueError(f"reset option 'env_idx' must be all {env.num_envs} where scenes are rebuilt, got {len(rows)}")
+    if STATES in options:
+        options[STATES] = _to_reset_to(env, options, rows)
+    return seed, options
+
+
+def _to_reset_to(env: BuiltEnv, options: dict[str, Any], rows: Tensor) -> dict[str, Any]:
+    """The option that resets the environments `rows`, [R], to saved states, checked."""
+    given = options[STATES]
+    if "scene" in options:
+        raise ValueError(f"reset option 'scene' must not be given with {STATES!r}, which keeps the scene, got both")
+    if not isinstance(given, dict) or "env_states" not in given or not {*given} <= {"env_states", "obs"}:
+        got = sorted(map(str, given)) if isinstance(given, dict) else type(given).__name__
+        raise ValueError(f"reset option {STATES!r} must be a dict with env_states, and obs if wanted, got {got}")
+    made = {"env_states": state(env, given["env_states"], rows)}
+    if given.get("obs") is not None:
+        made["obs"] = states.alike(given["obs"], env._last_obs, len(rows), f"obs of reset option {STATES!r}")
+    return made
+
+
+def state(env: BuiltEnv, value: Any, rows: Tensor) -> dict[str, Any]:
+    """The state `value`, nested or flat, for the environments `rows`, [R], as nested tensors, [R, N] each.
+
+    Raises ValueError for a state of another environment or scene, and for numbers that no sound simulation has.
+    """
+    now = env.get_state_dict()
+    if not isinstance(value, dict):
+        value = snapshot.unflatten(checks.numbers(value, "the flat state", flags=True), now)
+    return states.checked(value, now, env.episode, len(rows))

@@ -11,6 +11,8 @@ import inspect
 import os
 import sys
 import typing
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -22,16 +24,17 @@ from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 
 FLAGS = {"true": True, "false": False}
+LONGEST_NOTE = 2000  # characters of a note that are kept [ours]
 
 
 class Agent(abc.ABC):
     """Chooses the next action from what has been seen.
 
-    `note` may say why; it is shown with the decision and changes nothing. Parameters of `__init__` that are annotated
-    as int, float, bool or str can be given with the agent's name.
+    `note`, a str or None, may say why; it is shown with the decision and changes nothing. Parameters of `__init__` that
+    are annotated as int, float, bool or str can be given with the agent's name.
     """
 
-    note: str = ""
+    note: str | None = ""
 
     @abc.abstractmethod
     def reset(self, brief: Brief) -> None:
@@ -40,6 +43,34 @@ class Agent(abc.ABC):
     @abc.abstractmethod
     def act(self, decision: Decision) -> Action:
         """The next action; called again when that has ended."""
+
+
+def note_of(player: Agent) -> str:
+    """The agent's note as it is shown: one line of printable characters, cut after LONGEST_NOTE.
+
+    Raises ValueError for a note that is neither a str nor None.
+    """
+    note = player.note
+    if note is not None and not isinstance(note, str):
+        raise ValueError(f"note of {type(player).__name__} must be a str or None, got a {type(note).__name__}")
+    shown = "".join(c if c.isprintable() else " " for c in (note or "")[: LONGEST_NOTE + 1])
+    return shown if len(shown) <= LONGEST_NOTE else shown[: LONGEST_NOTE - 1] + "…"
+
+
+@contextmanager
+def staying(what: str) -> Iterator[None]:
+    """Let `what`, code of an agent, not end the process. Raises RuntimeError where it calls sys.exit."""
+    try:
+        yield
+    except SystemExit as error:
+        raise RuntimeError(f"{what} must return or raise an error, got sys.exit({error.code!r})") from error
+
+
+def check_name(text: str) -> None:
+    """Raises ValueError where `text`, an agent as `agent` takes it, is neither registered nor of a module or file."""
+    name = text.partition(":")[0]
+    if name == text or "=" in text.removeprefix(f"{name}:").partition(":")[0]:
+        one_of(name, AGENTS, "agent")
 
 
 def user_path() -> None:
@@ -54,8 +85,14 @@ def user_path() -> None:
 def agent(text: str) -> Agent:
     """A new agent: a registered name, package.module:Class or file.py:Class, then perhaps :key=value,key=value.
 
-    Raises ValueError for an agent that cannot be found, and for parameters that it does not have.
+    Raises ValueError for an agent that cannot be found, and for parameters that it does not have, RuntimeError for one
+    that calls sys.exit.
     """
+    with staying(f"the agent {text}"):
+        return _made(text)
+
+
+def _made(text: str) -> Agent:
     words = text.split(":")
     given = words.pop() if len(words) > 1 and "=" in words[-1] else ""
     made = _class(":".join(words))

@@ -18,7 +18,6 @@ from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
-from hazard_ms.spec.catalogue import DAMAGED_SHARE
 
 WALKING = 1.0 / 62.0  # [m/frame] (docs/benchmark.md 1)
 HANDLING = 1.0  # what picking up costs, as a distance: about 60 frames [m]
@@ -43,7 +42,7 @@ class Greedy(Agent):
 
     def reset(self, brief: Brief) -> None:
         """Forget the last episode. Nothing is random."""
-        self._hazards = brief.hazards
+        self._hazards, self._damaged_share = brief.hazards, brief.damaged_share
         self._failures: dict[str, int] = {}
         self._visits: dict[int, int] = {}
         self._looked_from: tuple[float, float] | None = None  # where it last looked around [m]
@@ -123,7 +122,7 @@ class Greedy(Agent):
         levels, height = _predicted(sighting, decision.frame + way / WALKING), float(sighting.position[2])
         threats = zip(self._hazards, levels, strict=False)  # a level is missing where no hazard image was
         lost = target.damaged or any(hazard.threatens(target, level, height) for hazard, level in threats)
-        value = target.value * (DAMAGED_SHARE if lost else 1.0)
+        value = target.value * (self._damaged_share if lost else 1.0)
         loyalty = LOYALTY if decision.last_action == Action(WALK_TO, name) else 1.0
         return loyalty * way * (1 + self._failures.get(name, 0)) ** 2 / value
 

@@ -6,6 +6,7 @@ quick.
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -14,6 +15,7 @@ from typing import Any
 import tyro
 
 from hazard_ms import __version__
+from hazard_ms.assets.foreign import printable
 from hazard_ms.cli.assets import AssetCommand
 from hazard_ms.cli.bench import bench
 from hazard_ms.cli.describe import describe
@@ -87,11 +89,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="replace")  # frames of help texts where the locale knows ASCII only
     try:
         code = _run(words)
-        sys.stdout.flush()
+        if sys.stdout is not None:  # it may be closed
+            sys.stdout.flush()
     except BrokenPipeError:  # who reads the output has read enough, as `head` does
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _silence()
         return 0
+    except OSError as error:
+        if error.errno != errno.ENOSPC or error.filename is not None:
+            raise
+        print(f"hazard-ms: the output must be written whole, got {error.strerror}; free some space", file=sys.stderr)
+        _silence()
+        return 1
     return code
+
+
+def _silence() -> None:
+    """Let nothing more reach the standard output, which cannot take it."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _run(words: list[str]) -> int:
@@ -101,7 +115,7 @@ def _run(words: list[str]) -> int:
     try:
         done = tyro.extras.subcommand_cli_from_dict(COMMANDS, prog="hazard-ms", description=DESCRIPTION, args=words)
     except ValueError as error:  # its text says all: no trace of where it was noticed
-        print(f"hazard-ms: {error}", file=sys.stderr)
+        print("hazard-ms:", "\n".join(map(printable, str(error).split("\n"))), file=sys.stderr)
         return 2
     return int(done or 0)
 

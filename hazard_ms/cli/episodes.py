@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
 from hazard_ms.evaluation.options import EpisodeOptions, PlayOptions, SweepOptions
 
+if TYPE_CHECKING:
+    from hazard_ms.evaluation.result import EpisodeResult
+
+SUFFIXES = {".mp4": "video", ".json": "result", ".html": "page"}  # of the files of an episode
+
 
 def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.arg(name="")]) -> int:
-    """Play one episode of one agent; with --output, write its film, its result as JSON and its page."""
+    """Play one episode of one agent; with --output, write its film, its result as JSON and its page.
+
+    Ends with 1 if the simulation broke.
+    """
     from hazard_ms.agents.base import user_path
+    from hazard_ms.evaluation.result import BROKEN
     from hazard_ms.evaluation.runner import play as run
     from hazard_ms.evaluation.runner import summary
     from hazard_ms.evaluation.watchers import Progress
@@ -20,37 +29,42 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
     user_path()
     options.check()
     if options.output is None:
-        print(summary(run(options.episode, [Progress(options.episode.agent)])))
-        return 0
-    print(_filmed(options.episode, options.output, options.every))
-    for suffix, what in ((".mp4", "video"), (".json", "result"), (".html", "page")):
-        print(f"{what}: {options.output.with_suffix(suffix).resolve()}")
-    return 0
+        result = run(options.episode, [Progress(options.episode.agent)])
+    else:
+        result = _filmed(options.episode, options.output, options.every)
+    print(summary(result))
+    if options.output is not None:
+        for suffix, what in SUFFIXES.items():
+            print(f"{what}: {options.output.with_suffix(suffix).resolve()}")
+    return int(result.ended == BROKEN)
 
 
-def _filmed(episode: EpisodeOptions, path: Path, every: int) -> str:
-    """Play and film the episode, and write its result and page beside the film. Returns the summary."""
-    from hazard_ms.evaluation.page import write_page
+def _filmed(episode: EpisodeOptions, path: Path, every: int) -> EpisodeResult:
+    """Play and film the episode; its film, result and page appear together at its end."""
+    from hazard_ms.evaluation.page import address, page
     from hazard_ms.evaluation.runner import play as run
-    from hazard_ms.evaluation.runner import summary
     from hazard_ms.evaluation.watchers import Progress
+    from hazard_ms.machine.files import drafts, make_folder
     from hazard_ms.pictures.compositor import RENDERED
     from hazard_ms.pictures.film import Film
 
     camera = {"width": RENDERED[0], "height": RENDERED[1]}
     subtitle = f"agent {episode.agent}, seed {episode.seed}, {episode.physics} physics"
-    with Film(path, subtitle, every) as film:
-        watchers = [Progress(episode.agent), film]
-        result = run(episode, watchers, render_mode="rgb_array", human_render_camera_configs=camera)
-    result.write(path.with_suffix(".json"))
-    write_page(path.with_suffix(".html"), result, path)
-    return summary(result)
+    make_folder(path.parent)
+    with drafts(*(path.with_suffix(suffix) for suffix in SUFFIXES)) as (shot, told, shown):
+        with Film(shot, subtitle, every) as film:
+            watchers = [Progress(episode.agent), film]
+            result = run(episode, watchers, render_mode="rgb_array", human_render_camera_configs=camera)
+        told.write(result.to_json())
+        shown.write(page(result, address(shot.path, path.name)))
+    return result
 
 
 def evaluate(options: Annotated[tyro.conf.OmitArgPrefixes[SweepOptions], tyro.conf.arg(name="")]) -> int:
     """Play agents on the scenes of a split; print the scores with 95 % intervals.
 
-    Resumes an interrupted run: episodes whose files are there are not played again.
+    Resumes an interrupted run: episodes whose files are there are not played again. Ends with 1 if a simulation broke,
+    or an agent failed so that an episode has no result.
     """
     from hazard_ms.agents.base import user_path
     from hazard_ms.evaluation.sweep import evaluate as run

@@ -40,6 +40,7 @@ def make(name: tyro.conf.Positional[str], output: Output = None) -> int:
         name: Name of a scene, kitchen_a/07 say.
         output: File to write; without it, the scene is printed.
     """
+    from hazard_ms.machine.files import write
     from hazard_ms.scenes.schema import to_json
     from hazard_ms.scenes.splits import scene
 
@@ -47,7 +48,7 @@ def make(name: tyro.conf.Positional[str], output: Output = None) -> int:
     if output is None:
         print(text, end="")
         return 0
-    _write(output, text)
+    write(output, text)
     print(f"scene: {output.resolve()}")
     return 0
 
@@ -60,9 +61,10 @@ def show(name: tyro.conf.Positional[str], output: Output = None) -> int:
         output: File to write; without it, the scene's name with .png in the current folder.
     """
     from hazard_ms.cli.scene_checks import find
+
+    spec = find(name)  # before what draws it, which takes seconds to load
     from hazard_ms.pictures.scene_plan import save
 
-    spec = find(name)
     path = output or Path(spec.name.replace("/", "_") + ".png")
     save(spec, path)
     print(f"picture: {path.resolve()}")
@@ -124,13 +126,6 @@ def names_of(split: str, family: str) -> tuple[str, ...]:
     if split:
         one_of(split, known, "split")
     return tuple(name for f in wanted for s in split_names(f) if split in ("", s) for name in scene_names(s, f))
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise ValueError(f"output must be a file that can be written, got {path}: {error.strerror}") from None
 
 
 def _only_one_of(*given: bool) -> None:

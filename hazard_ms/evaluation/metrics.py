@@ -40,6 +40,11 @@ class Fate:
                 f"frame of {self.name} must be that of its rescue, got {self.frame} with rescued={self.rescued}"
             )
 
+    @property
+    def worth(self) -> float:
+        """The value that was rescued with it: half where it was damaged, 0 where it was not rescued."""
+        return self.value * (DAMAGED_SHARE if self.damaged else 1.0) if self.rescued else 0.0
+
 
 @dataclass(frozen=True)
 class Tally:
@@ -58,7 +63,7 @@ class Tally:
             raise ValueError("fates must be those of at least one target, got none")
         saved = [f for f in fates if f.rescued]
         return cls(
-            value_rescued=sum(f.value * (DAMAGED_SHARE if f.damaged else 1.0) for f in saved),
+            value_rescued=sum(f.worth for f in saved),
             value_total=sum(f.value for f in fates),
             rescued=len(saved),
             rescued_damaged=sum(f.damaged for f in saved),

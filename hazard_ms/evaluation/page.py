@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import base64
-import os
 from pathlib import Path
+from urllib.parse import quote
 
 import jinja2
 
 from hazard_ms.evaluation.result import EpisodeResult
-from hazard_ms.spec.catalogue import DAMAGED_SHARE
 
 TEMPLATE = Path(__file__).with_name("page.html")
 LARGEST_EMBEDDED = 30 * 1024 * 1024  # a larger video is linked, not embedded [bytes]
@@ -23,33 +22,36 @@ COLOURS = {  # of the verbs in the timeline
 }
 
 
-def write_page(path: Path, result: EpisodeResult, video: Path | None = None) -> None:
-    """Write the page of `result`; a small `video` becomes part of it, a large one is linked relative to the page."""
+def page(result: EpisodeResult, video: str | None = None) -> str:
+    """The page of `result`, HTML; `video`: address of its film, as `address` gives it."""
     row = result.to_dict()
     environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    page = environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
+    return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         r=row,
         share=_percent(row["score"]["value"]),
         step="–" if row["score"]["step"] is None else f"{row['score']['step']:.1f}",
         damage=_percent(row["score"]["damage"]),
         saved=sum(f["rescued"] for f in row["targets"]),
-        video=None if video is None else _source(video, path),
+        video=video,
         colours=COLOURS,
         steps=_steps(result),
     )
-    path.write_text(page, encoding="utf-8")
+
+
+def address(video: Path, name: str) -> str:
+    """The address of a film for a page beside it: a small film itself, else its `name` as a relative link.
+
+    `video` is where the film is now. Raises OSError where it cannot be read.
+    """
+    if video.stat().st_size <= LARGEST_EMBEDDED:
+        return "data:video/mp4;base64," + base64.b64encode(video.read_bytes()).decode("ascii")
+    return quote(name, errors="surrogateescape")
 
 
 def _percent(share: float | None) -> str:
     return "–" if share is None else f"{100 * share:.1f} %"
-
-
-def _source(video: Path, page: Path) -> str:
-    if video.stat().st_size <= LARGEST_EMBEDDED:
-        return "data:video/mp4;base64," + base64.b64encode(video.read_bytes()).decode("ascii")
-    return Path(os.path.relpath(video.resolve(), page.resolve().parent)).as_posix()
 
 
 def _steps(result: EpisodeResult) -> str:
@@ -60,7 +62,7 @@ def _steps(result: EpisodeResult) -> str:
     for fate in sorted((f for f in result.targets if f.frame is not None), key=lambda f: f.frame or 0):
         x = 1000.0 * (fate.frame or 0) / end
         points.append((x, 100.0 - 100.0 * level))
-        level += fate.value * (DAMAGED_SHARE if fate.damaged else 1.0) / total
+        level += fate.worth / total
         points.append((x, 100.0 - 100.0 * level))
     points.append((1000.0 * result.frames / end, 100.0 - 100.0 * level))
     return " ".join(f"{x:.1f},{y:.1f}" for x, y in points)

@@ -12,11 +12,14 @@ from hazard_ms.evaluation.result import EpisodeResult, machine, versions
 HEADINGS = f"{'agent':16s} {'Value':>22s} {'Step':>26s} {'Damage':>22s} {'rescued':>8s} {'s/episode':>10s}"
 
 
-def report(options: SweepOptions, results: Sequence[EpisodeResult]) -> str:
-    """The table of the `results` of all episodes of `options`, with versions and machine."""
+def report(options: SweepOptions, results: Sequence[EpisodeResult], failed: Sequence[str] = ()) -> str:
+    """The table of the `results` of the episodes of `options`, with versions and machine.
+
+    `failed`: the agent of each episode that has no result.
+    """
     own = {agent: [r for r in results if r.agent == agent] for agent in options.agents}
     lines = [title(options), HEADINGS, *(score_line(agent, made) for agent, made in own.items())]
-    lines += [failure_line(agent, made) for agent, made in own.items()]
+    lines += [failure_line(agent, made, list(failed).count(agent)) for agent, made in own.items()]
     return "\n".join([*lines, machine_line()])
 
 
@@ -32,6 +35,8 @@ def title(options: SweepOptions) -> str:
 
 def score_line(agent: str, results: Sequence[EpisodeResult]) -> str:
     """The scores of one agent, Value and Damage in per cent, Step in frames."""
+    if not results:
+        return f"{agent:16s} no results"
     found = scores([r.tally for r in results])
     saved = sum(r.tally.rescued for r in results)
     targets = sum(len(r.targets) for r in results)
@@ -40,9 +45,13 @@ def score_line(agent: str, results: Sequence[EpisodeResult]) -> str:
     return f"{agent:16s} {value:>22s} {step:>26s} {damage:>22s} {saved:4d}/{targets:<4d} {seconds:9.1f}"
 
 
-def failure_line(agent: str, results: Sequence[EpisodeResult]) -> str:
-    """The line that counts how the episodes of one agent ended, and which of its actions failed why."""
+def failure_line(agent: str, results: Sequence[EpisodeResult], failed: int = 0) -> str:
+    """The line that counts how the episodes of one agent ended, and which of its actions failed why.
+
+    `failed`: its episodes without a result.
+    """
     ends = Counter(r.ended for r in results)
+    ends += Counter({"error": failed})
     failures = Counter(f"{d.verb} {d.reason}" for r in results for d in r.decisions if not d.ok)
     return f"{agent}: ended by {_counted(ends)}; failures: {_counted(failures) or 'none'}"
 

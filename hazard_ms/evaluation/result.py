@@ -12,13 +12,19 @@ import os
 import platform
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 from hazard_ms import __version__
 from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
+from hazard_ms.machine.files import write
 
 FORMAT = 1  # goes up when a field changes its meaning
+BROKEN = "simulation error"  # how an episode ends whose simulation broke
 PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "warp-lang", "numpy")  # whose versions can change an episode
+
+
+class DamagedResultError(ValueError):
+    """An error that says that a file holds no whole result of an episode."""
 
 
 @dataclass(frozen=True)
@@ -72,20 +78,47 @@ class EpisodeResult:
         score = {"value": value(tallies), "step": step(tallies), "damage": damage(tallies)}
         return {"score": score, **dataclasses.asdict(self)}
 
+    def to_json(self) -> str:
+        """The result as JSON, with the scores of this episode."""
+        return json.dumps(self.to_dict(), indent=1, allow_nan=False) + "\n"
+
     def write(self, path: Path) -> None:
-        """Write it as JSON, with the scores of this episode."""
-        path.write_text(json.dumps(self.to_dict(), indent=1, allow_nan=False) + "\n")
+        """Write it as JSON, whole or not at all. Raises ValueError where the file cannot be written."""
+        write(path, self.to_json())
 
     @classmethod
     def read(cls, path: Path) -> EpisodeResult:
-        """The result that `write` wrote. Raises ValueError for a file of another format."""
-        row = json.loads(path.read_text())
-        if row.get("format") != FORMAT:
-            raise ValueError(f"the format of {path.name} must be {FORMAT}, got {row.get('format')}")
-        row.pop("score")
-        row["targets"] = tuple(Fate(**t) for t in row["targets"])
-        row["decisions"] = tuple(DecisionRecord(**d) for d in row["decisions"])
-        return cls(**row)
+        """The result that `write` wrote.
+
+        Raises ValueError for a file of another format, and a DamagedResultError for one that holds no whole result.
+        """
+        try:
+            content = path.read_bytes()
+            if not content.strip(b"\0 \n"):  # what a power failure leaves
+                raise ValueError("an empty file")
+            row = json.loads(content)
+            number = row["format"]
+            if number == FORMAT:
+                row.pop("score")
+                row["targets"] = tuple(_made(Fate, t) for t in row["targets"])
+                row["decisions"] = tuple(_made(DecisionRecord, d) for d in row["decisions"])
+                found: EpisodeResult = _made(cls, row)
+                found.to_dict()
+                return found
+        except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
+            raise DamagedResultError(
+                f"{path} must hold the result of an episode, got {type(error).__name__}: {error}"
+            ) from None
+        raise ValueError(f"the format of {path} must be {FORMAT}, got {number!r:.100}")
+
+
+def _made(kind: Any, row: dict[str, Any]) -> Any:
+    """A dataclass from its fields. Raises TypeError or ValueError for fields and types that it does not have."""
+    for name, hint in get_type_hints(kind).items():
+        plain = (dict, tuple) if name in ("settings", "targets", "decisions", "versions", "machine") else None
+        if name in row and not isinstance(row[name], plain or (int | float if hint is float else hint)):
+            raise ValueError(f"{name} = {row[name]!r:.100}")
+    return kind(**row)
 
 
 def versions() -> dict[str, str]:

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hazard_ms.agents.base import Agent, agent
+from hazard_ms.agents.base import Agent, agent, note_of, staying
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.options import EpisodeOptions
-from hazard_ms.evaluation.result import DecisionRecord, EpisodeResult
+from hazard_ms.evaluation.result import BROKEN, DecisionRecord, EpisodeResult
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import STOP, Action, Decision, Result
@@ -36,10 +36,12 @@ class Runner:
     def run(self, seed: int | None, options: dict[str, Any] | None = None, until_frame: int | None = None) -> Played:
         """Play an episode from its reset with `seed` and `options` to its end, or to the frame `until_frame`.
 
-        Raises ValueError for a seed, a scene or an action of the agent that is not valid.
+        Raises ValueError for a seed, a scene, or an action or note of the agent that is not valid, RuntimeError for an
+        agent that calls sys.exit.
         """
         decision, _ = self.env.reset(seed=seed, options=options)
-        self.agent.reset(self.env.brief())
+        with staying("reset of the agent"):
+            self.agent.reset(self.env.brief())
         self.env.watch, self.env.until_frame = self._frame, until_frame
         for watcher in self.watchers:
             watcher.begin(self.env, decision)
@@ -56,15 +58,16 @@ class Runner:
         while len(records) <= self.env.max_frames:  # an agent whose actions take no time must not go on for ever
             if self.env.until_frame is not None and self.env.frame >= self.env.until_frame:
                 return Played(FRAME_REACHED, tuple(records))
-            action = self.agent.act(decision)
-            value = Tally.of(fates(self.env)).value
+            with staying("act of the agent"):
+                action = self.agent.act(decision)
+            note, value = note_of(self.agent), Tally.of(fates(self.env)).value
             for watcher in self.watchers:
-                watcher.decided(decision, action, self.agent.note)
+                watcher.decided(decision, action, note)
             following, _, terminated, truncated, info = self.env.step(action)
             result: Result = info["result"]
             for watcher in self.watchers:
                 watcher.ended(result)
-            records.append(self._record(decision, action, result, value))
+            records.append(self._record(decision, action, result, note, value))
             if terminated or truncated:
                 return Played(self._reason(action, info), tuple(records))
             decision = following
@@ -74,7 +77,7 @@ class Runner:
         for watcher in self.watchers:
             watcher.frame(action)
 
-    def _record(self, decision: Decision, action: Action, result: Result, value: float) -> DecisionRecord:
+    def _record(self, decision: Decision, action: Action, result: Result, note: str, value: float) -> DecisionRecord:
         return DecisionRecord(
             frame=decision.frame,
             verb=action.verb,
@@ -82,18 +85,16 @@ class Runner:
             ok=result.ok,
             reason=result.reason,
             frames=result.frames,
-            note=self.agent.note,
+            note=note,
             held=decision.held,
             value=value,
         )
 
     def _reason(self, action: Action, info: dict[str, Any]) -> str:
         if bool(info["sim_error"][0]):
-            return "simulation error"
+            return BROKEN
         if bool(info["success"][0]):
             return self.env.base.task.goal.done
-        if bool(info["fail"][0]):
-            return "failed"
         if bool(info["fail"][0]):
             return "failed"
         if action.verb == STOP:
@@ -139,6 +140,17 @@ def play(options: EpisodeOptions, watchers: Sequence[Watcher] = (), **keywords: 
         )
     finally:
         env.close()
+
+
+def played_to(options: EpisodeOptions, frame: int, **keywords: Any) -> SkillEnv:
+    """An environment in which the episode of `options` has been played to `frame`; whoever asked for it closes it.
+
+    `keywords` are those of gym.make besides those of `options`. Raises ValueError for what cannot be played.
+    """
+    player = agent(options.agent)
+    env = SkillEnv.make(options.env_id, **{**options.settings, **keywords})
+    Runner(env, player).run(options.seed, options.reset_options, until_frame=frame)
+    return env
 
 
 def summary(result: EpisodeResult) -> str:

@@ -11,19 +11,21 @@ from __future__ import annotations
 import contextlib
 import operator
 import os
-import tempfile
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import torch
 import warp as wp
 from torch import Tensor
 
-from hazard_ms.machine.cache import home
+from hazard_ms.kernels.compiled import cache, verified
 from hazard_ms.machine.progress import slow
 
 # Options of Warp that every module of kernels sets
 OPTIONS = {"enable_backward": False, "fuse_fp": False}
+
+CPU_BLOCK, GPU_BLOCK = 1, 256  # threads of a block: Warp's own choices, which name the folder of a compiled module
 
 _loaded: set[tuple[wp.Kernel, str]] = set()  # kernels that have been launched on a device
 
@@ -126,11 +128,12 @@ def of_environments(points: Tensor, count: int) -> Tensor:
 
 def _recorded(kernel: wp.Kernel, size: tuple[int, ...], arguments: tuple[Argument, ...]) -> Any:
     device = _device(arguments)
-    waiting = (
-        contextlib.nullcontext() if (kernel, device.alias) in _loaded else slow("compiling kernels (once, about 10 s)")
-    )
-    with waiting:
-        launch = wp.launch(kernel, dim=size, inputs=arguments, device=device, record_cmd=True)
+    block = CPU_BLOCK if device.is_cpu else GPU_BLOCK
+    with contextlib.ExitStack() as first:
+        if (kernel, device.alias) not in _loaded:
+            first.enter_context(slow("compiling kernels (once, about 10 s)"))
+            first.enter_context(verified(Path(wp.config.kernel_cache_dir) / kernel.module.get_module_identifier(block)))
+        launch = wp.launch(kernel, dim=size, inputs=arguments, device=device, block_dim=block, record_cmd=True)
     _loaded.add((kernel, device.alias))
     return launch
 
@@ -169,18 +172,10 @@ def _without_a_word() -> Iterator[None]:
         os.close(nowhere)
 
 
-def _cache() -> str:
-    """The folder of compiled kernels; one for this process alone if the usual one cannot be written."""
-    place = home() / "kernels"
-    with contextlib.suppress(OSError):
-        place.mkdir(parents=True, exist_ok=True)
-    return str(place) if os.access(place, os.W_OK) else tempfile.mkdtemp(prefix="hazard_ms_kernels_")
-
-
 def _begin() -> None:
     wp.config.log_level = wp.LOG_WARNING
     if "WARP_CACHE_PATH" not in os.environ:
-        wp.config.kernel_cache_dir = _cache()
+        wp.config.kernel_cache_dir = cache()
     with contextlib.nullcontext() if torch.cuda.is_available() else _without_a_word():
         wp.init()
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import os
 import shutil
 import tempfile
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
 
@@ -16,13 +18,6 @@ def home() -> Path:
     return Path(os.environ.get("HAZARD_MS_HOME") or default)
 
 
-def write_whole(place: Path, text: str) -> None:
-    """Write a file so that no other process ever reads a part of it."""
-    new = place.with_name(f"{place.name}.{os.getpid()}")
-    new.write_text(text, encoding="utf-8")
-    new.replace(place)
-
-
 def kept_folder(kind: str, files: Mapping[str, str]) -> Path:
     """A folder that holds these files, text by relative path: kept in the cache, or temporary where that is read-only.
 
@@ -30,21 +25,35 @@ def kept_folder(kind: str, files: Mapping[str, str]) -> Path:
     """
     digest = hashlib.sha256("\0".join(f"{name}\0{text}" for name, text in sorted(files.items())).encode())
     folder = home() / kind / digest.hexdigest()[:16]
-    if folder.is_dir():
+    if os.path.isdir(folder):  # Path.is_dir raises where the cache is closed to us
         return folder
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         draft = Path(tempfile.mkdtemp(dir=folder.parent))
     except OSError:
-        return _filled(Path(tempfile.mkdtemp(prefix=f"hazard_ms-{kind}-")), files)
+        return _temporary_folder(kind, tuple(sorted(files.items())))
     try:
         draft.chmod(0o755)  # other users may share the cache
         _filled(draft, files).rename(folder)
     except OSError:
         shutil.rmtree(draft, ignore_errors=True)
-        if not folder.is_dir():  # not because another process was faster
-            raise
+        if not folder.is_dir():  # a full disk, and not a process that was faster
+            return _temporary_folder(kind, tuple(sorted(files.items())))
     return folder
+
+
+@cache
+def _temporary_folder(kind: str, files: tuple[tuple[str, str], ...]) -> Path:
+    """One folder with these files for this process, which is deleted at its end."""
+    folder = Path(tempfile.mkdtemp(prefix=f"hazard_ms-{kind}-"))
+    atexit.register(_delete_own, folder, os.getpid())
+    return _filled(folder, dict(files))
+
+
+def _delete_own(folder: Path, owner: int) -> None:
+    """Delete a folder of the process `owner`, unless this is another one, which was forked from it."""
+    if os.getpid() == owner:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _filled(folder: Path, files: Mapping[str, str]) -> Path:

@@ -25,6 +25,7 @@ import tempfile
 import urllib.request
 from pathlib import Path
 
+from hazard_ms.machine.files import write
 from hazard_ms.machine.survey import Machine, read_machine
 from hazard_ms.machine.vulkan import Answer, ask_vulkan
 
@@ -144,9 +145,7 @@ def unpack_lavapipe(folder: Path) -> Path:
         "file_format_version": "1.0.0",
         "ICD": {"api_version": "1.4.305", "library_path": str(folder / "libvulkan_lvp.so")},
     }
-    new = folder / "lvp_icd.json.new"
-    new.write_text(json.dumps(text), encoding="utf-8")
-    new.replace(manifest)
+    write(manifest, json.dumps(text))
     return manifest
 
 
@@ -206,9 +205,7 @@ def main() -> int:
     variables = prepare(options.home)
     if variables is None:
         return 1
-    options.answer.write_text(
-        "".join(f"export {name}={shlex.quote(value)}\n" for name, value in variables.items()), encoding="utf-8"
-    )
+    write(options.answer, "".join(f"export {name}={shlex.quote(value)}\n" for name, value in variables.items()))
     return 0
 
 

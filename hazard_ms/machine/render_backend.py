@@ -19,7 +19,8 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from hazard_ms.machine.cache import home, write_whole
+from hazard_ms.machine.cache import home
+from hazard_ms.machine.files import write
 from hazard_ms.machine.survey import manifest_paths
 from hazard_ms.machine.vulkan import last_line
 
@@ -63,8 +64,8 @@ def keep(place: Path, answer: str) -> None:
     """Store the answer. Where the folder is read-only, the next process repeats the trial."""
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(place, json.dumps({"backend": answer}))
-    except OSError:
+        write(place, json.dumps({"backend": answer}))
+    except (OSError, ValueError):
         return
 
 

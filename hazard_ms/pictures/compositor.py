@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
-from types import TracebackType
 
-import imageio_ffmpeg
 import numpy as np
 from numpy.typing import NDArray
 
@@ -138,47 +135,3 @@ class Compositor:
         saved = sum(t.rescued for t in shot.targets)
         holding = f"holding {shot.held}" if shot.held is not None else "empty hand"
         write(sheet, shorten(f"{saved} of {len(shot.targets)} rescued, {holding}", 15, 530), (x, y + 34), 15, SOFT)
-
-
-class Video:
-    """Writes frames to an mp4 that browsers play: H.264, yuv420p, index first. A context manager.
-
-    Raises ValueError for a rate that is not positive.
-    """
-
-    def __init__(self, path: Path, frames_per_second: float) -> None:
-        if frames_per_second <= 0:
-            raise ValueError(f"frames_per_second must be positive, got {frames_per_second}")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        self.path = path
-        self.frames = 0
-        self._pipe = imageio_ffmpeg.write_frames(
-            str(path),
-            (WIDTH, HEIGHT),
-            fps=frames_per_second,
-            codec="libx264",
-            pix_fmt_out="yuv420p",
-            quality=None,
-            output_params=["-preset", "veryfast", "-crf", "23", "-movflags", "+faststart"],
-            ffmpeg_log_level="error",
-        )
-        self._pipe.send(None)
-
-    def add(self, frame: Pixels) -> None:
-        """Append a frame, [720, 1280, 3], uint8, RGB. Raises ValueError for another shape or type."""
-        if frame.shape != (HEIGHT, WIDTH, 3) or frame.dtype != np.uint8:
-            raise ValueError(f"a frame must be uint8 ({HEIGHT}, {WIDTH}, 3), got {frame.dtype} {frame.shape}")
-        self._pipe.send(np.ascontiguousarray(frame))
-        self.frames += 1
-
-    def close(self) -> None:
-        """Write the rest and the index."""
-        self._pipe.close()
-
-    def __enter__(self) -> Video:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()

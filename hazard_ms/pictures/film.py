@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from pathlib import Path
 from types import TracebackType
 
 import numpy as np
@@ -11,8 +10,10 @@ import numpy as np
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.runner import fates
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.pictures.compositor import Compositor, Shot, Video
+from hazard_ms.machine.files import Draft
+from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import Pixels
+from hazard_ms.pictures.video import Video
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import EXPLORE, Action, Decision, Result
@@ -26,11 +27,11 @@ PATH_STEP = 0.05  # shortest piece of the drawn path [m]
 
 
 class Film(Watcher):
-    """The film of one episode, written to a file. A context manager, so that a broken episode leaves a whole file."""
+    """The film of one episode, written to a draft. A context manager, so that a broken episode stops the encoder."""
 
-    def __init__(self, path: Path, subtitle: str, every: int) -> None:
+    def __init__(self, draft: Draft, subtitle: str, every: int) -> None:
         """`every`: frames of the episode from one picture to the next. The film's speed is added to `subtitle`."""
-        self._path, self._subtitle, self._every = path, subtitle, every
+        self._draft, self._subtitle, self._every = draft, subtitle, every
         self._files = ExitStack()
         self._action, self._note = Action(EXPLORE), ""
         self._way: list[tuple[float, float]] = []
@@ -39,12 +40,12 @@ class Film(Watcher):
         self._shots = 0
 
     def begin(self, env: SkillEnv, decision: Decision) -> None:
-        """Open the file."""
+        """Start the encoder."""
         base = env.base
         speed = self._every * RATE * base.control_timestep
         title, subtitle = f"{base.task.name}   {base.specs[0].name}", f"{self._subtitle}, {speed:g}x speed"
         self._env = env
-        self._video = self._files.enter_context(Video(self._path, RATE))
+        self._video = self._files.enter_context(Video(self._draft, (WIDTH, HEIGHT), RATE))
         self._compositor = Compositor(title, subtitle, tuple(h.level for h in base.task.hazards))
         self._head = base.observer.look()
 
@@ -66,7 +67,7 @@ class Film(Watcher):
             self._shoot()
 
     def finish(self, reason: str) -> None:
-        """Hold the last picture for a while, and close the file."""
+        """Hold the last picture for a while, and finish the film."""
         last = self._shoot()
         for _ in range(LAST_SHOTS):
             self._video.add(last)
@@ -78,7 +79,7 @@ class Film(Watcher):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._files.close()
+        self._files.__exit__(kind, error, trace)
 
     def _shoot(self) -> Pixels:
         """Take a picture now, and add it to the film."""

@@ -12,10 +12,9 @@ import numpy as np
 import sapien
 from mani_skill.utils.sapien_utils import look_at
 
-from hazard_ms.agents.base import agent
 from hazard_ms.effects.entities import FRAMES_PER_SECOND
 from hazard_ms.effects.raytracing.still import Image, Photographer, Viewpoint
-from hazard_ms.evaluation.runner import Runner
+from hazard_ms.evaluation.runner import played_to
 from hazard_ms.pictures.options import IDLE, RenderOptions
 from hazard_ms.simulation.viewpoint import corner_view
 from hazard_ms.skills.executor import SkillEnv
@@ -35,14 +34,14 @@ class FrozenEpisode:
         """
         options.check()
         episode = options.episode
-        player = None if episode.agent == IDLE else agent(episode.agent)
-        self._skills = SkillEnv.make(episode.env_id, render_mode="rgb_array", **episode.settings)
-        self.env = self._skills.base
-        if player is None:
+        if episode.agent == IDLE:
+            self._skills = SkillEnv.make(episode.env_id, render_mode="rgb_array", **episode.settings)
+            self.env = self._skills.base
             self._skills.env.reset(seed=episode.seed, options=episode.reset_options)
             self.play(options.frame)
         else:
-            Runner(self._skills, player).run(episode.seed, episode.reset_options, until_frame=options.frame)
+            self._skills = played_to(episode, options.frame, render_mode="rgb_array")
+            self.env = self._skills.base
 
     @property
     def frame(self) -> int:

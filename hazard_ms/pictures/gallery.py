@@ -11,13 +11,15 @@ from typing import NamedTuple
 
 from hazard_ms.effects.raytracing.still import Image
 from hazard_ms.evaluation.options import EpisodeOptions
-from hazard_ms.pictures.files import save
+from hazard_ms.machine.files import make_folder, write_together
+from hazard_ms.pictures.files import encoded
 from hazard_ms.pictures.frozen_episode import FrozenEpisode
 from hazard_ms.pictures.options import IDLE, RenderOptions
 
 SIZE, HEAD_SIZE = (480, 320), (320, 320)  # of pictures from the corner, and through the robot's eyes [pixels]
 QUALITY = 76  # of JPEG: all pictures together stay below 1.5 MB
 PAGE = "README.md"
+SHADERS = ("default", "rt-fast")  # of the two pictures of each frame
 
 
 class Show(NamedTuple):
@@ -76,9 +78,10 @@ SHOWS = (
 def make(folder: Path, samples: int, shows: tuple[Show, ...] = SHOWS) -> Path:
     """Make the pictures of `shows` and their page in `folder`, ray-traced with `samples` per pixel.
 
-    Returns the page.
+    Returns the page. Raises ValueError where they cannot be written; what was there is then as before.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
+    contents: dict[Path, str | bytes] = {}
     lines = [
         "# Gallery",
         "",
@@ -87,22 +90,22 @@ def make(folder: Path, samples: int, shows: tuple[Show, ...] = SHOWS) -> Path:
     ]
     for show in shows:
         lines += [f"## {show.env_id}, {show.lighting}", "", show.about, ""]
-        lines += ["| frame | rasterised | ray-traced |", "|---|---|---|", *_rows(folder, show, samples), ""]
+        lines += ["| frame | rasterised | ray-traced |", "|---|---|---|", *_rows(contents, folder, show, samples), ""]
     page = folder / PAGE
-    page.write_text("\n".join(lines), encoding="utf-8")
+    contents[page] = "\n".join(lines)
+    write_together(contents)
     return page
 
 
-def _rows(folder: Path, show: Show, samples: int) -> Iterator[str]:
-    """Take the pictures of one episode; yields the table's row of each frame."""
+def _rows(contents: dict[Path, str | bytes], folder: Path, show: Show, samples: int) -> Iterator[str]:
+    """Take the pictures of one episode, and add them to `contents`; yields the table's row of each frame."""
     episode = EpisodeOptions(env_id=show.env_id, seed=show.seed, scene=show.scene, lighting=show.lighting, agent=IDLE)
     with FrozenEpisode(RenderOptions(output=Path(PAGE).with_suffix(".jpg"), episode=episode)) as frozen:
         for frame in show.frames:
             frozen.play(frame)
-            names = [
-                _keep(folder, show, frame, shader, _picture(frozen, show, shader, samples))
-                for shader in ("default", "rt-fast")
-            ]
+            names = [_name(show, frame, shader) for shader in SHADERS]
+            for shader, name in zip(SHADERS, names, strict=True):
+                contents[folder / name] = encoded(_picture(frozen, show, shader, samples), ".jpg", QUALITY)
             yield f"| {frame} | " + " | ".join(f"![{show.about}]({name})" for name in names) + " |"
 
 
@@ -111,10 +114,8 @@ def _picture(frozen: FrozenEpisode, show: Show, shader: str, samples: int) -> Im
     return frozen.picture(frozen.view(show.camera, *size), shader, samples)
 
 
-def _keep(folder: Path, show: Show, frame: int, shader: str, picture: Image) -> str:
-    """Write the picture; returns its name."""
+def _name(show: Show, frame: int, shader: str) -> str:
+    """The name of a picture's file."""
     task = show.env_id.removeprefix("Hazard").partition("-")[0].lower()
     place = f"{show.scene.partition('/')[0]}_" if show.scene else ""
-    name = f"{task}_{place}{show.lighting}_{show.camera}_{frame:04d}_{shader.replace('default', 'raster')}.jpg"
-    save(folder / name, picture, QUALITY)
-    return name
+    return f"{task}_{place}{show.lighting}_{show.camera}_{frame:04d}_{shader.replace('default', 'raster')}.jpg"

@@ -9,19 +9,20 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.assets.index import asset
-from hazard_ms.scenes.boxes import Box, box_of
-from hazard_ms.scenes.floor import OVERHEAD_HEIGHT, RUG_HEIGHT
+from hazard_ms.pictures.files import save as save_picture
+from hazard_ms.scenes.boxes import Box
+from hazard_ms.scenes.floor import OVERHEAD_HEIGHT, RUG_HEIGHT, boxes_of
 from hazard_ms.scenes.materials import MATERIALS
 from hazard_ms.scenes.shell import ShellBox, shell
 from hazard_ms.simulation.bare_scene import build
 from hazard_ms.simulation.viewpoint import corner_view
-from hazard_ms.spec import Body, Fixture, SceneSpec
+from hazard_ms.spec import SceneSpec
 
 WIDTH, HEIGHT, FIELD_OF_VIEW = 640, 480, 1.15  # of the view [pixels], [rad]
 SCALE = 110  # of the plan of a room [pixels per m]
 LARGEST = 1600  # longer edge of a plan, at most [pixels]
 EDGE = 0.3  # around the plan [m]
+QUALITY = 95  # of a JPEG, of 100: thin lines and small letters [ours]
 INK, FURNITURE, RUG = (40, 40, 40), (196, 182, 160), (214, 180, 176)
 THING, TARGET, FIRE, AGENT, WATER = (120, 150, 190), (215, 60, 50), (255, 140, 0), (30, 130, 60), (60, 120, 220)
 
@@ -60,14 +61,15 @@ class Plan:
 def plan(spec: SceneSpec) -> Image:
     """The scene from above, [H, W, 3], RGB: furniture and targets by name, other things, fires, start, water."""
     sheet = Plan(spec)
-    for box in shell(spec.room):
-        if box.kind in ("floor", "wall", "door", "window"):
-            sheet.area(_flat(box), _colour(box))
-    for f in sorted(spec.fixtures, key=lambda f: f.position[2] + asset(f.asset).extent[2]):
-        high = f.position[2] > OVERHEAD_HEIGHT
-        sheet.area(_box(f), RUG if asset(f.asset).extent[2] < RUG_HEIGHT else FURNITURE, outline=high)
-    for b in spec.bodies:
-        sheet.area(_box(b), TARGET if b.category in spec.target_categories else THING)
+    for part in shell(spec.room):
+        if part.kind in ("floor", "wall", "door", "window"):
+            sheet.area(_flat(part), _colour(part))
+    furniture, things = boxes_of(spec)
+    for box in sorted(furniture, key=lambda box: box.high):
+        colour = RUG if box.high - box.low < RUG_HEIGHT else FURNITURE
+        sheet.area(box, colour, outline=box.low > OVERHEAD_HEIGHT)
+    for b, box in zip(spec.bodies, things, strict=True):
+        sheet.area(box, TARGET if b.category in spec.target_categories else THING)
     for f in spec.fixtures:
         if f.position[2] <= OVERHEAD_HEIGHT:
             sheet.write(f.name, *f.position[:2])
@@ -129,12 +131,7 @@ def save(spec: SceneSpec, path: Path) -> None:
         raise ValueError(f"the ending of output must be .png, .jpg or .jpeg, got {path.suffix!r}")
     if not path.parent.is_dir():
         raise ValueError(f"output must be in a folder that exists, got {path}: there is no folder {path.parent}")
-    if not cv2.imwrite(str(path), sheet(spec)[..., ::-1]):
-        raise ValueError(f"output must be a file that can be written, got {path}")
-
-
-def _box(thing: Body | Fixture) -> Box:
-    return box_of(thing, asset(thing.asset).extent)
+    save_picture(path, sheet(spec), QUALITY)
 
 
 def _flat(b: ShellBox) -> Box:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-import cv2
-
 from hazard_ms.hazards.case import Case
+from hazard_ms.machine.files import make_folder, write_together
+from hazard_ms.pictures.files import encoded
 from hazard_ms.registry import HAZARDS, find, load
 from hazard_ms.validation.charts import Chart, draw
 from hazard_ms.validation.outcome import Outcome, check
@@ -86,15 +86,14 @@ def page(results: dict[str, list[Outcome]], charts: dict[str, list[Chart]]) -> s
 
 
 def write(folder: Path, results: dict[str, list[Outcome]]) -> Path:
-    """Write page and pictures into `folder`; returns the page."""
-    pictures = folder / PICTURES
-    pictures.mkdir(parents=True, exist_ok=True)
+    """Write page and pictures into `folder`, all or none; returns the page. Raises ValueError where that fails."""
+    make_folder(folder / PICTURES)
     charts = {name: charts_of(name) for name in results}
-    for chart in (c for some in charts.values() for c in some):
-        cv2.imwrite(str(pictures / f"{chart.file}.png"), cv2.cvtColor(draw(chart), cv2.COLOR_RGB2BGR))
-    target = folder / PAGE
-    target.write_text(page(results, charts), encoding="utf-8")
-    return target
+    contents: dict[Path, str | bytes] = {
+        folder / PICTURES / f"{c.file}.png": encoded(draw(c), ".png") for some in charts.values() for c in some
+    }
+    write_together({**contents, folder / PAGE: page(results, charts)})
+    return folder / PAGE
 
 
 def validate(hazard: str | None, quick: bool, folder: Path | None) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hazard_ms.agents.base import Agent, agent
+from hazard_ms.agents.base import LONGEST_NOTE, Agent, agent, check_name, note_of
 from hazard_ms.agents.greedy import Greedy
 from hazard_ms.hazards.presets import hazard
 from hazard_ms.registry import AGENTS, HAZARDS
@@ -101,6 +101,48 @@ def test_parameters_are_converted_as_they_are_annotated() -> None:
 def test_wrong_parameters_are_refused(text: str, told: str) -> None:
     with pytest.raises(ValueError, match=told):
         agent(text)
+
+
+@pytest.mark.parametrize(
+    ("note", "shown"),
+    [
+        (None, ""),
+        ("", ""),
+        ("to the bag: 3 m, 20 °C", "to the bag: 3 m, 20 °C"),
+        ("one\ntwo\tthree\r\0", "one two three  "),
+        ("\x1b]0;title\x07 \ud800 \u202e", " ]0;title     "),
+        ("y" * LONGEST_NOTE, "y" * LONGEST_NOTE),
+        ("y" * (LONGEST_NOTE + 1), "y" * (LONGEST_NOTE - 1) + "…"),
+        ("y" * 2_000_000, "y" * (LONGEST_NOTE - 1) + "…"),
+    ],
+    ids=lambda text: repr(text)[:20],
+)
+def test_of_a_note_that_is_shown_which_can_be(note: str | None, shown: str) -> None:
+    player = Tuned()
+    player.note = note
+    assert note_of(player) == shown
+
+
+@pytest.mark.parametrize("note", [object(), 3, b"bytes", ["a list"], float("nan")])
+def test_a_note_that_is_no_text_is_refused(note: object) -> None:
+    player = Tuned()
+    player.note = note  # type: ignore[assignment]
+    with pytest.raises(ValueError, match=f"note of Tuned must be a str or None, got a {type(note).__name__}"):
+        note_of(player)
+
+
+def test_an_agent_that_ends_the_process_while_it_is_made_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / "at_import.py").write_text("import sys\nsys.exit(0)")
+    with pytest.raises(RuntimeError, match=r"at_import.py:X must return or raise an error, got sys.exit\(0\)"):
+        agent(f"{tmp_path}/at_import.py:X")
+
+
+def test_names_are_checked_without_making_an_agent() -> None:
+    for text in ("greedy", "greedy:give_up=3", "package.module:Class", "no/such/file.py:Class", "a:B:c=3"):
+        check_name(text)
+    for text in ("gready", "gready:give_up=3"):
+        with pytest.raises(ValueError, match="did you mean 'greedy'"):
+            check_name(text)
 
 
 def test_greedy_gives_up_when_it_is_told_to() -> None:

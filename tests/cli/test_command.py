@@ -27,7 +27,7 @@ COMMAND = f"{sys.executable} -m hazard_ms.cli"
 def shell(line: str, **environ: str) -> subprocess.CompletedProcess[str]:
     """The outcome of a line of bash in the repository; it fails where a part of a pipe fails."""
     words = ["bash", "-o", "pipefail", "-c", line]
-    return subprocess.run(words, capture_output=True, text=True, cwd=ROOT, env={**os.environ, **environ}, timeout=100)
+    return subprocess.run(words, capture_output=True, text=True, cwd=ROOT, env={**os.environ, **environ}, timeout=280)
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
@@ -41,6 +41,28 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
 def test_a_reader_that_has_enough_is_no_error() -> None:
     done = shell(f"{COMMAND} scenes make kitchen_a/00 | head -1")
     assert (done.returncode, done.stdout, done.stderr) == (0, "{\n", "")
+
+
+@pytest.mark.parametrize(
+    ("redirection", "code", "told"),
+    [
+        (">&-", 0, ""),
+        ("2>&-", 0, ""),
+        ("> /dev/full", 1, "hazard-ms: the output must be written whole, got No space left on device; free some space"),
+    ],
+)
+def test_outputs_that_are_closed_or_full(redirection: str, code: int, told: str) -> None:
+    done = shell(f"{COMMAND} scenes list --split train --family outdoor {redirection}")
+    assert (done.returncode, done.stderr.strip()) == (code, told)
+
+
+def test_a_scene_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
+    """A limit on the size of files ends the writing of a scene in its midst."""
+    place = tmp_path / "scene.json"
+    place.write_text("older")
+    done = shell(f"ulimit -f 4; {COMMAND} scenes make kitchen_a/00 -o {place}")
+    assert done.returncode == 2 and f"got {place}: File too large; raise the limit" in done.stderr
+    assert place.read_text() == "older" and list(tmp_path.iterdir()) == [place]
 
 
 def test_help_works_where_only_ascii_can_be_written() -> None:

@@ -61,7 +61,7 @@ def test_a_check_that_hangs_or_crashes_is_a_problem(
     monkeypatch.setattr(scene_checks, "LONGEST", 30.0)
     before = time.monotonic()
     assert scene_checks.check_all(["hangs", "crashes", "fine"], workers=2) == 1
-    assert time.monotonic() - before < 100.0
+    assert time.monotonic() - before < 800.0, "it waited for one that sleeps for 1,000 s"
     out = capsys.readouterr().out
     assert (
         "PROBLEM hangs" in out and "PROBLEM crashes" in out and "ok fine" in out and "3 scenes, 2 with problems" in out
@@ -80,7 +80,7 @@ def test_a_check_that_hangs_or_crashes_is_a_problem(
         (["make", "kitchen_a/00", "-o", "no/such/folder/x.json"], "can be written"),
         (["show", "kitchen_a/00", "-o", "scene.exe"], ".jpeg, got '.exe'"),
         (["show", "kitchen_a/00", "-o", "no/such/folder/x.png"], "there is no folder"),
-        (["show", "missing.json"], "cannot be read"),
+        (["show", "missing.json"], "there is no file missing.json"),
     ],
 )
 def test_bad_input_ends_with_2_and_says_why(

@@ -7,28 +7,9 @@ from pathlib import Path
 import pytest
 
 from hazard_ms.evaluation import sweep
-from hazard_ms.evaluation.metrics import Fate
 from hazard_ms.evaluation.options import EnvOptions, SweepOptions
-from hazard_ms.evaluation.result import EpisodeResult
-
-
-def result(options: SweepOptions, place: int, saved: bool) -> EpisodeResult:
-    episode = options.episode_options()[place]
-    fate = Fate("book_1", "book", 5.0, saved, False, 100 if saved else None)
-    lost = Fate("pan_1", "pan", 5.0, False, False, None)
-    return EpisodeResult(
-        env_id=episode.env_id,
-        agent=episode.agent,
-        seed=episode.seed,
-        scene="kitchen_b/00",
-        settings=episode.settings,
-        frames=1500,
-        max_frames=1500,
-        ended="time",
-        targets=(fate, lost),
-        decisions=(),
-        command="",
-    )
+from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult
+from tests.worlds.results import result_of
 
 
 def test_every_agent_plays_every_seed_in_a_file_of_its_own(tmp_path: Path) -> None:
@@ -60,12 +41,120 @@ def test_what_is_there_is_not_played_again_and_the_table_holds_its_scores(
 ) -> None:
     """Greedy saves one of two equal targets in both episodes, random in one of two: 50 and 25 per cent."""
     options = SweepOptions(EnvOptions(split="test", lighting="night"), episodes=2, output=tmp_path)
-    for k, episode in enumerate(options.episode_options()):
+    for episode in options.episode_options():
         saved = episode.agent == "greedy" or episode.seed == 0
-        result(options, k, saved).write(options.place(episode))
+        result_of(episode, saved).write(options.place(episode))
     before = {p.name: p.stat().st_mtime_ns for p in tmp_path.iterdir()}
     assert sweep.evaluate(options) == 0
     assert {p.name: p.stat().st_mtime_ns for p in tmp_path.iterdir()} == before
     printed = capsys.readouterr().out
     assert "50.0 [50.0, 50.0]" in printed and "25.0 [0.0, 50.0]" in printed and "2/4" in printed and "1/4" in printed
     assert "lighting night" in printed and "greedy: ended by 2 time; failures: none" in printed
+
+
+def refill(options: SweepOptions, contents: dict[int, bytes]) -> None:
+    """Write whole results of all episodes, but `contents` into the files of some, by place in the list."""
+    for k, episode in enumerate(options.episode_options()):
+        result_of(episode).write(options.place(episode))
+        if k in contents:
+            options.place(episode).write_bytes(contents[k])
+
+
+QUITS = """
+from hazard_ms import Agent
+class Quits(Agent):
+    def __init__(self):
+        __import__("sys").exit(0)
+    def reset(self, brief): ...
+    def act(self, decision): ...
+"""
+WHOLE = result_of(SweepOptions().episode_options()[0]).to_json().encode()
+
+
+@pytest.mark.parametrize(
+    "damaged",
+    [
+        b"",
+        bytes(len(WHOLE)),
+        WHOLE[: len(WHOLE) // 2],
+        b"\xff\xfe",
+        b"[]",
+        b"{}",
+        b"[" * 100_000,
+        WHOLE.replace(b'"targets": [', b'"targets": [1, '),
+        WHOLE.replace(b'"frames": 1500', b'"frames": "many"'),
+        WHOLE.replace(b'"value": 5.0', b'"value": null'),
+        WHOLE.replace(b'"ended"', b'"stopped"'),
+    ],
+    ids=lambda content: content[:20].decode("latin-1"),
+)
+def test_a_damaged_file_is_no_result(damaged: bytes, tmp_path: Path) -> None:
+    (tmp_path / "one.json").write_bytes(damaged)
+    with pytest.raises(DamagedResultError, match=f"{tmp_path}/one.json must hold the result of an episode, got"):
+        EpisodeResult.read(tmp_path / "one.json")
+
+
+def test_files_that_hold_no_whole_result_are_named_and_played_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The agent ends its process now, so what is played again has no result: the others are in the table."""
+    (tmp_path / "own.py").write_text(QUITS)
+    options = SweepOptions(agents=(f"{tmp_path}/own.py:Quits",), episodes=3, workers=1, output=tmp_path / "results")
+    (tmp_path / "results").mkdir()
+    refill(options, {0: b"", 2: WHOLE[:100]})
+    assert sweep.evaluate(options) == 1
+    printed = capsys.readouterr().out
+    for k, told in ((0, "an empty file"), (2, "JSONDecodeError")):
+        place = options.place(options.episode_options()[k])
+        assert f"{place} must hold the result of an episode, got" in printed and told in printed
+        assert f"no result: {tmp_path}/own.py:Quits, seed {k}: RuntimeError: the agent {tmp_path}/own.py" in printed
+    assert printed.count("is played again") == 2 and printed.count("got sys.exit(0) (own.py, line 5)") == 4
+    assert "ended by 2 error, 1 time" in printed
+
+
+@pytest.mark.parametrize("change", [(b'"format": 1', b'"format": 7'), (b'"hazard-ms": "', b'"hazard-ms": "0.0.1+')])
+def test_results_of_another_format_or_version_are_refused_before_anything_is_played(
+    change: tuple[bytes, bytes], tmp_path: Path
+) -> None:
+    options = SweepOptions(agents=("greedy",), episodes=2, output=tmp_path)
+    first, second = options.episode_options()
+    result_of(first).write(options.place(first))
+    content = options.place(first).read_bytes()
+    assert change[0] in content
+    options.place(first).write_bytes(content.replace(*change))
+    with pytest.raises(ValueError, match="format of|results of hazard-ms"):
+        sweep.evaluate(options)
+    assert options.place(first).read_bytes() == content.replace(*change) and not options.place(second).exists()
+
+
+def test_a_broken_simulation_is_told_by_the_exit_code(tmp_path: Path) -> None:
+    options = SweepOptions(agents=("greedy",), episodes=2, output=tmp_path)
+    first, second = options.episode_options()
+    result_of(first).write(options.place(first))
+    result_of(second, ended="time").write(options.place(second))
+    assert sweep.evaluate(options) == 0
+    result_of(second, ended="simulation error").write(options.place(second))
+    assert sweep.evaluate(options) == 1
+
+
+def test_an_unknown_agent_is_refused_before_anything_is_played(tmp_path: Path) -> None:
+    for name in ("gready", "gready:give_up=2"):
+        with pytest.raises(ValueError, match="did you mean 'greedy'"):
+            sweep.evaluate(SweepOptions(agents=("random", name), episodes=1, output=tmp_path / "results"))
+    assert not (tmp_path / "results").exists()
+
+
+def test_a_result_is_replaced_whole(tmp_path: Path) -> None:
+    """Who reads the older file still has it; and no draft is left."""
+    place = tmp_path / "one.json"
+    place.write_text("old")
+    with place.open() as reader:
+        result_of(SweepOptions().episode_options()[0]).write(place)
+        assert reader.read() == "old"
+    assert EpisodeResult.read(place).ended == "time" and list(tmp_path.iterdir()) == [place]
+
+
+def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(ValueError, match=f"a folder that can be written, got {tmp_path}/file"):
+        sweep.evaluate(SweepOptions(agents=("greedy",), episodes=1, output=tmp_path / "file"))

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hazard_ms.evaluation.metrics import Fate
-from hazard_ms.evaluation.page import write_page
+from hazard_ms.evaluation.page import address, page
 from hazard_ms.evaluation.result import DecisionRecord, EpisodeResult
 
 
@@ -50,11 +50,10 @@ def test_page_is_whole_and_says_what_happened(tmp_path: Path, monkeypatch: pytes
         (DecisionRecord(0, "walk_to", "bag_1", False, "no_path", 40, "cost 1.0 < 2"),),
         "hazard-ms play -s 7",
     )
-    video, page = tmp_path / "out.mp4", tmp_path / "out.html"
+    video = tmp_path / "draft.mp4"
     video.write_bytes(b"12345")
-    write_page(page, result, video)
     reader = Reader()
-    reader.feed(page.read_text(encoding="utf-8"))
+    reader.feed(page(result, address(video, "out.mp4")))
     assert not reader.open
     assert reader.links == ["data:video/mp4;base64,MTIzNDU="]
     for told in (
@@ -69,8 +68,6 @@ def test_page_is_whole_and_says_what_happened(tmp_path: Path, monkeypatch: pytes
     ):
         assert told in reader.text
     monkeypatch.setattr("hazard_ms.evaluation.page.LARGEST_EMBEDDED", 4)
-    (tmp_path / "pages").mkdir()
-    write_page(tmp_path / "pages" / "out.html", result, video)
     reader = Reader()
-    reader.feed((tmp_path / "pages" / "out.html").read_text(encoding="utf-8"))
-    assert reader.links == ["../out.mp4"]
+    reader.feed(page(result, address(video, "a film #1 100%.mp4")))
+    assert reader.links == ["a%20film%20%231%20100%25.mp4"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import gc
 import json
 import shlex
 import subprocess
@@ -21,6 +22,7 @@ from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.evaluation.runner import play, summary
 from hazard_ms.skills.brief import Brief, random_seed
 from hazard_ms.skills.decision import EXPLORE, STOP, WALK_ONE_STEP, Action, Decision
+from hazard_ms.skills.executor import SkillEnv
 
 pytestmark = pytest.mark.render
 ROOT = Path(__file__).parents[2]
@@ -49,6 +51,15 @@ class AtOnce(Short):
     def reset(self, brief: Brief) -> None:
         super().reset(brief)
         self.left = [STOP]
+
+
+class Breaks(Short):
+    """Shoots a thing through the ceiling, which no agent can do by what it is given."""
+
+    def act(self, decision: Decision) -> Action:
+        for env in (each for each in gc.get_objects() if type(each) is SkillEnv):
+            env.base.world.handles.bodies[0].linear_velocity = [0.0, 0.0, 900.0]
+        return Action(EXPLORE)
 
 
 @pytest.fixture(scope="module")
@@ -125,6 +136,14 @@ def test_its_command_plays_the_same_episode_again(
     assert again.returncode == 0, error[-2000:]
     assert all(f"again.{suffix}" in out for suffix in ("mp4", "json", "html"))
     assert same(EpisodeResult.read(folder / "again.json")) == same(result)
+
+
+def test_a_broken_simulation_is_told_by_the_exit_code(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("HAZARD_MS_DUMPS", str(tmp_path))
+    assert main(["play", "--agent", "tests.evaluation.test_play:Breaks", "--scene", SCENE]) == 1
+    assert "(simulation error)" in capsys.readouterr().out
 
 
 def test_another_seed_tells_the_agent_another_seed(folder: Path) -> None:

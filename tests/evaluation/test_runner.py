@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from itertools import groupby
 from typing import Any
@@ -31,6 +32,21 @@ class Looker(Agent):
     def act(self, decision: Decision) -> Action:
         self.note = "why"
         return Action(self.left.pop())
+
+
+class Quits(Looker):
+    """Ends the process in its second decision."""
+
+    def act(self, decision: Decision) -> Action:
+        return super().act(decision) if len(self.left) > 2 else sys.exit(0)
+
+
+class Talks(Looker):
+    """Stops at once, with a note of which only a part can be shown."""
+
+    def act(self, decision: Decision) -> Action:
+        self.note = "a\n\x1b[31m\ud800\u202e b" + "x" * 3_000_000
+        return Action(STOP)
 
 
 class Witness(Watcher):
@@ -82,6 +98,19 @@ def test_a_run_ends_at_the_frame_that_was_asked_for(env: SkillEnv, frame: int) -
     assert env.frame == frame and played.ended == FRAME_REACHED and witness.told[-1] == ("finish", FRAME_REACHED)
     assert sum(kind == "frame" for kind, _ in witness.told) == frame
     assert Runner(env, Looker()).run(SEED).ended == "stopped", "the next run is not cut short"
+
+
+def test_an_agent_cannot_end_the_process(env: SkillEnv) -> None:
+    with pytest.raises(RuntimeError, match=r"act of the agent must return or raise an error, got sys.exit\(0\)"):
+        Runner(env, Quits()).run(SEED)
+
+
+def test_watchers_and_records_get_the_note_that_can_be_shown(env: SkillEnv) -> None:
+    witness = Witness()
+    played = Runner(env, Talks(), [witness]).run(SEED)
+    note = played.decisions[0].note
+    assert witness.told[1] == ("decided", ("stop", note)) and len(note) == 2000
+    assert note.startswith("a  [31m   bxxx") and note.endswith("xx…") and note.isprintable()
 
 
 def test_the_agent_is_told_what_the_paper_tells_it(env: SkillEnv) -> None:

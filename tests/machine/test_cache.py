@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -60,12 +61,28 @@ def test_without_a_writable_folder_files_are_temporary(home: Path, monkeypatch: 
     home.write_text("a file where the folder should be")
     folder = cache.kept_folder("robots", FILES)
     assert texts(folder) == FILES and str(folder).startswith(tempfile.gettempdir())
+    assert cache.kept_folder("robots", FILES) == folder, "one for the process, and not one for each reset"
 
 
-def test_a_file_is_replaced_whole(tmp_path: Path) -> None:
-    place = tmp_path / "answer.json"
-    place.write_text("old")
-    with place.open() as reader:
-        cache.write_whole(place, "new")
-        assert reader.read() == "old", "who reads it still has the old file"
-    assert place.read_text() == "new" and list(tmp_path.iterdir()) == [place]
+@pytest.mark.parametrize("closed", [0o555, 0o000])
+def test_a_home_that_is_closed_to_us_costs_one_folder_that_is_deleted_at_the_end(home: Path, closed: int) -> None:
+    """Root may write everywhere, so the process runs without the rights that make root special."""
+    if os.geteuid() == 0 and shutil.which("setpriv") is None:
+        pytest.skip("no setpriv")
+    bare = ["setpriv", "--bounding-set=-all", "--inh-caps=-all"] if os.geteuid() == 0 else []
+    temporary = home.parent / "temporary"
+    home.mkdir()
+    temporary.mkdir()
+    home.chmod(closed)
+    code = (
+        "from pathlib import Path; import tempfile\n"
+        "from hazard_ms.machine.cache import kept_folder\n"
+        "for _ in range(3): made = kept_folder('robots', {'a': 'text'})\n"
+        "print((made / 'a').read_text(), len(list(Path(tempfile.gettempdir()).iterdir())))"
+    )
+    environ = {**os.environ, "TMPDIR": str(temporary)}
+    command = [*bare, sys.executable, "-c", code]
+    done = subprocess.run(command, capture_output=True, text=True, env=environ, check=False)
+    home.chmod(0o755)
+    assert done.stdout.strip() == "text 1", done.stderr
+    assert list(temporary.iterdir()) == list(home.iterdir()) == []

@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
 
-from hazard_ms.machine.drivers import install_commands, mirror, missing_packages
+from hazard_ms.machine.drivers import (
+    PRIVATE_LIBRARY,
+    PRIVATE_PACKAGE,
+    PRIVATE_SHA256,
+    install_commands,
+    mirror,
+    missing_packages,
+    private_lavapipe,
+    unpack_lavapipe,
+)
 from hazard_ms.machine.vulkan import Answer
 from tests.worlds.files.machines import ALL_LIBRARIES, NO_DRIVER, lavapipe, machine_at
 
@@ -27,6 +38,28 @@ def test_what_to_install(tmp_path: Path) -> None:
     ubuntu = machine_at(tmp_path / "ubuntu", None, ALL_LIBRARIES, "ubuntu 24.04")
     assert not any("-t" in command for command in install_commands(ubuntu, ["mesa-vulkan-drivers"]))
     assert missing_packages(ubuntu, lavapipe(25, 2, 8)) == []
+
+
+def test_a_package_with_another_hash_is_not_unpacked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A mirror in a folder serves a real package with a library in it, but not the one that we know."""
+    if shutil.which("dpkg-deb") is None:
+        pytest.skip("no dpkg-deb")
+    made, mirrored = tmp_path / "made", tmp_path / "mirror" / PRIVATE_PACKAGE
+    (made / "DEBIAN").mkdir(parents=True)
+    (made / "DEBIAN/control").write_text(
+        "Package: mesa-vulkan-drivers\nVersion: 1\nArchitecture: amd64\nMaintainer: nobody <n@x>\nDescription: x\n"
+    )
+    (made / PRIVATE_LIBRARY).parent.mkdir(parents=True)
+    (made / PRIVATE_LIBRARY).write_text("not the library")
+    mirrored.parent.mkdir(parents=True)
+    subprocess.run(["dpkg-deb", "--build", str(made), str(mirrored)], check=True, capture_output=True)
+    monkeypatch.setenv("HAZARD_MS_DEBIAN", (tmp_path / "mirror").as_uri())
+    with pytest.raises(ValueError, match=f"must have the SHA-256 {PRIVATE_SHA256}, got another file"):
+        unpack_lavapipe(tmp_path / "home" / "lavapipe")
+    assert private_lavapipe(tmp_path / "home") == {} and "could not be unpacked" in capsys.readouterr().err
+    assert not list((tmp_path / "home").rglob("*.so"))
 
 
 def test_where_debian_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,15 +1,13 @@
-"""The film and its panels: sizes, places and contents, with a decoder that is not the encoder's own."""
+"""The panels of the film: sizes, places and contents."""
 
 from __future__ import annotations
 
 import time
-from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 
-from hazard_ms.pictures.compositor import HEIGHT, MAIN, WIDTH, Compositor, Shot, Video
+from hazard_ms.pictures.compositor import HEIGHT, MAIN, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import ACCENT, BAD, BLUE, GOLD, GOOD, PANEL, paint, shorten, text_width, write
 from hazard_ms.pictures.panels import MapPanel, coloured, cover, hazard_panel, strongest
 from hazard_ms.sensing.semantic_map import SemanticMap
@@ -165,32 +163,3 @@ def test_text_is_drawn_where_it_is_aligned_and_cut_at_the_edge() -> None:
     assert (image[:5, 195:] == BAD).all() and image[5:, 195:].sum() == 0
     assert text_width(shorten("a very long name of a thing", 20, 100), 20) <= 100
     assert shorten("short", 20, 100) == "short"
-
-
-def test_a_written_video_plays(tmp_path: Path) -> None:
-    """Read back with OpenCV: as many frames as were written, in their order, H.264, with the index before the data."""
-    path = tmp_path / "new" / "out.mp4"
-    shades = [20, 90, 160, 230]
-    with Video(path, 30.0) as video:
-        for shade in shades:
-            video.add(np.full((HEIGHT, WIDTH, 3), shade, np.uint8))
-    data = path.read_bytes()
-    assert data[4:8] == b"ftyp" and 0 < data.find(b"moov") < data.find(b"mdat") and b"avc1" in data
-    reader = cv2.VideoCapture(str(path))
-    assert reader.get(cv2.CAP_PROP_FPS) == pytest.approx(30.0)
-    means = []
-    while (frame := reader.read())[0]:
-        assert frame[1].shape == (HEIGHT, WIDTH, 3)
-        means.append(float(frame[1].mean()))
-    assert means == pytest.approx(shades, abs=4)
-
-
-def test_frames_that_do_not_fit_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="positive"):
-        Video(tmp_path / "out.mp4", 0.0)
-    with Video(tmp_path / "out.mp4", 30.0) as video:
-        with pytest.raises(ValueError, match="float64"):
-            video.add(np.zeros((HEIGHT, WIDTH, 3)))
-        with pytest.raises(ValueError, match="uint8"):
-            video.add(np.zeros((10, 10, 3), np.uint8))
-        video.add(np.zeros((HEIGHT, WIDTH, 3), np.uint8))

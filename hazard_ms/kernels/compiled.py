@@ -1,0 +1,82 @@
+"""The folder of compiled kernels: what Warp finds there is what it once wrote, else it is compiled again.
+
+Warp takes any file with the right name for a compiled kernel. So a seal is kept beside each folder: the SHA-256 of each
+file in it, written last. A folder without its seal was left by a process that ended in between.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import hashlib
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from hazard_ms.machine.cache import home
+from hazard_ms.machine.files import write
+from hazard_ms.machine.progress import say
+
+
+def cache() -> str:
+    """The folder of compiled kernels; one for this process alone if the usual one cannot be written."""
+    place = home() / "kernels"
+    with contextlib.suppress(OSError):
+        place.mkdir(parents=True, exist_ok=True)
+    return str(place) if os.access(place, os.W_OK) else tempfile.mkdtemp(prefix="hazard_ms_kernels_")
+
+
+@contextlib.contextmanager
+def verified(folder: Path) -> Iterator[None]:
+    """Let Warp load or compile a module in `folder` in the block; what is damaged there is deleted before.
+
+    One process at a time does so. Raises ValueError where damaged files cannot be deleted.
+    """
+    with _locked(folder.parent):
+        seal = folder.with_name(f"{folder.name}.sha256")
+        if folder.is_dir() and not _whole(folder, seal):
+            say(f"compiled kernels in {folder} are damaged or unfinished; compiling them again")
+            try:
+                shutil.rmtree(folder)
+            except OSError as error:
+                raise ValueError(
+                    f"compiled kernels in {folder} must be whole, got others: {error.strerror}; delete this folder"
+                ) from None
+        yield
+        if not _whole(folder, seal):
+            with contextlib.suppress(ValueError):  # without a seal, the next process compiles again
+                write(seal, json.dumps(_digests(folder)))
+
+
+def _whole(folder: Path, seal: Path) -> bool:
+    """Whether the files in `folder` are those that were sealed."""
+    try:
+        sealed = json.loads(seal.read_bytes())
+    except FileNotFoundError:
+        return not os.access(folder.parent, os.W_OK)  # who set up a read-only folder answers for it
+    except (OSError, ValueError):
+        return False
+    return bool(sealed == _digests(folder))
+
+
+def _digests(folder: Path) -> dict[str, str]:
+    """The SHA-256 of each file in `folder`, by name; none where there is no folder."""
+    files = sorted(folder.iterdir()) if folder.is_dir() else []
+    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files if file.is_file()}
+
+
+@contextlib.contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Keep other processes from loading or compiling meanwhile, where `folder` can be locked."""
+    lock = -1
+    with contextlib.suppress(OSError):
+        lock = os.open(folder / ".lock", os.O_CREAT | os.O_RDWR | os.O_NOFOLLOW, 0o666)
+        fcntl.flock(lock, fcntl.LOCK_EX)
+    try:
+        yield
+    finally:
+        if lock >= 0:
+            os.close(lock)

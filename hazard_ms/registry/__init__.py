@@ -24,6 +24,7 @@ from typing import Any, TypeVar
 FRAMES = 1500  # of an episode [docs/benchmark.md 1]
 TASK_NAME = re.compile(r"[A-Za-z]\w*-v\d+")
 NAME = re.compile(r"[A-Za-z]\w*")
+AGENT_NAME = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)?")
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def register_task(name: str, maker: Any, max_frames: int = FRAMES) -> None:
     """
     if isinstance(max_frames, bool) or not isinstance(max_frames, int) or max_frames < 1:
         raise ValueError(f"max_frames must be a whole number from 1, got {max_frames!r}")
-    _add(_tasks, TaskEntry(name, maker, max_frames), TASK_NAME, "Name-v0")
+    _add(_tasks, TaskEntry(name, maker, max_frames), TASK_NAME, "'Name-v0'")
 
 
 def register_hazard(name: str, maker: Any, looks: Any = None, cases: Any = (), charts: Any = None) -> None:
@@ -107,8 +108,8 @@ def register_robot(name: str, robot: Any, uid: str | None = None) -> None:
 
 
 def register_agent(name: str, agent: Any) -> None:
-    """Add an agent. Raises ValueError for a name that is taken."""
-    _add(_agents, AgentEntry(name, agent))
+    """Add an agent. Its name may have two parts, "paper/greedy". Raises ValueError for a name that is taken."""
+    _add(_agents, AgentEntry(name, agent), AGENT_NAME, "'name' or 'group/name'")
 
 
 def unregister(entry: Entry) -> None:
@@ -180,9 +181,9 @@ def load_plugin(text: str) -> ModuleType:
     return module
 
 
-def _add(table: dict[str, _Kind], entry: _Kind, form: re.Pattern[str] = NAME, shown: str = "name") -> None:
+def _add(table: dict[str, _Kind], entry: _Kind, form: re.Pattern[str] = NAME, shown: str = "'name'") -> None:
     if not isinstance(entry.name, str) or not form.fullmatch(entry.name):
-        raise ValueError(f"a registered name must look like {shown!r}, got {entry.name!r}")
+        raise ValueError(f"a registered name must look like {shown}, got {entry.name!r}")
     if entry.name in table:
         if table[entry.name] == entry:
             return
@@ -224,3 +225,8 @@ register_robot("g1", "hazard_ms.robots.g1:HazardG1")
 
 register_agent("random", "hazard_ms.agents.random:Random")
 register_agent("greedy", "hazard_ms.agents.greedy:Greedy")
+register_agent("rule", "hazard_ms.agents.rule:Rule")
+register_agent("paper/greedy", "hazard_ms.agents.paper.greedy:Greedy")
+register_agent("paper/rule", "hazard_ms.agents.paper.rule:Rule")
+register_agent("paper/mcts", "hazard_ms.agents.paper.mcts:Mcts")
+register_agent("paper/mcts_diff", "hazard_ms.agents.paper.mcts_diff:MctsDiff")

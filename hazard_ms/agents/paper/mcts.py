@@ -1,0 +1,39 @@
+"""The paper's tree search: 2,000 simulated rescues of what it knows at each decision, then the best first option."""
+
+from __future__ import annotations
+
+from hazard_ms.agents.base import Agent
+from hazard_ms.agents.paper.memory import Pair, predicted_value
+from hazard_ms.agents.paper.search import TreeSearch
+from hazard_ms.checks import whole
+from hazard_ms.planning.tree import SIMULATIONS
+from hazard_ms.sensing.target_table import Target
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import Action, Decision
+
+MOST_SIMULATIONS = 10**6  # of a decision: any larger number is a slip of the pen [ours]
+
+
+class Mcts(Agent):
+    """Tree search with costs over predicted values, as the text of the paper says, or costs alone, as its code does."""
+
+    def __init__(self, value: bool = True, simulations: int = SIMULATIONS) -> None:
+        """`value`: divide costs by predicted values; `simulations`: of each decision.
+
+        Raises ValueError unless `simulations` is a positive whole number.
+        """
+        self._worth = predicted_value if value else _one
+        self._simulations = whole(simulations, 1, MOST_SIMULATIONS, "simulations")
+
+    def reset(self, brief: Brief) -> None:
+        """Begin an episode. All randomness of the search is fixed by `brief.random_seed`."""
+        self._search = TreeSearch(brief, self._worth, self._simulations)
+
+    def act(self, decision: Decision) -> Action:
+        """The option that the simulations rate best."""
+        action, self.note = self._search.act(decision)
+        return action
+
+
+def _one(target: Target, levels: dict[str, Pair]) -> float:
+    return 1.0

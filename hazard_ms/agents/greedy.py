@@ -1,4 +1,4 @@
-"""The paper's greedy agent: always the known target of the lowest cost; looks around when it knows none.
+"""Our greedy agent, after the paper's: always the known target of the lowest cost; looks around when it knows none.
 
     cost = (distance + HANDLING) * (1 + failures)^2 / predicted value
 

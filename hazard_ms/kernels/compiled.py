@@ -6,6 +6,7 @@ file in it, written last. A folder without its seal was left by a process that e
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import fcntl
 import hashlib
@@ -26,7 +27,11 @@ def cache() -> str:
     place = home() / "kernels"
     with contextlib.suppress(OSError):
         place.mkdir(parents=True, exist_ok=True)
-    return str(place) if os.access(place, os.W_OK) else tempfile.mkdtemp(prefix="hazard_ms_kernels_")
+    if os.access(place, os.W_OK):
+        return str(place)
+    own = tempfile.mkdtemp(prefix="hazard_ms_kernels_")
+    atexit.register(shutil.rmtree, own, ignore_errors=True)
+    return own
 
 
 @contextlib.contextmanager

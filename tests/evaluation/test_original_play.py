@@ -122,7 +122,7 @@ def test_greedy_takes_something_in_published_scenes(name: str, tmp_path: Path) -
     env = SkillEnv(made)
     decision, _ = env.reset(seed=0)
     player = agent("greedy")
-    player.reset(env.base.task, 0)
+    player.reset(env.brief())
     over = taken = False
     while not over and not taken:
         action = player.act(decision)

@@ -158,7 +158,8 @@ class Blaze(Hazard):
     def _exposure(self, state: BlazeState, fires: radiation.Fires, points: Tensor) -> tuple[Tensor, Tensor]:
         """Flux [kW/m^2] on surfaces facing heat and gas temperature [C], both [E, P], at `points` [m], [E, P, 3]."""
         kelvin = state.smoke_temperature + radiation.KELVIN
-        opaque = 1.0 - radiation.exponential(-state.smoke_density * (state.height - state.smoke_height))
+        depth = (state.height - state.smoke_height).clamp(min=0.0)
+        opaque = 1.0 - radiation.exponential(-state.smoke_density * depth)
         layer = opaque * radiation.STEFAN * (kelvin**4 - (self.room_temperature + radiation.KELVIN) ** 4)
         flux = radiation.flux(fires, points, state.height) + layer[:, None]
         inside = points[..., 2] > state.smoke_height[:, None]

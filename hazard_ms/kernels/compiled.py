@@ -35,6 +35,18 @@ def cache() -> str:
 
 
 @contextlib.contextmanager
+def writable(folder: str) -> Iterator[None]:
+    """Turn an OSError in the block into a ValueError that names the `folder` of compiled kernels and a remedy."""
+    try:
+        yield
+    except OSError as error:
+        raise ValueError(
+            f"compiled kernels must be kept where files can be written, got {folder}: {error.strerror or error}; "
+            "free some space, or set HAZARD_MS_HOME (or WARP_CACHE_PATH, if it is set) to another folder"
+        ) from None
+
+
+@contextlib.contextmanager
 def verified(folder: Path) -> Iterator[None]:
     """Let Warp load or compile a module in `folder` in the block; what is damaged there is deleted before.
 

@@ -19,7 +19,7 @@ import torch
 import warp as wp
 from torch import Tensor
 
-from hazard_ms.kernels.compiled import cache, verified
+from hazard_ms.kernels.compiled import cache, verified, writable
 from hazard_ms.machine.progress import slow
 
 # Options of Warp that every module of kernels sets
@@ -132,6 +132,7 @@ def _recorded(kernel: wp.Kernel, size: tuple[int, ...], arguments: tuple[Argumen
     with contextlib.ExitStack() as first:
         if (kernel, device.alias) not in _loaded:
             first.enter_context(slow("compiling kernels (once, about 10 s)"))
+            first.enter_context(writable(wp.config.kernel_cache_dir))
             first.enter_context(verified(Path(wp.config.kernel_cache_dir) / kernel.module.get_module_identifier(block)))
         launch = wp.launch(kernel, dim=size, inputs=arguments, device=device, block_dim=block, record_cmd=True)
     _loaded.add((kernel, device.alias))
@@ -176,7 +177,8 @@ def _begin() -> None:
     wp.config.log_level = wp.LOG_WARNING
     if "WARP_CACHE_PATH" not in os.environ:
         wp.config.kernel_cache_dir = cache()
-    with contextlib.nullcontext() if torch.cuda.is_available() else _without_a_word():
+    folder = wp.config.kernel_cache_dir or os.environ.get("WARP_CACHE_PATH", "")
+    with writable(folder), contextlib.nullcontext() if torch.cuda.is_available() else _without_a_word():
         wp.init()
 
 

@@ -127,7 +127,8 @@ def _locked(folder: Path) -> Iterator[list[Any]]:
             f"{folder} must be free, got another hazard-ms that writes to it: wait until it has ended"
         ) from None
     except OSError as error:
-        raise ValueError(f"{folder} cannot be written: {error}") from None
+        remedy = "free some space, or set HAZARD_MS_ASSETS to a folder on another disk"
+        raise ValueError(f"{folder} cannot be written: {error}; {remedy}") from None
     finally:
         os.close(lock)
 

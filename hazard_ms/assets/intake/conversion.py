@@ -13,7 +13,7 @@ from typing import Any
 
 from hazard_ms.assets.foreign import printable
 from hazard_ms.assets.intake.model import Model
-from hazard_ms.assets.intake.worker import PROCESSOR_TIME
+from hazard_ms.assets.intake.worker import PROCESSOR_TIME, UNWRITABLE
 from hazard_ms.assets.rows import Asset
 from hazard_ms.spec.catalogue import CATEGORIES
 
@@ -24,7 +24,8 @@ THREADS = "2"  # of each library: memory of threads counts, too [ours]
 def convert(model: Model, made: Path, size: float | None) -> dict[str, Any]:
     """Convert a model into the folder `made`, in a process of its own, and return what was measured on it.
 
-    Raises ValueError with its message, or if it crashed, hung, or needed more processor time than is allowed.
+    Raises ValueError with its message, or if it crashed, hung, or needed more processor time than is allowed;
+    OSError where its files could not be written.
     """
     order = {**dataclasses.asdict(model), "size": size, "kind": CATEGORIES[model.category].kind}
     package = str(Path(__file__).resolve().parents[3])
@@ -49,8 +50,10 @@ def convert(model: Model, made: Path, size: float | None) -> dict[str, Any]:
             f"{what} must be converted within {PROCESSOR_TIME} s of processor time, got no result: simplify it first"
         )
     facts = made / "facts.json"
+    last = printable((done.stderr.strip().splitlines() or ["no message"])[-1])
+    if done.returncode == UNWRITABLE:
+        raise OSError(last)
     if done.returncode != 0 or not facts.is_file():
-        last = printable((done.stderr.strip().splitlines() or ["no message"])[-1])
         raise ValueError(f"{what} could not be converted: the worker ended with {done.returncode}: {last:.300}")
     found: dict[str, Any] = json.loads(facts.read_text())
     facts.unlink()

@@ -14,6 +14,7 @@ from typing import Any
 MEMORY = 800_000_000  # of its own, at most [bytes]; with the libraries' code this is 1 GB [ours]
 PROCESSOR_TIME = 120  # at most [s]; 200,000 triangles take 50 [ours]
 WRITTEN = 256 << 20  # each file, at most [bytes] [ours]
+UNWRITABLE = 3  # exit code where the files of the model cannot be written
 
 
 def limit() -> None:
@@ -92,5 +93,14 @@ def main() -> int:
     return 0
 
 
+def told() -> int:
+    """Run `main`; a disk that is full is told in the last line of the standard error, with an exit code of its own."""
+    try:
+        return main()
+    except OSError as error:
+        print(error.strerror or error, file=sys.stderr)
+        return UNWRITABLE
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(told())

@@ -36,7 +36,7 @@ def cache() -> str:
 
 @contextlib.contextmanager
 def writable(folder: str) -> Iterator[None]:
-    """Turn an OSError in the block into a ValueError that names the `folder` of compiled kernels and a remedy."""
+    """Raises ValueError for an OSError in the block, with the `folder` of compiled kernels and a remedy."""
     try:
         yield
     except OSError as error:

@@ -78,7 +78,7 @@ def test_missing_shadows_are_noticed(env_id: str, monkeypatch: pytest.MonkeyPatc
 def test_a_missing_effect_is_noticed(env_id: str, part: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Flames, smoke, firelight; the water's surface, and what is seen through water; haze and streaks."""
     env = started(env_id)
-    (effects,) = env.observer.effects._parts.values()
+    (effects,) = env.observer.display.effects._parts.values()
     (shown,) = effects._scenes
     nothing: Callable[..., None] = lambda *_: None  # noqa: E731
     if part.startswith("show_"):

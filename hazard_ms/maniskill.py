@@ -16,8 +16,8 @@ import runpy
 import sys
 from collections.abc import Sequence
 
-from hazard_ms.checks import one_of
 from hazard_ms.registry import load_plugin
+from hazard_ms.spec.checks import one_of
 
 PACKAGES = ("mani_skill.trajectory", "mani_skill.examples", "mani_skill.utils")  # where short names are looked up
 

@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from hazard_ms.checks import one_of
 from hazard_ms.registry import AGENTS, load, load_plugin
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
+from hazard_ms.spec.checks import one_of
 
 FLAGS = {"true": True, "false": False}
 LONGEST_NOTE = 2000  # characters of a note that are kept [ours]

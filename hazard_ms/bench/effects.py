@@ -12,8 +12,8 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
-from hazard_ms.checks import whole
 from hazard_ms.evaluation.options import EnvOptions
+from hazard_ms.spec.checks import whole
 
 MODES = ("off", "fast", "full")  # the first is what the others are compared with
 SIDE = 256  # of the picture [pixels]

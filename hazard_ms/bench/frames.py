@@ -15,12 +15,12 @@ import gymnasium as gym
 import numpy as np
 
 from hazard_ms.agents.base import agent
-from hazard_ms.checks import whole
 from hazard_ms.evaluation.options import EnvOptions
 from hazard_ms.evaluation.report import machine_line
 from hazard_ms.evaluation.runner import Runner
 from hazard_ms.skills.decision import EXPLORE, Action
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.spec.checks import whole
 
 PHASES = ("read", "force", "push", "physics", "advance", "hand", "robot", "observe")
 HOOKS = ("force", "advance")  # what hazards do, "damaged" included

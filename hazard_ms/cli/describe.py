@@ -38,9 +38,9 @@ def describe(
         json: Print everything as JSON.
         markdown: Print the page docs/observations.md, which describes all environments, instead.
     """
-    from hazard_ms.checks import one_of
     from hazard_ms.skills.options.description import lines, plain, sections_of
     from hazard_ms.skills.options.interface_page import page
+    from hazard_ms.spec.checks import one_of
 
     for module in load:
         load_plugin(module)

@@ -89,8 +89,8 @@ def check(
         all: All scenes.
         workers: Processes that check at the same time.
     """
-    from hazard_ms.checks import whole
     from hazard_ms.cli.scene_checks import check_all
+    from hazard_ms.spec.checks import whole
 
     _only_one_of(bool(names), bool(split or family), all)
     whole(workers, 1, MOST_WORKERS, "workers")
@@ -118,8 +118,8 @@ def names_of(split: str, family: str) -> tuple[str, ...]:
 
     Raises ValueError for an unknown split or family.
     """
-    from hazard_ms.checks import one_of
     from hazard_ms.scenes.splits import families, scene_names, split_names
+    from hazard_ms.spec.checks import one_of
 
     wanted = (one_of(family, families(), "family"),) if family else families()
     known = dict.fromkeys(s for f in wanted for s in split_names(f))

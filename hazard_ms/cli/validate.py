@@ -23,7 +23,7 @@ def validate(
         quick: Leave out the cases that take more than a second or two.
         load: Modules, or files NAME.py, that register hazards of your own.
     """
-    from hazard_ms.checks import one_of
+    from hazard_ms.spec.checks import one_of
     from hazard_ms.validation.report import validate as run
 
     for module in load:

@@ -11,7 +11,6 @@ from mani_skill.sensors.camera import CameraConfig
 from mani_skill.utils.structs.types import SimConfig
 from torch import Tensor
 
-from hazard_ms import checks
 from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.grasp import Hand
 from hazard_ms.episode.situation import Situation
@@ -24,7 +23,7 @@ from hazard_ms.simulation import building, clearance
 from hazard_ms.simulation.lighting import Lighting
 from hazard_ms.simulation.viewpoint import corner_view
 from hazard_ms.simulation.world import World
-from hazard_ms.spec import SceneSpec, Task
+from hazard_ms.spec import SceneSpec, Task, checks
 
 SPACING = 60.0  # between the scenes of a batch: nothing reaches a neighbour [m] [ours]
 

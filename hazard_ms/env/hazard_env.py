@@ -13,7 +13,6 @@ from gymnasium.envs.registration import EnvSpec
 from mani_skill.utils.common import to_numpy
 from torch import Tensor
 
-from hazard_ms import checks
 from hazard_ms.env import inputs, keywords, states
 from hazard_ms.env.built import BuiltEnv
 from hazard_ms.env.spaces import bounded
@@ -26,6 +25,7 @@ from hazard_ms.scenes.files import playing
 from hazard_ms.sensing.modes import finite
 from hazard_ms.sensing.observation_table import ObservationTable
 from hazard_ms.simulation.lighting import LIGHTINGS
+from hazard_ms.spec import checks
 from hazard_ms.tasks import task_of
 
 EFFECTS = ("full", "fast", "off")

@@ -7,10 +7,10 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms import checks
 from hazard_ms.env import states
 from hazard_ms.env.built import BuiltEnv
 from hazard_ms.episode import snapshot
+from hazard_ms.spec import checks
 
 STATES = "reset_to_env_states"
 

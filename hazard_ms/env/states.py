@@ -12,10 +12,10 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms import checks
 from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.snapshot import WORD
 from hazard_ms.hazards.base import State
+from hazard_ms.spec import checks
 
 FARTHEST = 1e6  # largest number of a body or a joint, in its SI unit; its square is far from float32's end [ours]
 LARGEST = {"float": 1e9, "int": 1e13}  # finite numbers of a hazard go up to it, in their units [ours]

@@ -40,7 +40,7 @@ class EnvOptions:
 
     def check(self) -> None:
         """Load the modules of `load`, and check every name. Raises ValueError for what cannot be played."""
-        from hazard_ms.checks import one_of  # loads torch
+        from hazard_ms.spec.checks import one_of  # loads torch
 
         for module in self.load:
             registry.load_plugin(module)
@@ -113,7 +113,7 @@ class PlayOptions:
 
     def check(self) -> None:
         """Check all options. Raises ValueError for what cannot be played."""
-        from hazard_ms.checks import whole
+        from hazard_ms.spec.checks import whole
 
         self.episode.check()
         whole(self.every, 1, MOST, "every")
@@ -139,7 +139,7 @@ class SweepOptions:
 
     def episode_options(self) -> list[EpisodeOptions]:
         """The episodes, seed by seed. Raises ValueError for what cannot be played."""
-        from hazard_ms.checks import whole
+        from hazard_ms.spec.checks import whole
 
         whole(self.episodes, 1, MOST, "episodes")
         whole(self.seed, 0, MOST, "seed")

@@ -41,7 +41,7 @@ class RenderOptions:
 
     def check(self) -> None:
         """Check all options. Raises ValueError for what cannot be drawn."""
-        from hazard_ms.checks import whole  # loads torch
+        from hazard_ms.spec.checks import whole  # loads torch
 
         self.episode.check()
         whole(self.frame, 0, self.episode.max_frames, "frame")
@@ -55,7 +55,7 @@ class RenderOptions:
 
     def pixels(self) -> tuple[int, int]:
         """Width and height [pixels]. Raises ValueError for a text that is not a size."""
-        from hazard_ms.checks import whole
+        from hazard_ms.spec.checks import whole
 
         parts = self.size.lower().split("x")
         if len(parts) > 2 or not all(p.isdigit() for p in parts):
@@ -81,7 +81,7 @@ class GalleryOptions:
 
     def check(self) -> None:
         """Check all options. Raises ValueError for what cannot be made."""
-        from hazard_ms.checks import whole
+        from hazard_ms.spec.checks import whole
 
         whole(self.spp, 1, MOST_SAMPLES, "spp")
         if self.output.exists() and not self.output.is_dir():

@@ -132,7 +132,7 @@ def follow(added: Callable[[Entry], None], removed: Callable[[Entry], None] = la
 
 def find(table: Mapping[str, _Kind], name: Any, what: str) -> _Kind:
     """The entry called `name` in one of the tables above. Raises ValueError for others, which says `what` it is."""
-    from hazard_ms.checks import one_of  # loads numpy
+    from hazard_ms.spec.checks import one_of  # loads numpy
 
     return table[one_of(name, table, what)]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from hazard_ms.checks import one_of
 from hazard_ms.registry import ROBOTS, load
+from hazard_ms.spec.checks import one_of
 
 
 def robot_name(value: Any) -> str:

@@ -17,8 +17,8 @@ from mani_skill.agents.controllers.base_controller import CombinedController
 from numpy.typing import NDArray
 from torch import Tensor
 
-from hazard_ms.checks import one_of
 from hazard_ms.robots.robot import Robot
+from hazard_ms.spec.checks import one_of
 
 FORWARD_STEP = 1.0 / 62.0  # walking speed of the benchmark [m per frame]
 TURN_STEP = float(np.deg2rad(6.0))  # turning speed of the benchmark [rad per frame]

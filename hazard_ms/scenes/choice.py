@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from hazard_ms.checks import one_of
 from hazard_ms.spec import Task
+from hazard_ms.spec.checks import one_of
 
 LISTING = "`hazard-ms scenes list` prints all"
 

@@ -17,11 +17,11 @@ import typing
 from collections import Counter
 from typing import Any, NoReturn
 
-from hazard_ms.checks import one_of
 from hazard_ms.scenes.shell import shell
 from hazard_ms.scenes.walls import WALLS
 from hazard_ms.spec import Body, Fixture, SceneSpec
 from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.checks import one_of
 
 FORMAT = 1  # goes up when older files can no longer be read
 LARGEST_FILE = 4_000_000  # [characters]; a scene of 100 things has 30,000

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from hazard_ms.checks import one_of
 from hazard_ms.scenes.materials import MATERIALS
 from hazard_ms.scenes.walls import WALL_THICKNESS, WALLS, check, on_wall, runs_along_x, thickness_of, wall_length
 from hazard_ms.spec import Opening, Patch, Room, Vec3
+from hazard_ms.spec.checks import one_of
 
 FRAME = 0.05  # width of door and window frames [m]
 SKIRTING = (0.08, 0.012)  # height, thickness [m]

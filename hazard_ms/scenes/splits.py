@@ -6,9 +6,9 @@ import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from hazard_ms.checks import one_of
 from hazard_ms.scenes.generate import indoor, outdoor
 from hazard_ms.spec import SceneSpec
+from hazard_ms.spec.checks import one_of
 
 SCENES = 25  # of every place [HAZARD, section 4.1]
 

@@ -7,7 +7,7 @@ from typing import Any
 import torch
 from mani_skill.envs.utils.observations import parse_obs_mode_to_struct
 
-from hazard_ms.checks import one_of
+from hazard_ms.spec.checks import one_of
 
 # names of modes, of which the first three need no renderer, and of textures, which can be joined by "+"
 PLAIN_MODES = ("state", "state_dict", "none", "sensor_data", "pointcloud")

@@ -19,11 +19,11 @@ from sapien.render import RenderBodyComponent
 from torch import Tensor
 
 from hazard_ms.assets.index import asset, asset_path
-from hazard_ms.checks import one_of
 from hazard_ms.simulation.building import extent_of, lamp_places
 from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.names import plain_name
 from hazard_ms.spec import SceneSpec, Vec3
+from hazard_ms.spec.checks import one_of
 
 DRAWN = ("day", "evening", "night", "failing")  # what "random" chooses from
 LIGHTINGS = (*DRAWN, "random")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from hazard_ms import checks
+from hazard_ms.spec import checks
 
 MODES = {"pd_joint_pos": 3, "pd_ee_delta_pos": 2}
 

@@ -22,7 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from hazard_ms.checks import one_of
+from hazard_ms.spec.checks import one_of
 from tests.mutations.choosing import stages
 from tests.mutations.reading import Mutation, listed
 from tests.project.imports import ROOT

@@ -12,7 +12,7 @@ import pytest
 
 import hazard_ms
 from hazard_ms import registry
-from hazard_ms.checks import one_of
+from hazard_ms.spec.checks import one_of
 from hazard_ms.tasks import task_of
 from tests.worlds.registering import loaded, registered_task
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from hazard_ms.agents.base import Agent
 from hazard_ms.agents.paper.memory import Pair, predicted_value
 from hazard_ms.agents.paper.search import TreeSearch
-from hazard_ms.checks import whole
 from hazard_ms.planning.tree import SIMULATIONS
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
+from hazard_ms.spec.checks import whole
 
 MOST_SIMULATIONS = 10**6  # of a decision: any larger number is a slip of the pen [ours]
 

@@ -21,13 +21,13 @@ import torch
 from mani_skill.render import PREBUILT_SHADER_CONFIGS, ShaderConfig
 from torch import Tensor
 
-from hazard_ms.checks import one_of
 from hazard_ms.effects.shaders.char import CHAR, CHAR_DEFERRED, CHAR_FORWARD
 from hazard_ms.effects.shaders.common import EFFECT_FRAG, EFFECT_VERT
 from hazard_ms.effects.shaders.shimmer import AIR_FRAG, AIR_VERT, BEND
 from hazard_ms.effects.shaders.sway import STILL, SWAY_FRAG, SWAY_VERT
 from hazard_ms.effects.shaders.water import IMMERSE, IMMERSE_DEFERRED, IMMERSE_FORWARD
 from hazard_ms.machine.cache import kept_folder
+from hazard_ms.spec.checks import one_of
 
 NAMES = {"full": "hazard", "fast": "hazard-fast", "off": "default"}  # effects mode -> shader pack of the cameras
 EFFECT_PASS = 2  # shading mode of effect geometry: no stock pack has this pass, so none draws it

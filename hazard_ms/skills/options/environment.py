@@ -13,7 +13,6 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.checks import flag, one_of, whole
 from hazard_ms.env import inputs
 from hazard_ms.machine.render_backend import backend
 from hazard_ms.skills.context import Skill, Stage
@@ -23,6 +22,7 @@ from hazard_ms.skills.options.features import Encoder
 from hazard_ms.skills.options.macros import play
 from hazard_ms.skills.options.options import COUNT, Menu, Option, Options
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
+from hazard_ms.spec.checks import flag, one_of, whole
 
 ACTIONS = ("options",)
 FIXED = ("obs_mode", "reward_mode", "num_envs", "control_mode")  # keywords that skills decide

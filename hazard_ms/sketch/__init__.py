@@ -1,0 +1,1 @@
+"""Rescues without a simulator: for planning, training and analysis; it never scores an agent."""

@@ -11,10 +11,10 @@ ASSETS = "hazard_ms._assets"
 
 def version() -> str:
     """`__version__` of hazard_ms, read without importing it."""
-    for node in ast.parse((ROOT / "hazard_ms/__init__.py").read_text(encoding="utf-8")).body:
+    for node in ast.parse((ROOT / "hazard_ms/registry/version.py").read_text(encoding="utf-8")).body:
         if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__version__":
             return str(ast.literal_eval(node.value))
-    raise ValueError("hazard_ms/__init__.py has no __version__")
+    raise ValueError("hazard_ms/registry/version.py has no __version__")
 
 
 def asset_files() -> list[str]:
@@ -64,6 +64,7 @@ setup(
         "llm": ["openai>=3.54"],  # language models behind an OpenAI-compatible server
         "perception": ["pycocotools>=2.0.11"],  # COCO labels and average precision
         "demos": ["pyarrow>=25", "av>=17", "minari>=0.5.3"],  # demonstrations as LeRobot and Minari data sets
+        "cluster": ["ray>=2.60"],  # episodes on many machines: hazard-ms evaluate --backend ray
         "pictures": ["pyoidn>=2.5", "cffi>=1.0"],  # takes the grain out of ray-traced pictures
         "docs": ["sphinx>=8.1", "myst-parser>=4.0", "furo>=2025.12"],
         "test": [

@@ -16,8 +16,7 @@ from typing import Any
 
 from hazard_ms.registry import load, register_agent, register_hazard, register_robot, register_task
 from hazard_ms.registry.announce import announce
-
-__version__ = "0.1.0"
+from hazard_ms.registry.version import __version__
 
 _LAZY = {  # imported when they are first asked for: they need torch, SAPIEN and ManiSkill
     "Action": "hazard_ms.skills.decision:Action",

@@ -13,7 +13,7 @@ import sys
 import typing
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.spec.checks import one_of
+
+if TYPE_CHECKING:
+    from hazard_ms.skills.executor import SkillEnv
 
 FLAGS = {"true": True, "false": False}
 LONGEST_NOTE = 2000  # characters of a note that are kept [ours]
@@ -35,6 +38,7 @@ class Agent(abc.ABC):
     """
 
     note: str | None = ""
+    privileged: ClassVar[bool] = False  # whether it may see what is hidden: only subclasses of PrivilegedAgent do
 
     @abc.abstractmethod
     def reset(self, brief: Brief) -> None:
@@ -43,6 +47,16 @@ class Agent(abc.ABC):
     @abc.abstractmethod
     def act(self, decision: Decision) -> Action:
         """The next action; called again when that has ended."""
+
+
+class PrivilegedAgent(Agent):
+    """An agent that sees what is hidden from all others, for upper lines that honest agents are compared with."""
+
+    privileged: ClassVar[bool] = True
+
+    @abc.abstractmethod
+    def attach(self, env: SkillEnv) -> None:
+        """Take the environment in which an episode has just begun; called before `reset`."""
 
 
 def note_of(player: Agent) -> str:

@@ -14,15 +14,17 @@ from typing import Any
 
 import tyro
 
-from hazard_ms import __version__
 from hazard_ms.assets.foreign import printable
 from hazard_ms.cli.assets import AssetCommand
 from hazard_ms.cli.bench import bench
 from hazard_ms.cli.describe import describe
-from hazard_ms.cli.episodes import evaluate, play
+from hazard_ms.cli.episodes import evaluate, play, replay
 from hazard_ms.cli.pictures import gallery, render
+from hazard_ms.cli.report import report
 from hazard_ms.cli.scenes import SceneCommand
+from hazard_ms.cli.sketch import SketchCommand
 from hazard_ms.cli.validate import validate
+from hazard_ms.registry.version import __version__
 
 DESCRIPTION = (
     "Rescue tasks in fire, flood and wind. `hazard-ms COMMAND --help` describes a command, --version the version."
@@ -66,6 +68,11 @@ def assets(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[Asse
     return int(done)
 
 
+def sketch(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[SketchCommand]]) -> int:
+    """Rescues without a simulator: fit skill times, check against real episodes, speed."""
+    return int(done)
+
+
 COMMANDS: dict[str, Callable[..., Any]] = {
     "doctor": doctor,
     "version": version,
@@ -73,11 +80,14 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "render": render,
     "gallery": gallery,
     "evaluate": evaluate,
+    "replay": replay,
+    "report": report,
     "describe": describe,
     "bench": bench,
     "validate": validate,
     "scenes": scenes,
     "assets": assets,
+    "sketch": sketch,
 }
 
 

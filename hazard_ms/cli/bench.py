@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 from hazard_ms import registry
@@ -18,6 +19,10 @@ def bench(
     episode: bool = True,
     effects: Annotated[bool, flag("--effects", old="looks")] = False,
     kernels: bool = False,
+    pickups: bool = False,
+    robot: Annotated[str, offer(registry.ROBOTS), flag("-r")] = "fetch",
+    count: Annotated[int, flag("-n")] = 500,
+    output: Annotated[Path | None, flag("-o", "--output", old="out")] = None,
 ) -> int:
     """Print where the time of a frame goes, phase by phase, and how long a greedy episode takes, with the machine.
 
@@ -28,11 +33,17 @@ def bench(
         episode: Also play a whole greedy episode.
         effects: Only print what the effects of each mode cost in a picture.
         kernels: Only print what the kernels of flood and wind cost for 1,024 environments of 64 bodies on one thread.
+        pickups: Only print how often picking up and putting away work, and how many frames they take.
+        robot: Robot that picks up.
+        count: Number of targets that it picks up.
+        output: File for what each pick-up and drop cost, one JSON object a line.
     """
     if kernels:
         from hazard_ms.bench.kernels import report as report_kernels
 
         print(report_kernels())
+    elif pickups:
+        _pickups(env_id, robot, count, seed, output)
     elif effects:
         from hazard_ms.bench.effects import report as report_effects
 
@@ -42,3 +53,17 @@ def bench(
 
         print(report(env_id, frames, seed, episode))
     return 0
+
+
+def _pickups(env_id: str, robot: str, count: int, seed: int, output: Path | None) -> None:
+    from tqdm import tqdm
+
+    from hazard_ms.bench.pickups import handlings, lines, report
+    from hazard_ms.machine.files import drafts, make_folder
+
+    made = list(tqdm(handlings(env_id, robot, count, seed), desc=robot, mininterval=5.0))
+    print(report(made))
+    if output is not None:
+        make_folder(output.parent)
+        with drafts(output) as (file,):
+            file.write(lines(made))

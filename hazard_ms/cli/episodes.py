@@ -1,4 +1,4 @@
-"""The commands `hazard-ms play` and `hazard-ms evaluate`; each imports what it needs when it is called."""
+"""The commands `hazard-ms play`, `evaluate` and `replay`; each imports what it needs when it is called."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from hazard_ms.evaluation.options import EpisodeOptions, PlayOptions, SweepOptions
+from hazard_ms.evaluation.options import EpisodeOptions, PlayOptions, ReplayOptions, SweepOptions
 
 if TYPE_CHECKING:
     from hazard_ms.evaluation.result import EpisodeResult
@@ -61,13 +61,26 @@ def _filmed(episode: EpisodeOptions, path: Path, every: int) -> EpisodeResult:
 
 
 def evaluate(options: Annotated[tyro.conf.OmitArgPrefixes[SweepOptions], tyro.conf.arg(name="")]) -> int:
-    """Play agents on the scenes of a split; print the scores with 95 % intervals.
+    """Play agents on the scenes of a split or a folder; print the scores with 95 % intervals.
 
     Resumes an interrupted run: episodes whose files are there are not played again. Ends with 1 if a simulation broke,
-    or an agent failed so that an episode has no result.
+    or an agent failed in an episode.
     """
     from hazard_ms.agents.base import user_path
     from hazard_ms.evaluation.sweep import evaluate as run
+
+    user_path()
+    return run(options)
+
+
+def replay(options: Annotated[tyro.conf.OmitArgPrefixes[ReplayOptions], tyro.conf.arg(name="")]) -> int:
+    """Simulate recorded episodes again by their decisions, in new processes, and compare with what was recorded.
+
+    exact: all hashes are equal; same score: every target has the same fate, as on another kind of processor. Ends with
+    1 if an episode is different.
+    """
+    from hazard_ms.agents.base import user_path
+    from hazard_ms.evaluation.replay import replay as run
 
     user_path()
     return run(options)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import tyro
 
+from hazard_ms import registry
 from hazard_ms.evaluation.choices import SPLITS, flag, offer
 
 FAMILIES = ("indoor", "outdoor")
@@ -113,6 +114,29 @@ def bring(
     return import_scenes(paths, output)
 
 
+def reach(
+    names: tyro.conf.Positional[tuple[str, ...]] = (),
+    robots: Annotated[tuple[Annotated[str, offer(registry.ROBOTS)], ...], flag("-r")] = tuple(registry.ROBOTS),
+    split: Split = "",
+    family: Family = "",
+    all: bool = False,
+) -> int:
+    """Print which targets of scenes robots can get at: through the gaps of the furniture, with their arm's length.
+
+    Args:
+        names: Scenes, JSON files that hold one, or folders of such files.
+        robots: Robots.
+        split: All scenes of a split.
+        family: indoor or outdoor; empty for both.
+        all: All scenes.
+    """
+    from hazard_ms.cli.scene_reach import print_reach
+
+    _only_one_of(bool(names), bool(split or family), all)
+    print_reach(names or names_of(split, family), robots)
+    return 0
+
+
 def names_of(split: str, family: str) -> tuple[str, ...]:
     """Names of the scenes of a split, of a family, or of both; of all where both are empty.
 
@@ -130,7 +154,7 @@ def names_of(split: str, family: str) -> tuple[str, ...]:
 
 def _only_one_of(*given: bool) -> None:
     if sum(given) != 1:
-        raise ValueError("scenes to check must be given as names, or by --split and --family, or by --all")
+        raise ValueError("scenes must be given as names, or by --split and --family, or by --all")
 
 
 SceneCommand = (
@@ -138,5 +162,6 @@ SceneCommand = (
     | Annotated[int, tyro.conf.subcommand(name="make", constructor=make)]
     | Annotated[int, tyro.conf.subcommand(name="show", constructor=show)]
     | Annotated[int, tyro.conf.subcommand(name="check", constructor=check)]
+    | Annotated[int, tyro.conf.subcommand(name="reach", constructor=reach)]
     | Annotated[int, tyro.conf.subcommand(name="import", constructor=bring)]
 )

@@ -97,7 +97,8 @@ def surface_corners(spec: SceneSpec) -> tuple[np.ndarray, np.ndarray]:
     cuts = [sorted([low, high[k], *(p.at for p in room.partitions if p.axis == "yx"[k])]) for k in (0, 1)]
     corners = []
     for (x0, x1), (y0, y1) in itertools.product(*(itertools.pairwise(c) for c in cuts)):
-        count = [math.ceil((b - a) / MESH_CELL) if room.partitions else 1 for a, b in ((x0, x1), (y0, y1))]
+        bent = room.partitions or spec.second_flood_side is not None  # else the surface is one plane
+        count = [math.ceil((b - a) / MESH_CELL) if bent else 1 for a, b in ((x0, x1), (y0, y1))]
         xs, ys = (
             np.linspace(a + INSIDE, b - INSIDE, n + 1) for (a, b), n in zip(((x0, x1), (y0, y1)), count, strict=True)
         )

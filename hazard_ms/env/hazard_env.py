@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
@@ -19,6 +20,7 @@ from hazard_ms.env.spaces import bounded
 from hazard_ms.episode import rewards, snapshot
 from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
+from hazard_ms.registry import TASKS
 from hazard_ms.registry.announce import importable
 from hazard_ms.scenes.choice import SceneChoice, SceneTurns
 from hazard_ms.scenes.files import playing
@@ -67,7 +69,7 @@ class HazardEnv(BuiltEnv):
 
         Args:
             task: Name of the task; gym.make fills it in.
-            split: Which scenes the seeds choose from.
+            split: Which scenes the seeds choose from, and how long episodes last.
             scenes: JSON file of a scene, folder of them, or list of both: the seeds choose from these instead.
             physics: Preset of the hazards.
             hazards: Of HazardCompound-v1: some of the registered hazards.
@@ -88,9 +90,10 @@ class HazardEnv(BuiltEnv):
         """
         keywords.check_names(maniskill_keywords, HazardEnv.__init__)
         self.physics = checks.one_of(physics, PRESETS, "physics")
-        self.task = playing(task_of(task, self.physics, hazards), scenes)
+        made = playing(task_of(task, self.physics, hazards), scenes)
+        self.choice = SceneChoice(made, split)
+        self.task = dataclasses.replace(made, max_frames=TASKS[task].frames(split))
         self._most_frames = self.task.max_frames
-        self.choice = SceneChoice(self.task, split)
         self.affects_agent = checks.flag(affects_agent, "affects_agent")
         self.deterministic = checks.flag(deterministic, "deterministic")
         self.effects_mode = checks.one_of(effects, EFFECTS, "effects")
@@ -173,6 +176,10 @@ class HazardEnv(BuiltEnv):
         joints = self.agent.robot.active_joints
         return ObservationTable(joints, self.task.observations, levels, self._most_frames)
 
+    def limit_of(self, frames: int) -> int:
+        """The limit that gymnasium means by `frames`: that of the split where it is the task's usual one."""
+        return self.task.max_frames if frames == TASKS[self.task.name].max_frames else frames
+
     def allow_frames(self, frames: int) -> None:
         """Let episodes have up to `frames`, if that is more than the task has: a bound of observations."""
         if frames > self._most_frames:
@@ -196,8 +203,7 @@ class HazardEnv(BuiltEnv):
         obs = super()._get_obs_with_sensor_data(info, apply_texture_transforms)
         for seen in obs["sensor_data"].values():
             if "segmentation" in seen:
-                # as ManiSkill's own, whatever the shaders give
-                seen["segmentation"] = seen["segmentation"].to(torch.int16)
+                seen["segmentation"] = seen["segmentation"].to(torch.int16)  # as ManiSkill's, for all shaders
         return self.observer.add_hazard_image(obs, in_extra=self.obs_mode == "pointcloud")
 
     def render(self) -> Any:

@@ -14,9 +14,8 @@ from torch import Tensor
 
 from hazard_ms.hazards.base import State, none_set, quantity
 from hazard_ms.simulation.world import World, rotate
+from hazard_ms.spec.robot import GRASP_REACH
 
-# greatest distance from the gripper to the surface of the thing's box [m] [ours]; Fetch's fingers are 0.06 m long
-GRASP_REACH = 0.15
 PUT_AWAY_HEIGHT = -10.0  # height at which things in the bag wait, out of sight and out of reach [m]
 
 

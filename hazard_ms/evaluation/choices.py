@@ -16,7 +16,9 @@ from tyro.constructors import PrimitiveConstructorSpec
 PRESETS = ("paper", "shipped", "realistic")
 LIGHTINGS = ("day", "evening", "night", "failing", "random")
 EFFECTS = ("full", "fast", "off")
-SPLITS = ("train", "test", "large", "new_objects")
+SPLITS = ("train", "test", "large", "new_objects", "hard")
+
+BACKENDS = ("serial", "local", "ray")  # where episodes are played
 
 
 class Offered(tuple[str, ...]):

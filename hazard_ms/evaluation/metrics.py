@@ -33,6 +33,7 @@ class Fate:
     rescued: bool
     damaged: bool  # when it was rescued, or at the end
     frame: int | None = None  # of the rescue
+    damaged_frame: int | None = None  # of the first damage
 
     def __post_init__(self) -> None:
         if self.rescued != (self.frame is not None):
@@ -111,7 +112,7 @@ def scores(tallies: Sequence[Tally], seed: int = 0, resamples: int = RESAMPLES) 
         raise ValueError("tallies must be those of at least one episode, got none")
     chosen = np.random.default_rng(seed).integers(len(tallies), size=(resamples, len(tallies)))
     drawn = _resampled(tallies, chosen)
-    return {name: _interval(compute(tallies), drawn[name]) for name, compute in SCORES.items()}
+    return {name: interval(compute(tallies), drawn[name]) for name, compute in SCORES.items()}
 
 
 def _resampled(tallies: Sequence[Tally], chosen: NDArray[np.int64]) -> dict[str, NDArray[np.float64]]:
@@ -129,7 +130,8 @@ def _resampled(tallies: Sequence[Tally], chosen: NDArray[np.int64]) -> dict[str,
         }
 
 
-def _interval(mean: float | None, drawn: NDArray[np.float64]) -> Score:
+def interval(mean: float | None, drawn: NDArray[np.float64]) -> Score:
+    """The score `mean` and its 95 % interval, given that of each resample, `drawn` [R]; NaN where it is undefined."""
     defined = drawn[np.isfinite(drawn)]
     if mean is None or not len(defined):
         return Score(mean, None, None)

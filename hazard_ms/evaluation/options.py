@@ -8,11 +8,16 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Any
 
-from hazard_ms import registry
-from hazard_ms.evaluation.choices import EFFECTS, LIGHTINGS, PRESETS, SPLITS, flag, offer
+import tyro
 
+from hazard_ms import registry
+from hazard_ms.evaluation.choices import BACKENDS, EFFECTS, LIGHTINGS, PRESETS, SPLITS, flag, offer
+
+SCENE_FILE = ".json"  # how names of scene files end
+EPISODES = 25  # of every agent, unless another number is asked for: a split of the original has as many scenes
 MOST = 10**6  # episodes, seeds and frames between pictures: any larger number is a slip of the pen [-] [ours]
 MOST_WORKERS = 1024  # processes [ours]
+LONGEST_DECISION = 86_400.0  # [s] [ours]
 
 
 @dataclass(frozen=True)
@@ -22,7 +27,7 @@ class EnvOptions:
     env_id: Annotated[str, offer(registry.TASKS), flag("-e")] = "HazardFire-v1"
     """Task."""
     split: Annotated[str, offer(SPLITS)] = "train"
-    """Split from which seeds choose scenes; large and new_objects are for tasks in rooms."""
+    """Split from which seeds choose scenes; large and new_objects are for tasks in rooms; in hard, time is shorter."""
     physics: Annotated[str, offer(PRESETS)] = "paper"
     """Preset of the hazards."""
     hazards: tuple[Annotated[str, offer(registry.HAZARDS)], ...] = ()
@@ -55,7 +60,7 @@ class EnvOptions:
     @property
     def max_frames(self) -> int:
         """Frames of an episode, at most."""
-        return registry.TASKS[self.env_id].max_frames
+        return registry.TASKS[self.env_id].frames(self.split)
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -86,12 +91,21 @@ class EpisodeOptions(EnvOptions):
     seed: Annotated[int, flag("-s")] = 0
     """Seed of the episode."""
     scene: str | None = None
-    """Scene; chosen by the seed if not given."""
+    """Scene, a name or a file NAME.json; chosen by the seed if not given."""
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Keywords of gym.make that change the episode, the file of its scene among them if it has one."""
+        return {**super().settings, "scenes": self.scene} if self._from_file else super().settings
 
     @property
     def reset_options(self) -> dict[str, Any]:
         """Argument `options` of the environment's reset."""
-        return {} if self.scene is None else {"scene": self.scene}
+        return {} if self.scene is None or self._from_file else {"scene": self.scene}
+
+    @property
+    def _from_file(self) -> bool:
+        return self.scene is not None and self.scene.endswith(SCENE_FILE)
 
     @property
     def command(self) -> str:
@@ -122,37 +136,82 @@ class PlayOptions:
 
 
 @dataclass(frozen=True)
+class ReplayOptions:
+    """Options of `hazard-ms replay`."""
+
+    files: tyro.conf.Positional[tuple[Path, ...]]
+    """Results of episodes, NAME.json, or folders of them."""
+    workers: int = 0
+    """Processes; 0: one for each core."""
+    load: tuple[str, ...] = ()
+    """Modules, or files NAME.py, that register what the episodes need; none is loaded because a result names it."""
+
+
+@dataclass(frozen=True)
 class SweepOptions:
     """Options of `hazard-ms evaluate`."""
 
     env: EnvOptions = EnvOptions(split="test")
     agents: tuple[Annotated[str, offer(registry.AGENTS, "MODULE:CLASS")], ...] = ("greedy", "random")
     """Agents, each as `hazard-ms play --agent` takes it."""
-    episodes: int = 25
-    """Episodes of every agent, one for each seed."""
+    scenes: Path | None = None
+    """Folder of scene files to play in place of those of the split; seed s plays file s in the order of their names."""
+    episodes: int = 0
+    """Episodes of every agent, one for each seed; 0: 25, or one for each file of --scenes."""
     seed: Annotated[int, flag("-s", "--seed", old="first")] = 0
     """First seed. Seed s plays the split's scene s, and begins again after the last scene."""
     workers: int = 0
     """Processes; 0: one for each core."""
+    backend: Annotated[str, offer(BACKENDS)] = "local"
+    """Where episodes are played: serial in this process, without limits on agents; local in processes; ray on a
+    cluster."""
+    address: str | None = None
+    """Address of the ray cluster, such as auto; this machine alone if not given."""
+    shard: str | None = None
+    """Part i/N of the episodes that is played here, such as 2/3; by default as the variables of a Slurm array say."""
+    timeout: float = 60.0
+    """Wall time that an agent has for a decision [s]; one that takes longer loses the rest of its episode."""
     output: Annotated[Path, flag("-o", "--output", old="out")] = Path("evaluation")
     """Folder for the results, one file for each episode."""
 
     def episode_options(self) -> list[EpisodeOptions]:
         """The episodes, seed by seed. Raises ValueError for what cannot be played."""
-        from hazard_ms.spec.checks import whole
+        from hazard_ms.spec.checks import one_of, whole
 
-        whole(self.episodes, 1, MOST, "episodes")
+        whole(self.episodes, 0, MOST, "episodes")
         whole(self.seed, 0, MOST, "seed")
         whole(self.workers, 0, MOST_WORKERS, "workers")
+        one_of(self.backend, BACKENDS, "backend")
+        if not 0.0 < self.timeout <= LONGEST_DECISION:
+            raise ValueError(f"timeout must be more than 0 and at most {LONGEST_DECISION:g} s, got {self.timeout}")
         self.env.check()
         first = EpisodeOptions(**{f.name: getattr(self.env, f.name) for f in fields(EnvOptions)})
-        seeds = range(self.seed, self.seed + self.episodes)
-        return [replace(first, agent=agent, seed=seed) for seed in seeds for agent in self.agents]
+        files = self._files()
+        seeds = range(self.seed, self.seed + self.count)
+        scenes = [files[s % len(files)] if files else None for s in seeds]
+        return [
+            replace(first, agent=a, seed=s, scene=f) for s, f in zip(seeds, scenes, strict=True) for a in self.agents
+        ]
+
+    @property
+    def count(self) -> int:
+        """Episodes of every agent. Raises ValueError for a folder of scenes that holds none."""
+        return self.episodes or len(self._files()) or EPISODES
+
+    def _files(self) -> list[str]:
+        """The files of the folder of scenes, scene-2 before scene-10; none if there is no folder."""
+        if self.scenes is None:
+            return []
+        found = sorted(self.scenes.glob(f"*{SCENE_FILE}"), key=_natural)
+        if not found:
+            raise ValueError(f"scenes must be a folder that holds files *{SCENE_FILE}, got {self.scenes}")
+        return [str(path) for path in found]
 
     def place(self, episode: EpisodeOptions) -> Path:
         """The file of an episode's result."""
         e = episode
-        setting = [e.env_id, *e.hazards, e.split, e.physics, e.robot_uids] + ["affected"] * e.affects_agent
+        scenes = e.split if e.scene is None else re.sub(r"[^\w.-]+", ".", Path(e.scene).stem)
+        setting = [e.env_id, *e.hazards, scenes, e.physics, e.robot_uids] + ["affected"] * e.affects_agent
         setting += [getattr(e, name) for name in ("lighting", "effects") if getattr(e, name) != _default(name)]
         agent = re.sub(r"[^\w.-]+", ".", e.agent)
         return self.output / f"{'-'.join(setting)}-{agent}-{e.seed:04d}.json"
@@ -164,3 +223,8 @@ def _default(name: str) -> Any:
 
 def _flag(name: str) -> str:
     return "--" + name.replace("_", "-")
+
+
+def _natural(path: Path) -> list[int | str]:
+    """Sorts scene-2 before scene-10: texts and numbers take turns."""
+    return [int(word) if word.isdecimal() else word for word in re.split(r"(\d+)", path.stem)]

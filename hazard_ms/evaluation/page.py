@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import base64
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
 import jinja2
 
 from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.skills.failures import UNFINISHED
 
 TEMPLATE = Path(__file__).with_name("page.html")
 LARGEST_EMBEDDED = 30 * 1024 * 1024  # a larger video is linked, not embedded [bytes]
@@ -25,10 +27,8 @@ COLOURS = {  # of the verbs in the timeline
 def page(result: EpisodeResult, video: str | None = None) -> str:
     """The page of `result`, HTML; `video`: address of its film, as `address` gives it."""
     row = result.to_dict()
-    environment = jinja2.Environment(
-        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
+    return rendered(
+        TEMPLATE,
         r=row,
         share=_percent(row["score"]["value"]),
         step="–" if row["score"]["step"] is None else f"{row['score']['step']:.1f}",
@@ -36,8 +36,21 @@ def page(result: EpisodeResult, video: str | None = None) -> str:
         saved=sum(f["rescued"] for f in row["targets"]),
         video=video,
         colours=COLOURS,
+        unfinished=UNFINISHED,
         steps=_steps(result),
     )
+
+
+def rendered(template: Path, **values: Any) -> str:
+    """The page that `template` makes of `values`; a template may include style.css, which all pages share."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader([template.parent, TEMPLATE.parent]),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template(template.name).render(**values)
 
 
 def address(video: Path, name: str) -> str:

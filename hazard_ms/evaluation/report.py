@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.options import SweepOptions
 from hazard_ms.evaluation.result import EpisodeResult, machine, versions
+from hazard_ms.skills.failures import UNFINISHED
 
 HEADINGS = f"{'agent':16s} {'Value':>22s} {'Step':>26s} {'Damage':>22s} {'rescued':>8s} {'s/episode':>10s}"
 
@@ -30,7 +31,7 @@ def title(options: SweepOptions) -> str:
     settings += ["agent affected"] * env.affects_agent
     settings += [f"{name} {env.settings[name]}" for name in ("lighting", "effects") if name in env.settings]
     what = ", ".join([env.env_id, *env.hazards, *settings])
-    return f"{what}, {options.episodes} episodes each, seeds from {options.seed}"
+    return f"{what}, {options.count} episodes each, seeds from {options.seed}"
 
 
 def score_line(agent: str, results: Sequence[EpisodeResult]) -> str:
@@ -46,14 +47,17 @@ def score_line(agent: str, results: Sequence[EpisodeResult]) -> str:
 
 
 def failure_line(agent: str, results: Sequence[EpisodeResult], failed: int = 0) -> str:
-    """The line that counts how the episodes of one agent ended, and which of its actions failed why.
+    """The line that counts how an agent's episodes ended, and which of its actions were unfinished or failed, and why.
 
     `failed`: its episodes without a result.
     """
     ends = Counter(r.ended for r in results)
     ends += Counter({"error": failed})
-    failures = Counter(f"{d.verb} {d.reason}" for r in results for d in r.decisions if not d.ok)
-    return f"{agent}: ended by {_counted(ends)}; failures: {_counted(failures) or 'none'}"
+    left = [d for r in results for d in r.decisions if not d.ok]
+    unfinished = Counter(d.verb for d in left if d.reason in UNFINISHED)
+    failures = Counter(f"{d.verb} {d.reason}" for d in left if d.reason not in UNFINISHED)
+    under_way = f"unfinished: {_counted(unfinished)}; " if unfinished else ""
+    return f"{agent}: ended by {_counted(ends)}; {under_way}failures: {_counted(failures) or 'none'}"
 
 
 def machine_line() -> str:

@@ -14,13 +14,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_type_hints
 
-from hazard_ms import __version__
 from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
 from hazard_ms.machine.files import write
+from hazard_ms.registry.version import __version__
 
-FORMAT = 1  # goes up when a field changes its meaning
+FORMAT = 2  # goes up when a field changes its meaning
 BROKEN = "simulation error"  # how an episode ends whose simulation broke
+ERROR, TOO_SLOW, DIED = "error", "too slow", "worker died"
+FAILED = (ERROR, TOO_SLOW, DIED)  # how an episode ends that its agent, or the process that played it, did not finish
 PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "warp-lang", "numpy")  # whose versions can change an episode
+
+# fields that hold more data
+PLAIN = ("settings", "targets", "decisions", "links", "phase_seconds", "versions", "machine")
 
 
 class DamagedResultError(ValueError):
@@ -43,12 +48,37 @@ class DecisionRecord:
 
 
 @dataclass(frozen=True)
+class Link:
+    """One link of the chain of hashes: the state of everything at `frame`, and all links before it."""
+
+    frame: int
+    sha256: str
+
+
+@dataclass(frozen=True)
+class Played:
+    """The course of an episode: why it `ended`, as `EpisodeResult` describes it, every decision, and where time went.
+
+    `phase_seconds` are wall times: to "build" the environment and the scene, of "looks" through the camera, of the
+    "agent", and of the "physics" of hazards and robot, with everything else that passes in a frame.
+    """
+
+    ended: str
+    decisions: tuple[DecisionRecord, ...]
+    links: tuple[Link, ...]
+    phase_seconds: dict[str, float]
+
+
+@dataclass(frozen=True)
 class EpisodeResult:
     """All about one episode that is worth keeping; it is written with the scores of the episode under "score".
 
     `ended` is one of: what the task's goal says when it is achieved ("all rescued"); "failed", when it never can be;
     "stopped", by the agent; "time", when the last frame has passed; "simulation error"; "too many decisions", for an
-    agent whose actions take no time; "frame reached", for a run that was asked to end at a frame.
+    agent whose actions take no time; "frame reached", for a run that was asked to end at a frame; "error", when the
+    agent raised an error or chose what is not an action; "too slow", when a decision took it longer than allowed;
+    "worker died", when the process that played it died twice. After the last three all is as it was at the last
+    decision, and scored as it was then.
     """
 
     env_id: str
@@ -62,7 +92,10 @@ class EpisodeResult:
     targets: tuple[Fate, ...]
     decisions: tuple[DecisionRecord, ...]
     command: str  # that plays it again
+    links: tuple[Link, ...] = ()  # by which a replay is known to be the same episode
+    error: str = ""  # the agent's, or why there was no answer
     wall_seconds: float = 0.0
+    phase_seconds: dict[str, float] = field(default_factory=dict)  # wall time by phase, as in `Played` [s]
     versions: dict[str, str] = field(default_factory=lambda: versions())
     machine: dict[str, Any] = field(default_factory=lambda: machine())
     format: int = FORMAT
@@ -102,6 +135,7 @@ class EpisodeResult:
                 row.pop("score")
                 row["targets"] = tuple(_made(Fate, t) for t in row["targets"])
                 row["decisions"] = tuple(_made(DecisionRecord, d) for d in row["decisions"])
+                row["links"] = tuple(_made(Link, each) for each in row["links"])
                 found: EpisodeResult = _made(cls, row)
                 found.to_dict()
                 return found
@@ -109,13 +143,15 @@ class EpisodeResult:
             raise DamagedResultError(
                 f"{path} must hold the result of an episode, got {type(error).__name__}: {error}"
             ) from None
-        raise ValueError(f"the format of {path} must be {FORMAT}, got {number!r:.100}")
+        raise ValueError(
+            f"the format of {path} must be {FORMAT}, got {number!r:.100}; play its episode again, in another folder"
+        )
 
 
 def _made(kind: Any, row: dict[str, Any]) -> Any:
     """A dataclass from its fields. Raises TypeError or ValueError for fields and types that it does not have."""
     for name, hint in get_type_hints(kind).items():
-        plain = (dict, tuple) if name in ("settings", "targets", "decisions", "versions", "machine") else None
+        plain = (dict, tuple) if name in PLAIN else None
         if name in row and not isinstance(row[name], plain or (int | float if hint is float else hint)):
             raise ValueError(f"{name} = {row[name]!r:.100}")
     return kind(**row)

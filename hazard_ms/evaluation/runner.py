@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
-from hazard_ms.agents.base import Agent, agent, note_of, staying
+from hazard_ms.agents.base import Agent, PrivilegedAgent, agent, note_of, staying
+from hazard_ms.evaluation.hashes import EVERY, extended
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.options import EpisodeOptions
-from hazard_ms.evaluation.result import BROKEN, DecisionRecord, EpisodeResult
+from hazard_ms.evaluation.result import BROKEN, DecisionRecord, EpisodeResult, Link, Played
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import STOP, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 
 FRAME_REACHED = "frame reached"  # how a run ends that was asked to end at a frame
-
-
-@dataclass(frozen=True)
-class Played:
-    """The course of an episode: why it `ended`, as `EpisodeResult` describes it, and every decision."""
-
-    ended: str
-    decisions: tuple[DecisionRecord, ...]
+RUNNING = "running"  # of an episode that has not ended
 
 
 class Runner:
@@ -32,6 +27,25 @@ class Runner:
 
     def __init__(self, env: SkillEnv, agent: Agent, watchers: Sequence[Watcher] = ()) -> None:
         self.env, self.agent, self.watchers = env, agent, tuple(watchers)
+        self._start()
+
+    def _start(self) -> None:
+        self._records: list[DecisionRecord] = []
+        self._links: list[Link] = []
+        self._seconds = dict.fromkeys(("build", "looks", "agent", "physics"), 0.0)
+
+    def played(self, ended: str = RUNNING) -> Played:
+        """The course of the episode up to now."""
+        return Played(ended, tuple(self._records), tuple(self._links), dict(self._seconds))
+
+    @contextmanager
+    def _timed(self, phase: str) -> Iterator[None]:
+        """Count the wall time of the block as that of `phase`, but looks for themselves."""
+        start, looked = time.perf_counter(), self.env.look_seconds
+        yield
+        looks = self.env.look_seconds - looked
+        self._seconds["looks"] += looks
+        self._seconds[phase] += time.perf_counter() - start - looks
 
     def run(self, seed: int | None, options: dict[str, Any] | None = None, until_frame: int | None = None) -> Played:
         """Play an episode from its reset with `seed` and `options` to its end, or to the frame `until_frame`.
@@ -39,41 +53,52 @@ class Runner:
         Raises ValueError for a seed, a scene, or an action or note of the agent that is not valid, RuntimeError for an
         agent that calls sys.exit.
         """
-        decision, _ = self.env.reset(seed=seed, options=options)
-        with staying("reset of the agent"):
+        self._start()
+        with self._timed("build"):
+            decision, _ = self.env.reset(seed=seed, options=options)
+        with self._timed("agent"), staying("reset of the agent"):
+            if isinstance(self.agent, PrivilegedAgent):
+                self.agent.attach(self.env)
             self.agent.reset(self.env.brief())
         self.env.watch, self.env.until_frame = self._frame, until_frame
         for watcher in self.watchers:
             watcher.begin(self.env, decision)
         try:
-            played = self._play(decision)
+            ended = self._play(decision)
         finally:
             self.env.watch = self.env.until_frame = None
         for watcher in self.watchers:
-            watcher.finish(played.ended)
-        return played
+            watcher.finish(ended)
+        return self.played(ended)
 
-    def _play(self, decision: Decision) -> Played:
-        records: list[DecisionRecord] = []
-        while len(records) <= self.env.max_frames:  # an agent whose actions take no time must not go on for ever
+    def _play(self, decision: Decision) -> str:
+        """Play from the first `decision` on. Returns why the episode ended."""
+        while len(self._records) <= self.env.max_frames:  # an agent whose actions take no time must not go on for ever
+            extended(self._links, self.env)
             if self.env.until_frame is not None and self.env.frame >= self.env.until_frame:
-                return Played(FRAME_REACHED, tuple(records))
-            with staying("act of the agent"):
+                return FRAME_REACHED
+            for watcher in self.watchers:
+                watcher.asked(self.played())
+            with self._timed("agent"), staying("act of the agent"):
                 action = self.agent.act(decision)
             note, value = note_of(self.agent), Tally.of(fates(self.env)).value
             for watcher in self.watchers:
                 watcher.decided(decision, action, note)
-            following, _, terminated, truncated, info = self.env.step(action)
+            with self._timed("physics"):
+                following, _, terminated, truncated, info = self.env.step(action)
             result: Result = info["result"]
             for watcher in self.watchers:
                 watcher.ended(result)
-            records.append(self._record(decision, action, result, note, value))
+            self._records.append(self._record(decision, action, result, note, value))
             if terminated or truncated:
-                return Played(self._reason(action, info), tuple(records))
+                extended(self._links, self.env)
+                return self._reason(action, info)
             decision = following
-        return Played("too many decisions", tuple(records))
+        return "too many decisions"
 
     def _frame(self, action: LowLevel) -> None:
+        if self.env.frame % EVERY == 0:
+            extended(self._links, self.env)
         for watcher in self.watchers:
             watcher.frame(action)
 
@@ -109,37 +134,49 @@ def fates(env: SkillEnv) -> tuple[Fate, ...]:
         saved = bool(episode.rescue.safe[0, row.index])
         damaged = (episode.rescue if saved else episode.damage).damaged[0, row.index]
         frame = int(episode.rescue.frame[0, row.index]) if saved else None
-        made.append(Fate(row.name, row.category, row.value, saved, bool(damaged), frame))
+        struck = int(episode.damage.frame[0, row.index]) if bool(damaged) else None
+        made.append(Fate(row.name, row.category, row.value, saved, bool(damaged), frame, struck))
     return tuple(made)
 
 
-def play(options: EpisodeOptions, watchers: Sequence[Watcher] = (), **keywords: Any) -> EpisodeResult:
+def play(
+    options: EpisodeOptions, watchers: Sequence[Watcher] = (), player: Agent | None = None, **keywords: Any
+) -> EpisodeResult:
     """Play one episode in an environment of its own, made with `keywords` of gym.make besides those of `options`.
 
-    Raises ValueError for what cannot be played.
+    `player` decides in place of the agent of `options`. Raises ValueError for what cannot be played.
     """
     start = time.perf_counter()
     options.check()
-    player = agent(options.agent)
+    player = player or agent(options.agent)
     env = SkillEnv.make(options.env_id, **{**options.settings, **keywords})
+    made = time.perf_counter()
     try:
         played = Runner(env, player, watchers).run(options.seed, options.reset_options)
-        return EpisodeResult(
-            env_id=options.env_id,
-            agent=options.agent,
-            seed=options.seed,
-            scene=env.base.specs[0].name,
-            settings=options.settings,
-            frames=env.frame,
-            max_frames=env.max_frames,
-            ended=played.ended,
-            targets=fates(env),
-            decisions=played.decisions,
-            command=options.command,
-            wall_seconds=time.perf_counter() - start,
-        )
+        result = result_of(options, env, played)
+        played.phase_seconds["build"] += made - start
+        return replace(result, wall_seconds=time.perf_counter() - start)
     finally:
         env.close()
+
+
+def result_of(options: EpisodeOptions, env: SkillEnv, played: Played) -> EpisodeResult:
+    """The result of the episode of `options` as it stands in `env`, after `played`."""
+    return EpisodeResult(
+        env_id=options.env_id,
+        agent=options.agent,
+        seed=options.seed,
+        scene=env.base.specs[0].name,
+        settings=options.settings,
+        frames=env.frame,
+        max_frames=env.max_frames,
+        ended=played.ended,
+        targets=fates(env),
+        decisions=played.decisions,
+        command=options.command,
+        links=played.links,
+        phase_seconds=played.phase_seconds,
+    )
 
 
 def played_to(options: EpisodeOptions, frame: int, **keywords: Any) -> SkillEnv:

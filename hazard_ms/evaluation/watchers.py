@@ -7,6 +7,7 @@ from typing import Any
 
 from tqdm import tqdm
 
+from hazard_ms.evaluation.result import Played
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
@@ -20,6 +21,9 @@ class Watcher:
 
     def begin(self, env: SkillEnv, decision: Decision) -> None:
         """The episode has begun, and `decision` is the first one."""
+
+    def asked(self, so_far: Played) -> None:
+        """The agent is about to be asked for its next action, after the decisions of `so_far`."""
 
     def decided(self, decision: Decision, action: Action, note: str) -> None:
         """The agent has chosen `action` at `decision`; `note` is its reason."""

@@ -95,8 +95,9 @@ def _marks(sheet: Plan, spec: SceneSpec) -> None:
         "west": ((-out, 0), (-out, d)),
         "east": ((w + out, 0), (w + out, d)),
     }
-    start, end = ends[spec.flood_side]
-    cv2.line(sheet.image, sheet.at(*start), sheet.at(*end), WATER, 4, cv2.LINE_AA)
+    for side in filter(None, (spec.flood_side, spec.second_flood_side)):
+        start, end = ends[side]
+        cv2.line(sheet.image, sheet.at(*start), sheet.at(*end), WATER, 4, cv2.LINE_AA)
 
 
 def view(spec: SceneSpec) -> Image:
@@ -120,7 +121,8 @@ def sheet(spec: SceneSpec) -> Image:
     sides = [np.concatenate([p, np.full((tall - len(p), p.shape[1], 3), 255, np.uint8)]) for p in (left, right)]
     title = np.full((26, sum(s.shape[1] for s in sides), 3), 255, np.uint8)
     targets = ", ".join(spec.target_categories)
-    words = f"{spec.name} ({spec.split}): {len(spec.bodies)} things, targets {targets}; water from {spec.flood_side}"
+    water = " and ".join(filter(None, (spec.flood_side, spec.second_flood_side)))
+    words = f"{spec.name} ({spec.split}): {len(spec.bodies)} things, targets {targets}; water from {water}"
     cv2.putText(title, words, (6, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, INK, 1, cv2.LINE_AA)
     return np.concatenate([title, np.concatenate(sides, axis=1)])
 

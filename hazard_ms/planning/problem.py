@@ -24,7 +24,9 @@ class Problem:
     """PlannedRescue as much value as possible by `limit`, with one hand.
 
     A target is met, picked up and put into the bag there, or carried to a cart where `travel` has carts. It counts
-    its value if it is safe by `damaged_at`, else `damaged_share` of it. Frames may be fractions.
+    its value if it is safe by `damaged_at`, else `damaged_share` of it. Frames may be fractions. With `fading` it
+    counts the less the later it is safe, since much can go wrong until then: of plans that save the same, that one is
+    best which saves first what is dear.
     """
 
     travel: Travel
@@ -36,6 +38,7 @@ class Problem:
     frame: float = 0.0  # now
     holding: int | None = None  # the target in the hand: it must be put away first
     damaged_share: float = 0.5  # of its value that a damaged target counts
+    fading: float = 0.0  # share of its value by which a target counts less with every frame until it is safe
 
     def __post_init__(self) -> None:
         """Raises ValueError for wrong lengths, for NaN, and for what is negative or infinite but must not be."""
@@ -54,12 +57,15 @@ class Problem:
                 raise ValueError(f"{name} must be a frame from 0 on, got {getattr(self, name)}")
         if not 0 <= self.damaged_share <= 1:
             raise ValueError(f"damaged_share must be from 0 to 1, got {self.damaged_share}")
+        if not 0 <= self.fading * max(self.limit - self.frame, 1.0) <= 1:
+            raise ValueError(f"fading must be from 0 to 1 over the frames up to the limit, got {self.fading}")
         if self.holding is not None and not 0 <= self.holding < targets:
             raise ValueError(f"holding must be None or a target from 0 to {targets - 1}, got {self.holding}")
 
     def worth(self, target: int, safe: float) -> float:
         """The value that the target counts if it is safe at a frame, the limit not considered."""
-        return self.values[target] * (1.0 if safe <= self.damaged_at[target] else self.damaged_share)
+        share = 1.0 if safe <= self.damaged_at[target] else self.damaged_share
+        return self.values[target] * share * (1.0 - self.fading * (safe - self.frame))
 
     def stows(self, target: int, spot: Spot, frame: float) -> Iterator[Stow]:
         """All ways of putting away a target that is in the hand at a spot and frame."""

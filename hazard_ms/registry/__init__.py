@@ -22,6 +22,7 @@ from types import MappingProxyType, ModuleType
 from typing import Any, TypeVar
 
 FRAMES = 1500  # of an episode [docs/benchmark.md 1]
+HARD = MappingProxyType({"hard": 900})  # frames of an episode in the split `hard` [ours]
 TASK_NAME = re.compile(r"[A-Za-z]\w*-v\d+")
 NAME = re.compile(r"[A-Za-z]\w*")
 AGENT_NAME = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)?")
@@ -29,11 +30,19 @@ AGENT_NAME = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)?")
 
 @dataclass(frozen=True)
 class TaskEntry:
-    """A task: `maker(physics, **options)` gives the `hazard_ms.spec.Task`; episodes last `max_frames` at most."""
+    """A task: `maker(physics, **options)` gives the `hazard_ms.spec.Task`; episodes last `max_frames` at most.
+
+    `split_frames`: that number in the splits in which it is another one.
+    """
 
     name: str  # the id under which gymnasium knows it, "HazardFire-v1"
     maker: Any
     max_frames: int = FRAMES
+    split_frames: tuple[tuple[str, int], ...] = ()
+
+    def frames(self, split: str) -> int:
+        """The greatest length of an episode in a split [frames]."""
+        return dict(self.split_frames).get(split, self.max_frames)
 
 
 @dataclass(frozen=True)
@@ -83,14 +92,20 @@ AGENTS: Mapping[str, AgentEntry] = MappingProxyType(_agents)
 _followers: list[tuple[Callable[[Entry], None], Callable[[Entry], None]]] = []
 
 
-def register_task(name: str, maker: Any, max_frames: int = FRAMES) -> None:
+def register_task(
+    name: str, maker: Any, max_frames: int = FRAMES, split_frames: Mapping[str, int] | None = None
+) -> None:
     """Add a task, and make it known to gymnasium and ManiSkill.
+
+    `max_frames`: the greatest length of an episode; `split_frames`: that in the splits in which it is another one.
 
     Raises ValueError for a name that no environment can have, one that is taken, and a wrong number of frames.
     """
-    if isinstance(max_frames, bool) or not isinstance(max_frames, int) or max_frames < 1:
-        raise ValueError(f"max_frames must be a whole number from 1, got {max_frames!r}")
-    _add(_tasks, TaskEntry(name, maker, max_frames), TASK_NAME, "'Name-v0'")
+    others = tuple((split_frames or {}).items())
+    for what, frames in (("max_frames", max_frames), *((f"split_frames[{s!r}]", n) for s, n in others)):
+        if isinstance(frames, bool) or not isinstance(frames, int) or frames < 1:
+            raise ValueError(f"{what} must be a whole number from 1, got {frames!r}")
+    _add(_tasks, TaskEntry(name, maker, max_frames, others), TASK_NAME, "'Name-v0'")
 
 
 def register_hazard(name: str, maker: Any, looks: Any = None, cases: Any = (), charts: Any = None) -> None:
@@ -193,10 +208,10 @@ def _add(table: dict[str, _Kind], entry: _Kind, form: re.Pattern[str] = NAME, sh
         added(entry)
 
 
-register_task("HazardFire-v1", "hazard_ms.tasks.fire:hazard_fire")
-register_task("HazardFlood-v1", "hazard_ms.tasks.flood:hazard_flood")
-register_task("HazardWind-v1", "hazard_ms.tasks.wind:hazard_wind", max_frames=3000)
-register_task("HazardCompound-v1", "hazard_ms.tasks.compound:hazard_compound")
+register_task("HazardFire-v1", "hazard_ms.tasks.fire:hazard_fire", FRAMES, HARD)
+register_task("HazardFlood-v1", "hazard_ms.tasks.flood:hazard_flood", FRAMES, HARD)
+register_task("HazardWind-v1", "hazard_ms.tasks.wind:hazard_wind", 3000, {"hard": 1800})
+register_task("HazardCompound-v1", "hazard_ms.tasks.compound:hazard_compound", FRAMES, HARD)
 
 register_hazard(
     "fire",
@@ -226,6 +241,9 @@ register_robot("g1", "hazard_ms.robots.g1:HazardG1")
 register_agent("random", "hazard_ms.agents.random:Random")
 register_agent("greedy", "hazard_ms.agents.greedy:Greedy")
 register_agent("rule", "hazard_ms.agents.rule:Rule")
+register_agent("oracle", "hazard_ms.agents.oracle:Oracle")
+register_agent("planner", "hazard_ms.agents.planner:Planner")
+register_agent("mcts", "hazard_ms.agents.mcts:Mcts")
 register_agent("paper/greedy", "hazard_ms.agents.paper.greedy:Greedy")
 register_agent("paper/rule", "hazard_ms.agents.paper.rule:Rule")
 register_agent("paper/mcts", "hazard_ms.agents.paper.mcts:Mcts")

@@ -71,7 +71,7 @@ def tell_gymnasium() -> None:
                 max_episode_steps=entry.max_frames,
                 disable_env_checker=True,  # it is written for unbatched numpy: see hazard_ms.wrappers.NumpyEnv
                 kwargs={"task": entry.name},
-                additional_wrappers=(WrapperSpec("TimeLimit", "hazard_ms.wrappers:TimeLimit", kwargs={}),),
+                additional_wrappers=(WrapperSpec("TimeLimit", "hazard_ms.env.time_limit:TimeLimit", kwargs={}),),
             )
             gymnasium.register(id=skills_id(entry.name), entry_point=SKILLS, kwargs={"task": entry.name})
 

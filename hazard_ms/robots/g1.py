@@ -39,6 +39,7 @@ EYES = sapien.Pose([0.07, 0.0, 0.46], [np.cos(np.pi / 12), 0.0, np.sin(np.pi / 1
 BODY = ("torso_joint", "crouch_joint", "bend_joint")
 ARM = ("shoulder_pitch", "shoulder_roll", "shoulder_yaw", "elbow_pitch", "elbow_roll")
 ARMS = tuple([f"{side}_{part}_joint" for part in ARM] for side in ("right", "left"))  # by RIGHT, LEFT
+ALONG = ("shoulder_pitch", "elbow_pitch")  # where an arm bends
 FINGERS = ("zero", "one", "two", "three", "four", "five", "six")
 GRIP = (0.0, -0.6, -0.8, 0.9, 0.9, 0.9, 0.9)  # the right hand's fingers when shut [rad]; the left's mirrored
 MIRROR = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0, 1.0, -1.0])  # of the arm's joints from the right to the left
@@ -76,7 +77,7 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
         forward_step=FORWARD_STEP,
         turn_step=TURN_STEP,
         arm_step=0.1,
-        radius=0.29,
+        radius=0.26,  # its hands are 0.256 m from its axis [measured on its collision shapes, tucked]
         shoulder=(0.0, 1.02),
         reach=0.46,
         elbow_room=0.45,
@@ -89,7 +90,13 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
     head_camera = "head"
     skill_control_mode = "pd_joint_pos"
     tucked = TUCKED
-    folded = np.array([0.0, 0.0, 0.0, -0.3, -0.1, 0.9, 0.0, 0.0])
+    # the elbow back and out, in three ways, and before the body [ours: the quickest of 110 over tables of the scenes]
+    between = (
+        np.array([0.0, 0.0, 0.03, -0.45, -0.55, -0.4, 0.45, 0.0]),
+        np.array([0.0, 0.0, 0.1, -0.4, -0.55, -0.8, 0.75, 0.0]),
+        np.array([0.0, 0.0, 0.04, -0.9, -0.3, -0.05, 0.95, 0.0]),
+        np.array([0.0, 0.0, 0.0, -0.3, -0.1, 0.9, 0.0, 0.0]),
+    )
     pointing = tuple(np.deg2rad([30.0, 0.0, 60.0, -30.0]).tolist())  # up, too, to the top of a shelf
 
     @property
@@ -143,6 +150,10 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
         self._tcps = (self.right_tcp, self.left_tcp)
         self.make_model()
         self._hands = [self.link_number(tcp) for tcp in self._tcps]
+        self._along = [
+            [*(self.link_number(self.robot.links_map[f"{side}_{part}_link"]) for part in ALONG), hand]
+            for side, hand in zip(("right", "left"), self._hands, strict=True)
+        ]
 
     @property
     def stretched(self) -> tuple[NDArray[np.float64], ...]:
@@ -186,6 +197,11 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
         joints[self._arms[used]] = arm * self._signs(used)
         hand, turn, jacobian = self.hand_kinematics(joints, self._hands[used], self._arms[used])
         return hand, turn, jacobian * self._signs(used)
+
+    def arm_places(self, arm: NDArray[np.float64]) -> NDArray[np.float64]:
+        used, joints = self._used, self.all_joints()
+        joints[self._arms[used]] = arm * self._signs(used)
+        return self.link_places(joints, self._along[used])
 
     def action(self, forward: float, turn: float, arm: NDArray[np.float64], open_hand: bool) -> NDArray[np.float32]:
         """The environment's action, [D], for `forward` [m], `turn` [rad] and the arm in use at `arm` [rad], shape [J].

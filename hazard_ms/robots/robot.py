@@ -27,8 +27,9 @@ class Robot(abc.ABC):
     head_camera: str  # uid of the sensor
     skill_control_mode: str  # the control mode whose actions `action` makes
     tucked: NDArray[np.float64]  # arm joints where the arm is out of the way [rad], [J]
-    # arm joints with the elbow up and the hand close, between tucked and reaching out [rad], [J]
-    folded: NDArray[np.float64]
+    between: tuple[
+        NDArray[np.float64], ...
+    ]  # arm joints that lead past furniture to where the hand is needed [rad], [J]
     pointing: tuple[float, ...]  # how far below the horizon the fingers point at a thing, in the order of trying [rad]
 
     @abc.abstractmethod
@@ -92,6 +93,13 @@ class Robot(abc.ABC):
 
         Returns its position [m], world frame, [3], its rotation matrix, [3, 3], and its Jacobian, [6, J]: three rows of
         metres and three of radians per radian of each joint, in the world frame.
+        """
+
+    @abc.abstractmethod
+    def arm_places(self, arm: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Places of the joints along the arm, from the shoulder to the hand [m], world frame, [P, 3].
+
+        The arm is as if it were at `arm` [rad], shape [J], in the first environment.
         """
 
     @abc.abstractmethod

@@ -39,8 +39,9 @@ NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.:\-]*(/[A-Za-z0-9][A-Za-z0-9_.:\-]*)*
 def to_json(spec: SceneSpec) -> str:
     """The scene as JSON text."""
     data = {"format": FORMAT, **dataclasses.asdict(spec)}
-    if not spec.parameters:
-        del data["parameters"]  # few scenes have any
+    for name in ("second_flood_side", "parameters"):  # few scenes have any
+        if not data[name]:
+            del data[name]
     return json.dumps(data, indent=1, allow_nan=False) + "\n"
 
 
@@ -82,6 +83,9 @@ def check(spec: SceneSpec) -> None:
     for c in spec.target_categories:
         one_of(c, CATEGORIES, f"{spec.name}: target category")
     one_of(spec.flood_side, WALLS, f"{spec.name}: flood_side")
+    if spec.second_flood_side is not None:
+        others = [wall for wall in WALLS if wall != spec.flood_side]
+        one_of(spec.second_flood_side, others, f"{spec.name}: second_flood_side")
     if math.hypot(*spec.wind) > STRONGEST_WIND:
         raise ValueError(f"{spec.name}: wind must be at most {STRONGEST_WIND} m/s, got {spec.wind}")
     _check_room(spec)

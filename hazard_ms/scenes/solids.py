@@ -20,6 +20,22 @@ def corners_of(thing: Body | Fixture) -> Corners:
     return np.asarray((_UNIT * size) @ matrix_of(thing.rotation).T + thing.position)
 
 
+def half_size(thing: Body | Fixture) -> NDArray[np.float64]:
+    """Half the edge lengths of the box around a thing, along its own axes [m], [3]."""
+    return np.asarray(np.array(asset(thing.asset).extent) * thing.scale / 2)
+
+
+def parts_of(thing: Body | Fixture) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """The boxes that a thing's model is made of, turned like it: middles in the world and half sizes [m], [3] each.
+
+    A model that has none is the box around it.
+    """
+    turn, (x, y, z) = matrix_of(thing.rotation), np.array(asset(thing.asset).extent) / 2
+    boxes = np.array(asset(thing.asset).boxes or [(0.0, 0.0, z, x, y, z)])
+    middles = (boxes[:, :3] * thing.scale) @ turn.T + thing.position
+    return list(zip(middles, boxes[:, 3:] * thing.scale, strict=True))
+
+
 def gap(a: Corners, b: Corners) -> float:
     """The distance of two boxes, [8, 3] each, along the axis that parts them best [m]; negative if they overlap."""
     edges = [box[[4, 2, 1]] - box[0] for box in (a, b)]

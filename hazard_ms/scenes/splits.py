@@ -28,10 +28,13 @@ FAMILIES: dict[str, Family] = {
             "test": ("kitchen_b",),
             "large": ("flat_a",),
             "new_objects": ("kitchen_b_new",),
+            "hard": ("kitchen_b_hard",),
         },
         indoor.make,
     ),
-    "outdoor": Family({"train": ("street", "crossing", "park"), "test": ("parking",)}, outdoor.make),
+    "outdoor": Family(
+        {"train": ("street", "crossing", "park"), "test": ("parking",), "hard": ("parking_hard",)}, outdoor.make
+    ),
 }
 
 

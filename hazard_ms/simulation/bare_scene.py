@@ -32,8 +32,11 @@ class Standalone:
         self.scene.px.step()
 
 
-def build(spec: SceneSpec, draw: bool = False) -> Standalone:
-    """Build the scene of `spec`, ready to be rendered if `draw`. Raises ValueError if `draw` without a renderer."""
+def build(spec: SceneSpec, draw: bool = False, rate: int = PHYSICS_RATE) -> Standalone:
+    """Build the scene of `spec`, ready to be rendered if `draw`, for `rate` physics steps a second [Hz].
+
+    Raises ValueError if `draw` without a renderer.
+    """
     if draw and backend() == "none":
         raise ValueError("draw must be False without a renderer, got True: `hazard-ms doctor` says what is missing")
     info = parse_sim_and_render_backend("cpu", backend() if draw else "none")
@@ -42,7 +45,7 @@ def build(spec: SceneSpec, draw: bool = False) -> Standalone:
     if draw:
         systems.append(sapien.render.RenderSystem(info.render_device))
     scene = ManiSkillScene([sapien.Scene(systems)], debug_mode=False, device=torch.device("cpu"), backend=info)
-    scene.set_timestep(1.0 / PHYSICS_RATE)
+    scene.set_timestep(1.0 / rate)
     rows = building.build_scenes(scene, (spec,))
     world = building.make_world((spec,), torch.device("cpu"))
     world.handles = building.connect(scene, (spec,), rows, torch.device("cpu"))

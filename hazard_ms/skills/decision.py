@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.target_table import Target
+from hazard_ms.skills.failures import UNFINISHED
 
 WALK_TO, WALK_ONE_STEP, PICK_UP, DROP, EXPLORE, STOP = "walk_to", "walk_one_step", "pick_up", "drop", "explore", "stop"
 VERBS = (WALK_TO, WALK_ONE_STEP, PICK_UP, DROP, EXPLORE, STOP)
@@ -40,11 +41,19 @@ class Action:
 
 @dataclass(frozen=True)
 class Result:
-    """The outcome of an action: whether it worked, why not, and how many frames it took."""
+    """The outcome of an action: whether it was done, why not, and how many frames it took.
+
+    What is not done is `unfinished` or has failed.
+    """
 
     ok: bool
     reason: str = ""  # empty when ok
     frames: int = 0
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether the action was still under way when its budget of frames, or the episode, ran out."""
+        return self.reason in UNFINISHED
 
 
 @dataclass(frozen=True)

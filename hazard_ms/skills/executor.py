@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 import torch
 
 from hazard_ms.env import HazardEnv
+from hazard_ms.env.time_limit import is_bare
 from hazard_ms.robots import robot_name, skill_control_mode
 from hazard_ms.sensing.semantic_map import SemanticMap, cells_for
 from hazard_ms.skills.actions import skill
@@ -28,7 +30,6 @@ from hazard_ms.skills.decision import (
     Result,
 )
 from hazard_ms.skills.failures import EPISODE_OVER
-from hazard_ms.wrappers import is_bare
 
 
 class SkillEnv:
@@ -61,6 +62,7 @@ class SkillEnv:
         self.base = base
         self.watch = watch
         self.until_frame: int | None = None
+        self.look_seconds = 0.0  # wall time spent in looks since it was made
         self.stage: Stage
         self._over = True
 
@@ -120,8 +122,7 @@ class SkillEnv:
         self.stage = Stage(self.base, self._seen, self.look)
         self._images: Images | None = None
         self._last: tuple[Action | None, Result | None] = (None, None)
-        self._reward = 0.0
-        self._over = False
+        self._reward, self._over = 0.0, False
         self.look()
         return self.decision(), info
 
@@ -197,8 +198,8 @@ class SkillEnv:
 
     def look(self) -> None:
         """Look through the head camera and enter what is seen into the map."""
-        rgb, view = self.base.observer.look()
-        world, base = self.base.world, self.base
+        start, world, base = time.perf_counter(), self.base.world, self.base
+        rgb, view = base.observer.look()
         gone = torch.nonzero(world.held[0] | world.away[0]).flatten().tolist()
         where = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))
         for index in gone:
@@ -207,6 +208,7 @@ class SkillEnv:
         self._seen.mark_free(where, base.agent.build.radius)
         hazard = np.zeros((len(base.task.hazards), 1, 1), np.float32) if view.level is None else view.level
         self._images = Images(rgb.cpu().numpy().copy(), view.depth, view.labels, hazard)
+        self.look_seconds += time.perf_counter() - start
 
     def decision(self) -> Decision:
         """All that an agent may know now; the map is a copy that cannot be written to."""

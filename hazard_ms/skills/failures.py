@@ -1,4 +1,4 @@
-"""Reasons for which a skill did not work: the stable codes that a Result carries."""
+"""Reasons for which a skill did not do all that was asked: the stable codes that a Result carries."""
 
 from __future__ import annotations
 
@@ -31,3 +31,6 @@ FAILURES = (
     NOT_RESCUED,
     EPISODE_OVER,
 )
+
+# Of an action that was still under way, and did not fail: whoever asks for it again goes on with it
+UNFINISHED = (MAX_FRAMES, EPISODE_OVER)

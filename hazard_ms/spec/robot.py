@@ -5,6 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+# greatest distance from the middle of the hand to the surface of the box of a thing that it takes [m] [ours]; Fetch's
+# fingers are 0.06 m long
+GRASP_REACH = 0.15
+
 
 @dataclass(frozen=True)
 class Build:

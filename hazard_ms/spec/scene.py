@@ -121,6 +121,7 @@ class SceneSpec:
     agent_start: AgentStart
     split: str = "train"
     flood_side: str = "east"  # from which wall water comes: south | east | north | west
+    second_flood_side: str | None = None  # another wall from which it comes at the same time
     wind: Vec2 = (0.0, 0.0)  # velocity of the air [m/s]
     parameters: tuple[Parameter, ...] = ()  # of hazards that third parties bring
 

@@ -45,6 +45,20 @@ def test_check_ends_with_1_where_there_is_a_problem(tmp_path: Path, capsys: pyte
     assert "3 scenes, 2 with problems" in out
 
 
+def test_reach_names_the_targets_that_a_robot_cannot_get_at(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    spec = scene("kitchen_b/02")
+    out = spec.targets[0]
+    high = dataclasses.replace(out, position=(*out.position[:2], 2.4))
+    bodies = tuple(high if b == out else b for b in spec.bodies)
+    (tmp_path / "high.json").write_text(to_json(dataclasses.replace(spec, name="high", bodies=bodies)))
+    assert main(["scenes", "reach", str(tmp_path), "kitchen_b/02", "-r", "fetch"]) == 0
+    count = len(spec.targets)
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == f"high fetch {count - 1} of {count} targets; not {out.name}".split()
+    assert lines[1].split() == f"kitchen_b/02 fetch {count} of {count} targets".split()
+    assert lines[2].startswith(f"2 scenes: fetch can get at {2 * count - 1} of {2 * count} targets, ")
+
+
 def crash_or_hang(name: str) -> scene_checks.CheckedScene:
     """In the place of the true check: what PhysX can do to a process."""
     if name == "hangs":
@@ -76,6 +90,8 @@ def test_a_check_that_hangs_or_crashes_is_a_problem(
         (["check", "kitchen_a/00", "--all"], "must be given as names"),
         (["check", "kitchen_a/00", "--workers", "0"], "workers must be a whole number from 1 to 64, got 0"),
         (["check", "--split", "tst"], "did you mean 'test'"),
+        (["reach"], "must be given as names"),
+        (["reach", "kitchen_a/00", "-r", "fetsch"], "did you mean 'fetch'"),
         (["list", "--family", "indor"], "did you mean 'indoor'"),
         (["make", "kitchen_a/99"], "got 'kitchen_a/99'"),
         (["make", "kitchen_a/00", "-o", "no/such/folder/x.json"], "can be written"),

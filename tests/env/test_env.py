@@ -14,6 +14,7 @@ from gymnasium.utils.env_checker import check_env
 
 import hazard_ms  # noqa: F401
 from hazard_ms.wrappers import NumpyEnv
+from tests.worlds.registering import registered_task
 
 ALLOWED_WARNINGS = (  # each with its reason
     "A Box observation space minimum value is -infinity",  # joint velocities have no bound
@@ -71,6 +72,23 @@ def test_time_limit_truncates_at_the_users_limit() -> None:
     flags = [bool(made.step(None)[3]) for _ in range(5)]
     assert flags == [False, False, False, False, True]
     made.close()
+
+
+@pytest.mark.parametrize(
+    ("keywords", "frames"),
+    [({}, 4), ({"split": "hard"}, 2), ({"split": "hard", "max_episode_steps": 3}, 3)],
+    ids=["usual", "shorter", "asked for"],
+)
+def test_a_split_may_be_shorter_than_its_task(keywords: dict[str, Any], frames: int) -> None:
+    with registered_task("HazardShort-v1", "hazard_ms.tasks.fire:hazard_fire", 4, {"hard": 2}) as name:
+        made: Any = gym.make(name, obs_mode="state", render_backend="none", **keywords)
+        assert made.spec.max_episode_steps == frames
+        assert made.unwrapped.task.max_frames == (2 if keywords else 4)
+        again: Any = gym.make(made.spec)
+        for env in (made, again):
+            env.reset(seed=0)
+            assert [bool(env.step(None)[3]) for _ in range(frames)] == [*([False] * (frames - 1)), True]
+            env.close()
 
 
 def test_maniskill_wrappers(tmp_path: Path) -> None:

@@ -30,10 +30,40 @@ def test_every_setting_has_files_of_its_own(tmp_path: Path) -> None:
     assert len({sweep.place(sweep.episode_options()[0]) for sweep in sweeps}) == len(sweeps)
 
 
-@pytest.mark.parametrize("bad", [{"episodes": 0}, {"workers": -1}, {"seed": -1}, {"env": EnvOptions("HazardQuake-v1")}])
+BAD: list[dict[str, object]] = [
+    {"episodes": -1},
+    {"workers": -1},
+    {"seed": -1},
+    {"backend": "cloud"},
+    {"timeout": 0.0},
+    {"timeout": float("nan")},
+    {"scenes": Path("no_such_folder")},
+    {"env": EnvOptions("HazardQuake-v1")},
+]
+
+
+@pytest.mark.parametrize("bad", BAD, ids=str)
 def test_bad_options_are_refused(bad: dict[str, object]) -> None:
     with pytest.raises(ValueError, match=next(iter(bad))):
         SweepOptions(**bad).episode_options()  # type: ignore[arg-type]
+
+
+def test_a_folder_of_scenes_is_played_in_the_order_of_their_names(tmp_path: Path) -> None:
+    """Seeds count the files, and begin again after the last one."""
+    for name in ("room-10", "room-9", "yard", "notes.txt"):
+        (tmp_path / name).with_suffix("" if name.endswith("txt") else ".json").touch()
+    sweep = SweepOptions(agents=("greedy",), scenes=tmp_path, output=tmp_path / "results")
+    played = sweep.episode_options()
+    assert [(e.seed, e.scene) for e in played] == [
+        (k, f"{tmp_path}/{name}.json") for k, name in enumerate(("room-9", "room-10", "yard"))
+    ]
+    assert [e.settings["scenes"] for e in played] == [e.scene for e in played]
+    assert {"room-9", "yard"} < {
+        sweep.place(e).name.removeprefix("HazardFire-v1-").partition("-paper")[0] for e in played
+    }
+    more = SweepOptions(agents=("greedy",), scenes=tmp_path, episodes=4, seed=2).episode_options()
+    assert [Path(str(e.scene)).stem for e in more] == ["yard", "room-9", "room-10", "yard"]
+    assert SweepOptions().count == 25, "as many as a split of the benchmark has"
 
 
 def test_what_is_there_is_not_played_again_and_the_table_holds_its_scores(
@@ -112,7 +142,7 @@ def test_files_that_hold_no_whole_result_are_named_and_played_again(
     assert "ended by 2 error, 1 time" in printed
 
 
-@pytest.mark.parametrize("change", [(b'"format": 1', b'"format": 7'), (b'"hazard-ms": "', b'"hazard-ms": "0.0.1+')])
+@pytest.mark.parametrize("change", [(b'"format": 2', b'"format": 1'), (b'"hazard-ms": "', b'"hazard-ms": "0.0.1+')])
 def test_results_of_another_format_or_version_are_refused_before_anything_is_played(
     change: tuple[bytes, bytes], tmp_path: Path
 ) -> None:
@@ -135,6 +165,15 @@ def test_a_broken_simulation_is_told_by_the_exit_code(tmp_path: Path) -> None:
     assert sweep.evaluate(options) == 0
     result_of(second, ended="simulation error").write(options.place(second))
     assert sweep.evaluate(options) == 1
+
+
+def test_episodes_that_failed_are_played_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    options = SweepOptions(agents=("greedy",), episodes=3, output=tmp_path)
+    for episode, ended in zip(options.episode_options(), ("time", "worker died", "too slow"), strict=True):
+        result_of(episode, ended=ended).write(options.place(episode))
+    kept = [sweep.kept(options, episode) is not None for episode in options.episode_options()]
+    assert kept == [True, False, False]
+    assert capsys.readouterr().out.count("holds an episode that failed") == 2
 
 
 def test_an_unknown_agent_is_refused_before_anything_is_played(tmp_path: Path) -> None:

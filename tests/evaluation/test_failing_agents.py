@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from hazard_ms.evaluation.options import SweepOptions
+from hazard_ms.evaluation.result import EpisodeResult
 from tests.worlds.results import result_of
 
 pytestmark = pytest.mark.long  # each process takes seconds to start
@@ -39,6 +40,28 @@ class Raises(Fine):
 class Dies(Fine):
     def __init__(self):
         os._exit(0)
+
+class Looks(Fine):
+    def reset(self, brief):
+        self.looked = False
+
+    def act(self, decision):
+        if not self.looked:
+            self.looked = True
+            return Action("explore")
+        return self.fail()
+
+class Junk(Looks):
+    def fail(self):
+        return "pick up everything"
+
+class Late(Looks):
+    def fail(self):
+        time.sleep(1000)
+
+class Shot(Looks):
+    def fail(self):
+        os.kill(os.getpid(), 9)
 
 class Sleeps(Fine):
     def __init__(self):
@@ -76,13 +99,35 @@ def test_an_agent_that_fails_costs_its_episodes_alone(tmp_path: Path) -> None:
     for name, told in (
         ("Quits", "the agent own.py:Quits must return or raise an error, got sys.exit(0) (own.py, line 14)"),
         ("Raises", "KeyError: 'no such plan' (own.py, line 18)"),
-        ("Dies", "its process ended, killed or by os._exit"),
+        ("Dies", "worker died: killed or by os._exit"),
     ):
         (said,) = (line for line in lines if line.startswith(f"no result: own.py:{name}, seed 0: "))
         assert told in said and "to see it again: hazard-ms play -e HazardFire-v1" in said
         assert f"--agent own.py:{name} -s 0" in said
         assert f"own.py:{name}: ended by 1 error; failures: none" in lines
     assert list((tmp_path / "results").iterdir()) == [options.place(finished)]
+
+
+def test_an_agent_that_fails_later_is_scored_by_what_it_had_done(tmp_path: Path) -> None:
+    """All looked around for 60 frames; the process of one was lost twice. The next run plays them again."""
+    names = ("Junk", "Late", "Shot")
+    options = SweepOptions(agents=tuple(f"own.py:{name}" for name in names), output=tmp_path / "results")
+    running = evaluate(tmp_path, "--episodes", "1", "--timeout", "5", "--agents", *options.agents)
+    out, error = running.communicate(timeout=PATIENCE)
+    assert running.returncode == 1, error[-3000:]
+    for name, ended, told in (
+        ("Junk", "error", "ValueError: an action must be an Action(verb, target), got 'pick up everything'"),
+        ("Late", "too slow", "too slow: a decision took longer than 5 s"),
+        ("Shot", "worker died", "worker died: killed or by os._exit"),
+    ):
+        (path,) = (tmp_path / "results").glob(f"*{name}*.json")
+        result = EpisodeResult.read(path)
+        assert result.ended == ended and result.error.startswith(told), result.error
+        assert [d.verb for d in result.decisions] == ["explore"] and result.frames == result.decisions[0].frames > 50
+        assert result.links[-1].frame == result.frames
+        assert f"own.py:{name}: ended by 1 {ended}; failures: none" in out.splitlines()
+        assert f"not finished: own.py:{name}, seed 0: {told}" in out
+    assert "workers died in 1 episodes, which were played a second time" in out
 
 
 def test_workers_end_with_a_parent_that_was_killed(tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html.parser
 from pathlib import Path
 
 import pytest
@@ -10,30 +9,7 @@ import pytest
 from hazard_ms.evaluation.metrics import Fate
 from hazard_ms.evaluation.page import address, page
 from hazard_ms.evaluation.result import DecisionRecord, EpisodeResult
-
-
-class Reader(html.parser.HTMLParser):
-    """Collects text and addresses, and checks that tags close in order."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.open: list[str] = []
-        self.text = ""
-        self.links: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.links += [value or "" for key, value in attrs if key in ("src", "href")]
-        if tag not in ("meta", "br"):
-            self.open.append(tag)
-
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        return
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag
-
-    def handle_data(self, data: str) -> None:
-        self.text += data
+from tests.worlds.files.html_pages import Reader
 
 
 def test_page_is_whole_and_says_what_happened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -47,7 +23,10 @@ def test_page_is_whole_and_says_what_happened(tmp_path: Path, monkeypatch: pytes
         1500,
         "stopped",
         (Fate("bag_1", "bag", 5.0, True, True, 300), Fate("pen_1", "pen", 1.0, False, False)),
-        (DecisionRecord(0, "walk_to", "bag_1", False, "no_path", 40, "cost 1.0 < 2"),),
+        (
+            DecisionRecord(0, "walk_to", "bag_1", False, "no_path", 40, "cost 1.0 < 2"),
+            DecisionRecord(40, "walk_to", "bag_1", False, "max_frames", 100),
+        ),
         "hazard-ms play -s 7",
     )
     video = tmp_path / "draft.mp4"
@@ -62,11 +41,13 @@ def test_page_is_whole_and_says_what_happened(tmp_path: Path, monkeypatch: pytes
         "bag_1",
         "left behind",
         "no path",
+        "walk_to bag_1 unfinished",
         "cost 1.0 < 2",
         "hazard-ms play -s 7",
         "kitchen/07",
     ):
         assert told in reader.text
+    assert "max frames" not in reader.text  # whoever walks on gets there: nothing failed
     monkeypatch.setattr("hazard_ms.evaluation.page.LARGEST_EMBEDDED", 4)
     reader = Reader()
     reader.feed(page(result, address(video, "a film #1 100%.mp4")))

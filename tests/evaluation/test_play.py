@@ -110,6 +110,9 @@ def test_the_video_opens_and_shows_every_sixth_frame_and_the_end(result: Episode
 def test_the_result_reads_back_as_it_was(result: EpisodeResult, folder: Path) -> None:
     result.write(folder / "out.json")
     assert EpisodeResult.read(folder / "out.json") == result
+    assert 0.5 < sum(result.phase_seconds.values()) / result.wall_seconds <= 1.0
+    assert set(result.phase_seconds) == {"build", "looks", "agent", "physics"}
+    assert [link.frame for link in result.links][:2] == [0, 50] and result.links[-1].frame == result.frames
     told = json.loads((folder / "out.json").read_text())
     assert told["score"] == {"value": 0.0, "step": None, "damage": None}
     assert set(told["versions"]) >= {"hazard-ms", "sapien", "mani-skill", "gymnasium", "torch", "numpy", "python"}
@@ -124,7 +127,7 @@ def test_the_page_holds_the_film_and_the_command(result: EpisodeResult, folder: 
 def same(result: EpisodeResult) -> dict[str, Any]:
     """All that must not depend on the run."""
     row = result.to_dict()
-    return {key: row[key] for key in row if key != "wall_seconds"}
+    return {key: row[key] for key in row if key not in ("wall_seconds", "phase_seconds")}
 
 
 def test_its_command_plays_the_same_episode_again(

@@ -13,6 +13,8 @@ import pytest
 
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.agents.base import Agent
+from hazard_ms.evaluation.hashes import extended
+from hazard_ms.evaluation.result import Link
 from hazard_ms.evaluation.runner import FRAME_REACHED, Runner
 from hazard_ms.evaluation.watchers import Progress, Watcher
 from hazard_ms.skills.brief import Brief, random_seed
@@ -133,3 +135,36 @@ def test_the_map_of_a_decision_is_a_copy(env: SkillEnv) -> None:
     later, *_ = env.step(Action(EXPLORE))
     assert (decision.map.explored == before).all() and later.map.explored.sum() > before.sum()
     assert (env.seen.explored == later.map.explored).all()
+
+
+def test_links_differ_where_anything_differs(env: SkillEnv) -> None:
+    """What differs by less than the grain is the same; and so is everything after a second reset."""
+    env.reset(seed=SEED)
+    base, world = env.base, env.base.world
+    before = linked(env)
+    assert before == linked(env) and extended_by(before, env) == before, "one link for a frame"
+    world.position[0, 0, 2] = 0.5
+    moved = linked(env)
+    world.position[0, 0, 2] += 1e-5
+    assert linked(env) == moved != before
+    world.position[0, 0, 2] += 1e-3
+    assert linked(env) != moved
+    env.reset(seed=SEED)
+    assert linked(env) == before, "hashes repeat"
+    base.episode.damage.damaged[0, 0] = True
+    damaged = linked(env)
+    base.episode.states["fire"].temperature[0, 0] += 1.0
+    assert before != damaged != linked(env)
+    after = [extended_by([Link(50, start)], env)[-1] for start in ("a", "b")]
+    assert after[0].frame == 0 and after[0] != after[1], "a link holds those before it"
+
+
+def linked(env: SkillEnv) -> list[Link]:
+    """A chain of one link."""
+    return extended_by([], env)
+
+
+def extended_by(links: list[Link], env: SkillEnv) -> list[Link]:
+    made = list(links)
+    extended(made, env)
+    return made

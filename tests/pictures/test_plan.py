@@ -30,6 +30,15 @@ def test_water_comes_from_its_side_and_north_is_up(side: str, where: str) -> Non
     assert [name for name, is_there in inside.items() if is_there] == [where]
 
 
+def test_water_comes_from_both_sides_where_there_are_two() -> None:
+    one, other, both = (
+        plan(dataclasses.replace(ROOM, flood_side=side, second_flood_side=second))
+        for side, second in (("south", None), ("west", None), ("south", "west"))
+    )
+    water = [(image == WATER).all(-1) for image in (one, other, both)]
+    assert (water[2] == (water[0] | water[1])).all() and water[2].sum() > max(water[0].sum(), water[1].sum())
+
+
 def test_the_arrow_of_the_agent_points_where_it_looks() -> None:
     """Between plans that differ in the heading alone, the difference lies where the arrows are."""
     east, north = (

@@ -93,6 +93,19 @@ def test_files_are_small() -> None:
     assert {name: length for name, length in lengths.items() if length > MOST_LINES} == {}
 
 
+def test_the_oracle_alone_of_all_agents_can_know_the_future() -> None:
+    """Imports through other modules count, too."""
+
+    def used(module: str, seen: set[str]) -> set[str]:
+        for other in GRAPH[module] - seen:
+            seen |= {other} | used(other, seen | {other})
+        return seen
+
+    future = {"sketch.timeline", "sketch.recording"}
+    privileged = {module for module in modules() if room(module) == "agents" and used(module, set()) & future}
+    assert privileged == {"agents.oracle", "agents.truth"}
+
+
 def test_nobody_reaches_into_an_environment() -> None:
     """`env._x` belongs to the environment: others ask its public parts."""
     owners = ("env", "base", "unwrapped")

@@ -84,6 +84,8 @@ def test_names_that_cannot_be_are_refused(kind: str, name: Any, told: str) -> No
 def test_lengths_that_cannot_be_are_refused(frames: Any) -> None:
     with pytest.raises(ValueError, match="max_frames must be a whole number from 1"):
         registry.register_task("HazardLength-v0", "package.module:thing", frames)
+    with pytest.raises(ValueError, match=r"split_frames\['hard'\] must be a whole number from 1"):
+        registry.register_task("HazardLength-v0", "package.module:thing", 9, {"hard": frames})
     assert "HazardLength-v0" not in registry.TASKS
 
 

@@ -163,7 +163,7 @@ def test_arm_does_not_sag(arena: Arena) -> None:
 def test_kinematics_agree_with_the_simulator_and_with_finite_differences(arena: Arena) -> None:
     arena.restart(-1.0, 0.3, 0.7)
     agent = arena.agent
-    for posture in (agent.tucked, agent.folded, *agent.stretched):
+    for posture in (agent.tucked, *agent.between, *agent.stretched):
         for _ in range(60):
             arena.step(agent.action(0.0, 0.0, posture, True))
         arm = agent.arm()
@@ -171,6 +171,9 @@ def test_kinematics_agree_with_the_simulator_and_with_finite_differences(arena: 
         hand, turn, jacobian = agent.kinematics(arm)
         np.testing.assert_allclose(hand, agent.hand(), atol=1e-4)
         np.testing.assert_allclose(turn, rotation_matrix(agent.gripper_pose()[1]), atol=1e-4)
+        links = np.array([link.pose.p[0].numpy() for link in agent.robot.links])
+        places = agent.arm_places(arm)
+        assert (np.linalg.norm(places[:, None] - links, axis=-1).min(axis=1) < 1e-3).all() and len(places) > 2
         for j in range(len(arm)):
             step = np.zeros(len(arm))
             step[j] = 1e-3

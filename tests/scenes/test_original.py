@@ -11,7 +11,8 @@ import pytest
 from hazard_ms.assets.index import asset
 from hazard_ms.scenes.original.axes import SouthWestCorner, from_euler, our_rotation
 from hazard_ms.scenes.original.read import read
-from hazard_ms.spec import SceneSpec
+from hazard_ms.scenes.original.start import START_HEADING, start
+from hazard_ms.spec import AgentStart, Fixture, Room, SceneSpec
 from tests.worlds.files.original_folders import (
     FIRE_INFO,
     FLOOD,
@@ -220,3 +221,15 @@ def test_an_agent_in_the_furniture(tmp_path: Path) -> None:
     found = read(folder(tmp_path / "a", kitchen(), {**FIRE_INFO, "agent": [1.0, 0.0, 2.0]}, FLOOD))
     moved = math.dist(found.spec.agent_start.position, (1.0 - CORNER[0], 2.0 - CORNER[1]))
     assert 0.5 < moved < 1.0 and any("agent starts" in n for n in found.notes)
+
+
+def test_an_agent_shut_in_by_furniture() -> None:
+    """In the corner behind two cabinets a robot would have room to stand, but no way out."""
+    walls = [
+        Fixture(f"cabinet_{k}", "cabinet", "plain_box", (*at, 0.0), scale=size)
+        for k, (at, size) in enumerate((((1.0, 0.5), (0.2, 1.0, 0.9)), ((0.55, 1.1), (1.1, 0.2, 0.9))))
+    ]
+    found, note = start((0.45, 0.5), Room((4.0, 4.0)), walls)
+    assert "agent starts" in note and (found.position[0] > 1.1 + 0.28 or found.position[1] > 1.2 + 0.28)
+    assert math.dist(found.position, (0.45, 0.5)) < 1.1
+    assert start((0.45, 0.5), Room((4.0, 4.0)), walls[:1]) == (AgentStart((0.45, 0.5), START_HEADING), "")

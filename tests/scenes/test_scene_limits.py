@@ -34,6 +34,18 @@ def test_nothing_is_smoother_than_smooth(name: str, words: str) -> None:
         from_json(changed(**{name: -0.001}))
 
 
+def test_water_comes_from_two_different_walls_or_from_one() -> None:
+    data = json.loads(to_json(SPEC))
+    assert "second_flood_side" not in data  # scenes that were written before it could be given are the same bytes
+    walls = [wall for wall in ("south", "east", "north", "west") if wall != SPEC.flood_side]
+    for wall in walls:
+        twice = from_json(json.dumps({**data, "second_flood_side": wall}))
+        assert twice.second_flood_side == wall and from_json(to_json(twice)) == twice
+    for wall in (SPEC.flood_side, "partition_1"):
+        with pytest.raises(ValueError, match=f"second_flood_side must be one of {', '.join(walls)}, got '{wall}'"):
+            from_json(json.dumps({**data, "second_flood_side": wall}))
+
+
 def test_everything_weighs_something() -> None:
     assert from_json(changed(mass=0.001)).bodies[0].mass == 0.001
     for mass in (0.0, -1.0):

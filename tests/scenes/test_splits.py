@@ -22,6 +22,7 @@ SPLITS = {
     "test": ("kitchen_b",),
     "large": ("flat_a",),
     "new_objects": ("kitchen_b_new",),
+    "hard": ("kitchen_b_hard",),
 }
 
 
@@ -37,6 +38,15 @@ def test_splits() -> None:
     for bad in ("kitchen_a/25", "kitchen_a/7", "attic/00", "", "kitchen_a/../../etc"):
         with pytest.raises(ValueError, match="scene must be one of kitchen_a/00 to kitchen_a/24"):
             scene(bad)
+
+
+def test_hard_rooms_hold_more_targets_more_fires_and_two_inflows() -> None:
+    """Than those of the test split, docs/benchmark.md 1."""
+    hard, usual = ([scene(name) for name in scene_names(split)[::3]] for split in ("hard", "test"))
+    assert all(12 <= len(s.targets) <= 20 and len(s.fires) in (3, 4) for s in hard)
+    assert all(s.second_flood_side in {"north", "south", "east", "west"} - {s.flood_side} for s in hard)
+    assert all(s.second_flood_side is None for s in usual)
+    assert np.mean([len(s.targets) for s in hard]) > 1.3 * np.mean([len(s.targets) for s in usual])
 
 
 def test_building_a_scene_is_quick() -> None:

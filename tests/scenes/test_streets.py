@@ -22,22 +22,27 @@ NAMES = splits.all_scene_names("outdoor")
 SAMPLE = [pytest.param(n, marks=() if k % EVERY == 0 else pytest.mark.long) for k, n in enumerate(NAMES)]
 
 
-def test_four_regions_of_25_scenes_one_of_which_is_the_test_split() -> None:
+def test_five_kinds_of_25_scenes_of_which_three_are_for_training() -> None:
     places = Counter(n.split("/")[0] for n in NAMES)
-    assert len(NAMES) == 100 and set(places.values()) == {25} and len(places) == 4
-    assert len(splits.scene_names("test", "outdoor")) == 25
+    assert len(NAMES) == 125 and set(places.values()) == {25} and len(places) == 5
     train = {n.split("/")[0] for n in splits.scene_names("train", "outdoor")}
-    assert not train & {n.split("/")[0] for n in splits.scene_names("test", "outdoor")}
+    for split in ("test", "hard"):
+        assert len(splits.scene_names(split, "outdoor")) == 25
+        assert not train & {n.split("/")[0] for n in splits.scene_names(split, "outdoor")}
 
 
 @pytest.mark.parametrize("name", SAMPLE)
 def test_a_street_is_as_the_rules_of_the_benchmark_say(name: str) -> None:
-    """docs/benchmark.md 1: 15 targets, three carts, 16 m x 16 m; wind of 2.5 to 5 m/s (docs/physics.md 1.3)."""
+    """docs/benchmark.md 1: 15 targets, three carts, 16 m x 16 m; wind of 2.5 to 5 m/s (docs/physics.md 1.3).
+
+    In the split `hard` 20 targets and wind of 5 to 8 m/s.
+    """
     spec = splits.scene(name)
+    targets, (least, most) = (20, (5.0, 8.0)) if spec.split == "hard" else (15, (2.5, 5.0))
     assert spec.room.open_air and spec.room.size == (16.0, 16.0) and 1 <= len(spec.fires) <= 3
-    assert len(spec.targets) == len(spec.bodies) == 15 and {b.category for b in spec.bodies} <= set(WIND_POOL)
+    assert len(spec.targets) == len(spec.bodies) == targets and {b.category for b in spec.bodies} <= set(WIND_POOL)
     assert len(spec.containers) == 3
-    assert 2.5 <= math.hypot(*spec.wind) <= 5.0
+    assert least - 1e-3 <= math.hypot(*spec.wind) <= most + 1e-3
     for thing in (*spec.bodies, *spec.containers):
         assert all(0.0 < c < 16.0 for c in thing.position[:2])
     carts = [c.position for c in spec.containers]

@@ -13,7 +13,7 @@ from hazard_ms.skills import failures
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.context import Skill
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action
-from hazard_ms.skills.motor.arm import reach_for
+from hazard_ms.skills.motor.arm import CARRIED, reach_for
 from hazard_ms.skills.motor.grasping import pick_up
 from hazard_ms.skills.motor.motion import move_by, turn_by, turn_to
 from hazard_ms.skills.motor.stowing import drop
@@ -35,9 +35,9 @@ def test_a_thing_is_fetched_and_put_into_the_bag(fresh: Arena, name: str) -> Non
         return
     assert picked.ok and bool(fresh.world.held[0, index])
     on_furniture = name in ("mug", "deep", "top")
-    # about 40 to 80 (docs/benchmark.md 1), more over furniture
-    assert 30 <= picked.frames <= (150 if on_furniture else 80)
-    assert fresh.stage.arm_gap(fresh.agent.tucked) < 0.5
+    # about 20 to 80 (docs/benchmark.md 1), more where the arm must be lifted far over furniture
+    assert 15 <= picked.frames <= (110 if on_furniture else 80)
+    assert fresh.stage.arm_gap(fresh.agent.tucked) < CARRIED + 0.1  # it goes on to fold while the base drives
     where = fresh.base.actors[name].pose.p[0].numpy()
     assert np.linalg.norm(where - fresh.agent.hand()) < 0.5  # half the diagonal of the largest, and a hand's breadth
     assert fresh.run(pick_up(fresh.stage, fresh.index("bowl"))).reason == failures.ALREADY_HOLDING
@@ -70,7 +70,7 @@ def test_a_pick_up_comes_nearer_by_itself(fresh: Arena) -> None:
 def test_an_unreachable_thing_is_a_clear_failure_in_bounded_time(arena: Arena) -> None:
     arena.restart(1.4, 2.5)
     result = arena.run(pick_up(arena.stage, arena.index("walled")))
-    assert result.reason == failures.UNREACHABLE and result.frames < 320
+    assert result.reason == failures.UNREACHABLE and result.frames <= 60
     assert arena.stage.arm_gap(arena.agent.tucked) < 0.5
 
 

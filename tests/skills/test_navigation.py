@@ -126,3 +126,29 @@ def test_where_no_way_leads_its_length_is_infinite() -> None:
     assert ways.length((2.0, 2.0), 0.5) == float("inf")
     outside = Ways(height, seen, CELL, ORIGIN, (-2.0, -2.0), [(99.0, 0.0)], RADIUS)
     assert outside.path((99.0, 0.0), 0.5) is None and outside.length((99.0, 0.0), 0.5) == float("inf")
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.02, 0.05, 0.08])
+def test_a_gap_is_tried_where_the_map_is_too_coarse_to_tell_whether_the_robot_fits(offset: float) -> None:
+    """It is 0.62 m wide, the robot 0.58 m; every cell that an obstacle touches is an obstacle as a whole."""
+    height, seen = grid()
+    low, high = 1.0 + offset, 1.62 + offset
+    box(height, (-0.1, 0.1), (-4.0, float(np.ceil(round(low / CELL, 6))) * CELL), 2.0)
+    box(height, (-0.1, 0.1), (float(np.floor(round(high / CELL, 6))) * CELL, 4.0), 2.0)
+    path = plan(height, seen, CELL, ORIGIN, (-2.0, 1.3), (2.0, 1.3), RADIUS, 0.3)
+    assert path is not None and path.short <= 0.3
+    inside = [p for p in along(path.points, (-2.0, 1.3)) if abs(p[0]) < 0.1]
+    assert inside and all(low + RADIUS - CELL / 2 < p[1] < high - RADIUS + CELL / 2 for p in inside)
+    box(height, (-0.1, 0.1), (-2.0, -1.0), 0.0)
+    around = plan(height, seen, CELL, ORIGIN, (-2.0, 1.3), (2.0, 1.3), RADIUS, 0.3)
+    assert around is not None and around.points[:, 1].min() < -1.0, "a wide gap is worth a detour"
+
+
+def test_a_detour_is_worth_it_where_only_its_end_is_near_enough() -> None:
+    """Before the wall the robot gets to 1.1 m from its goal; behind it, to the goal."""
+    height, seen = grid()
+    box(height, (-0.1, 0.1), (-4.0, 1.5), 2.0)
+    lazy = plan(height, seen, CELL, ORIGIN, (-1.5, -1.0), (0.6, -1.0), RADIUS, 0.5)
+    assert lazy is not None and lazy.points[-1, 0] < 0.0 and 0.9 < lazy.short <= 1.1
+    eager = plan(height, seen, CELL, ORIGIN, (-1.5, -1.0), (0.6, -1.0), RADIUS, 0.5, 0.8)
+    assert eager is not None and eager.points[-1, 0] > 0.0 and eager.short <= 0.5

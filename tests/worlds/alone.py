@@ -25,7 +25,7 @@ def alone(test: Callable[..., None]) -> Callable[..., None]:
             test(**arguments)
             return
         node = os.environ["PYTEST_CURRENT_TEST"].rsplit(" (", 1)[0]
-        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", node]
+        command = [sys.executable, "-m", "pytest", "-q", "--long", "-p", "no:cacheprovider", node]
         environ = {**{k: v for k, v in os.environ.items() if not k.startswith("PYTEST")}, MARK: "1"}
         done = subprocess.run(
             command, capture_output=True, text=True, timeout=280, cwd=Path(__file__).parents[2], env=environ

@@ -13,9 +13,11 @@ from hazard_ms import registry
 
 
 @contextmanager
-def registered_task(name: str, maker: Any, max_frames: int = 1500) -> Iterator[str]:
+def registered_task(
+    name: str, maker: Any, max_frames: int = 1500, split_frames: Mapping[str, int] | None = None
+) -> Iterator[str]:
     """The task `name` is registered as long as the context lasts."""
-    registry.register_task(name, maker, max_frames)
+    registry.register_task(name, maker, max_frames, split_frames)
     try:
         yield name
     finally:

@@ -4,7 +4,8 @@ Partitions run from one side of a room to the other, so its parts are rectangles
 parts along the source wall it comes from the whole wall; into the others through doorways, each reached by the shortest
 path. The depth decreases along the path, so a part behind a partition fills from its doorway, and the level is the same
 on both sides of it (but for the thickness of the partition, and at the outer edge of a doorway that water passes on its
-path elsewhere). Nothing flows through closed walls.
+path elsewhere). Nothing flows through closed walls. Where water comes from a second wall, too, a path begins at
+whichever wall makes it shorter; that wall is described as a doorway without depth, in which the water already stands.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from hazard_ms.hazards.flood import reach
 from hazard_ms.hazards.flood.flood_state import FloodState
 from hazard_ms.hazards.flood.reach import NEVER
 from hazard_ms.kernels.launch import Launches, of_environments
-from hazard_ms.spec import Room, SceneSpec, Vec2
+from hazard_ms.spec import Partition, Room, SceneSpec, Vec2
 
 # Direction in which water flows in from each side of a room
 SIDES: dict[str, Vec2] = {"south": (0.0, 1.0), "east": (-1.0, 0.0), "north": (0.0, -1.0), "west": (1.0, 0.0)}
@@ -26,16 +27,25 @@ SIDES: dict[str, Vec2] = {"south": (0.0, 1.0), "east": (-1.0, 0.0), "north": (0.
 
 @dataclass(frozen=True)
 class Doorway:
-    """The inside of a doorway: a rectangle on the floor."""
+    """The inside of a doorway, or a second source wall: a rectangle on the floor, and the parts beside it."""
 
     low: Vec2  # [m]
     high: Vec2  # [m]
-    partition: int  # number of the partition it is in
-    part: int  # number of one of the two parts that it joins; the other differs in the bit of the partition
+    part: int  # number of one of the parts beside it
+    differing: int  # bits in which the others differ: of a doorway, that of its partition
+
+
+class Source(NamedTuple):
+    """A wall from which water comes."""
+
+    flow: Vec2  # unit vector in which water leaves it
+    origin_length: float  # path length at the origin of the room, were there no partitions [m]
+    bits: int  # of the partitions that separate parts along it from others
+    part: int  # those bits of the parts along it
 
 
 class FlowPaths(NamedTuple):
-    """The parts and doorways of E rooms with W partitions and D doorways.
+    """The parts and doorways of E rooms with W partitions and D doorways, second source walls among them.
 
     The number of a part has one bit per partition: 1 on the side of larger x or y.
     """
@@ -46,40 +56,61 @@ class FlowPaths(NamedTuple):
     source_part: Tensor  # bits that the parts along the source wall share: which, and their values, [E, 2]
     doorway: Tensor  # low x, y and high x, y of doorways [m], [E, D, 4]
     doorway_distance: Tensor  # path length from the source wall to the doorway [m], [E, D]
-    doorway_part: Tensor  # number of a part beside the doorway, and the bit in which the other differs, [E, D, 2]
+    doorway_part: Tensor  # number of a part beside the doorway, and bits in which others beside it differ, [E, D, 2]
 
 
 def sizes(specs: tuple[SceneSpec, ...]) -> dict[str, int]:
-    """The largest numbers of partitions, W, and of doorways, D."""
+    """The largest numbers of partitions, W, and of doorways and second source walls together, D."""
     return {
         "W": max(len(s.room.partitions) for s in specs),
-        "D": max(sum(o.kind == "doorway" for o in s.room.openings) for s in specs),
+        "D": max(sum(o.kind == "doorway" for o in s.room.openings) + (s.second_flood_side is not None) for s in specs),
     }
 
 
 def paths_of(spec: SceneSpec, partitions: int, doorways: int) -> dict[str, Any]:
     """The entries of FlowPaths for one scene, padded to so many. Raises ValueError for an unknown side."""
-    if spec.flood_side not in SIDES:
-        raise ValueError(f"flood_side of {spec.name} must be one of {', '.join(SIDES)}, got {spec.flood_side!r}")
-    room, flow = spec.room, SIDES[spec.flood_side]
-    across = [1 if p.axis == "x" else 0 for p in room.partitions]
-    origin_length = max(-flow[0] * room.size[0], -flow[1] * room.size[1], 0.0)
-    bits = sum(1 << k for k, axis in enumerate(across) if flow[axis])
-    # from the east and the north, water meets the sides of larger x and y first
-    source_part = (bits, bits if sum(flow) < 0 else 0)
+    sides = [spec.flood_side] if spec.second_flood_side is None else [spec.flood_side, spec.second_flood_side]
+    for side in sides:
+        if side not in SIDES:
+            raise ValueError(f"flood_side of {spec.name} must be one of {', '.join(SIDES)}, got {side!r}")
+    room = spec.room
+    sources = [_source(room, side) for side in sides]
     found = [_doorway(room, o.wall, o.centre, o.width) for o in room.openings if o.kind == "doorway"]
-    distances = _doorway_distances(found, flow, origin_length, source_part)
+    distances = _doorway_distances(found, sources)
+    for source in sources[1:]:
+        found.append(_as_doorway(room, source))
+        distances.append(0.0)
     spare = doorways - len(found)
+    first = sources[0]
     return {
-        "flow": list(flow),
-        "origin_length": origin_length,
-        "partition": [[float(axis), p.at] for axis, p in zip(across, room.partitions, strict=True)]
-        + [[0.0, NEVER]] * (partitions - len(across)),
-        "source_part": list(source_part),
+        "flow": list(first.flow),
+        "origin_length": first.origin_length,
+        "partition": [[float(_across(p)), p.at] for p in room.partitions]
+        + [[0.0, NEVER]] * (partitions - len(room.partitions)),
+        "source_part": [first.bits, first.part],
         "doorway": [[*d.low, *d.high] for d in found] + [[0.0] * 4] * spare,
         "doorway_distance": distances + [NEVER] * spare,
-        "doorway_part": [[d.part, 1 << d.partition] for d in found] + [[0, 0]] * spare,
+        "doorway_part": [[d.part, d.differing] for d in found] + [[0, 0]] * spare,
     }
+
+
+def _across(partition: Partition) -> int:
+    """The axis that a partition crosses: 0 for x, 1 for y."""
+    return 1 if partition.axis == "x" else 0
+
+
+def _source(room: Room, side: str) -> Source:
+    flow = SIDES[side]
+    bits = sum(1 << k for k, p in enumerate(room.partitions) if flow[_across(p)])
+    # from the east and the north, water meets the sides of larger x and y first
+    return Source(flow, max(-flow[0] * room.size[0], -flow[1] * room.size[1], 0.0), bits, bits if sum(flow) < 0 else 0)
+
+
+def _as_doorway(room: Room, source: Source) -> Doorway:
+    """The source wall as a doorway without depth, beside all parts along it."""
+    low = (room.size[0] if source.flow[0] < 0 else 0.0, room.size[1] if source.flow[1] < 0 else 0.0)
+    high = (0.0 if source.flow[0] > 0 else room.size[0], 0.0 if source.flow[1] > 0 else room.size[1])
+    return Doorway(low, high, source.part, ((1 << len(room.partitions)) - 1) & ~source.bits)
 
 
 def _doorway(room: Room, wall: str, centre: float, width: float) -> Doorway:
@@ -91,21 +122,25 @@ def _doorway(room: Room, wall: str, centre: float, width: float) -> Doorway:
     part = sum(
         (not k == number and middle[0 if q.axis == "y" else 1] > q.at) << k for k, q in enumerate(room.partitions)
     )
-    return Doorway((x0, y0), (x1, y1), number, part)
+    return Doorway((x0, y0), (x1, y1), part, 1 << number)
 
 
 def _beside(doorway: Doorway) -> set[int]:
-    return {doorway.part, doorway.part ^ (1 << doorway.partition)}
+    return {doorway.part, doorway.part ^ doorway.differing}
 
 
-def _doorway_distances(
-    doorways: list[Doorway], flow: Vec2, origin_length: float, source_part: tuple[int, int]
-) -> list[float]:
-    """Length of the shortest path from the source wall to each doorway [m]: straight, or from doorway to doorway."""
-    lengths = []
-    for d in doorways:
-        straight = origin_length + sum(f * (d.low[k] if f > 0 else d.high[k]) for k, f in enumerate(flow))
-        lengths.append(straight if any(part & source_part[0] == source_part[1] for part in _beside(d)) else NEVER)
+def _straight(source: Source, doorway: Doorway) -> float:
+    """Length of the straight path from a source wall to a doorway [m], NEVER where there is none."""
+    if not any(part & source.bits == source.part for part in _beside(doorway)):
+        return NEVER
+    return source.origin_length + sum(
+        f * (doorway.low[k] if f > 0 else doorway.high[k]) for k, f in enumerate(source.flow)
+    )
+
+
+def _doorway_distances(doorways: list[Doorway], sources: list[Source]) -> list[float]:
+    """Length of the shortest path from a source wall to each doorway [m]: straight, or from doorway to doorway."""
+    lengths = [min(_straight(source, d) for source in sources) for d in doorways]
     for _ in doorways:  # each round finds at least one more shortest path
         for i, d in enumerate(doorways):
             for j, other in enumerate(doorways):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -79,7 +80,7 @@ def _paths(free: Grid, agent: AgentStart, targets: list[Box], size: Vec2) -> Gri
     return paths
 
 
-def flood_side(room: Room, draw: Draw) -> str:
-    """The wall from which water comes; one with a door or a window is more likely."""
-    leaky = {o.wall for o in room.openings}
-    return draw.weighted(WALLS, [LEAKY_WALL_WEIGHT if wall in leaky else 1.0 for wall in WALLS])
+def flood_side(room: Room, draw: Draw, dry: Sequence[str] = ()) -> str:
+    """The wall from which water comes, none of the `dry` ones; one with a door or a window is more likely."""
+    leaky, walls = {o.wall for o in room.openings}, [wall for wall in WALLS if wall not in dry]
+    return draw.weighted(walls, [LEAKY_WALL_WEIGHT if wall in leaky else 1.0 for wall in walls])

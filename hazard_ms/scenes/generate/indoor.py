@@ -14,14 +14,15 @@ from hazard_ms.scenes.generate.hazard_placement import (
     flood_side,
     start,
 )
-from hazard_ms.scenes.generate.kitchens import KITCHEN_A, KITCHEN_B, KITCHEN_B_NEW
+from hazard_ms.scenes.generate.kitchens import KITCHEN_A, KITCHEN_B, KITCHEN_B_HARD, KITCHEN_B_NEW
 from hazard_ms.scenes.generate.layout import Layout
 from hazard_ms.scenes.generate.living_rooms import CRAFT_ROOM_A, FLAT_A, LIVING_ROOM_A
 from hazard_ms.scenes.generate.scatter import Scatter, fill
 from hazard_ms.spec import SceneSpec
 
 LAYOUTS: dict[str, Layout] = {
-    layout.name: layout for layout in (KITCHEN_A, KITCHEN_B, LIVING_ROOM_A, CRAFT_ROOM_A, FLAT_A, KITCHEN_B_NEW)
+    layout.name: layout
+    for layout in (KITCHEN_A, KITCHEN_B, LIVING_ROOM_A, CRAFT_ROOM_A, FLAT_A, KITCHEN_B_NEW, KITCHEN_B_HARD)
 }
 ATTEMPTS = 60  # at one scene
 
@@ -55,4 +56,6 @@ def _attempt(layout: Layout, name: str, split: str, draw: Draw) -> SceneSpec:
     bare = take(free_for(room, *standing, FLAME_RADIUS), room.size, doorways(room), MIN_DOORWAY_DISTANCE)
     burning = fires(draw.one(layout.fires), scatter.free, bare, agent, targets, room.size, draw)
     bodies = tuple(sorted(scatter.bodies, key=lambda b: b.name))
-    return SceneSpec(name, room, tuple(made.fixtures), bodies, chosen, burning, agent, split, flood_side(room, draw))
+    side = flood_side(room, draw)
+    second = flood_side(room, draw, dry=(side,)) if layout.inflows > 1 else None
+    return SceneSpec(name, room, tuple(made.fixtures), bodies, chosen, burning, agent, split, side, second)

@@ -151,6 +151,7 @@ class Layout:
     targets: tuple[int, int] = (6, 14)  # number of target objects
     bodies: int = 60  # number of objects; the same in every scene, so that scenes can share a batch
     fires: tuple[int, ...] = (1, 2, 3)  # numbers of fire sources, equally likely
+    inflows: int = 1  # number of walls from which water comes: 1 or 2
     height: float = 2.6  # [m]
     aisle: float = 0.8  # width of the passages [m]
     doorway: Span = (0.3, 0.7)  # where in a partition, as fractions of its length

@@ -1,4 +1,4 @@
-"""Generates outdoor scenes: a region, three shopping carts, fifteen things that can blow away, a wind, and fires."""
+"""Generates outdoor scenes: a region, three shopping carts, things that can blow away, a wind, and fires."""
 
 from __future__ import annotations
 
@@ -17,11 +17,9 @@ from hazard_ms.spec import Fixture, SceneSpec, Vec2
 from hazard_ms.spec.catalogue import CATEGORIES, HIGH_VALUE, WIND_POOL
 
 CARTS = 3  # in a scene [docs/benchmark.md 1]
-TARGETS = 15  # in a scene [docs/benchmark.md 1]
 BETWEEN_CARTS = 4.0  # at least [m] [ours]
 CART_SPACE = 0.5  # from a cart's box to anything else [m] [ours]: a robot must get to it
 FIRES = (1, 2, 3)  # numbers of fires, for tasks in which it burns outdoors, equally likely
-WIND = (2.5, 5.0)  # speed [m/s] docs/physics.md 1.3: the shipped scenes
 TRIES = 400  # draws for the carts
 ATTEMPTS = 60  # at one scene
 
@@ -41,7 +39,7 @@ def _compose(region: Region, name: str, split: str, draw: Draw) -> SceneSpec:
     made = lay_out(region, draw)
     _carts(made)
     scatter = Scatter(made, region, hollow=("cart",), in_the_open=0.8)
-    for category in _wanted(draw):
+    for category in _wanted(region.targets, draw):
         if not scatter.place(category, on_floor=draw.uniform() < 0.9):
             raise NoPlaceError(f"a {category} finds no place in {region.name}")
     agent = start(free_for(made.room, made.boxes, scatter.boxes, START_RADIUS) & scatter.free, draw)
@@ -57,14 +55,16 @@ def _compose(region: Region, name: str, split: str, draw: Draw) -> SceneSpec:
     )
     bodies = tuple(sorted(scatter.bodies, key=lambda b: b.name))
     kinds = tuple(sorted({b.category for b in bodies}))
-    return SceneSpec(name, made.room, tuple(made.fixtures), bodies, kinds, burning, agent, split, wind=_wind(draw))
+    return SceneSpec(
+        name, made.room, tuple(made.fixtures), bodies, kinds, burning, agent, split, wind=_wind(region, draw)
+    )
 
 
-def _wanted(draw: Draw) -> list[str]:
-    """Categories of the targets; both values are among them."""
+def _wanted(count: int, draw: Draw) -> list[str]:
+    """Categories of `count` targets; both values are among them."""
     pool = [c for c in WIND_POOL if models_of(c)]
     while True:
-        chosen = [draw.one(pool) for _ in range(TARGETS)]
+        chosen = [draw.one(pool) for _ in range(count)]
         if len({CATEGORIES[c].value == HIGH_VALUE for c in chosen}) == 2:
             return sorted(chosen, key=lambda c: (-max(asset(m).extent[0] for m in models_of(c)), c))
 
@@ -90,7 +90,7 @@ def _carts(made: Arrangement) -> None:
     raise NoPlaceError(f"{CARTS} carts find no place {BETWEEN_CARTS} m from each other in {REGION_SIZE} m")
 
 
-def _wind(draw: Draw) -> Vec2:
+def _wind(region: Region, draw: Draw) -> Vec2:
     """The velocity of the air [m/s]."""
-    speed, direction = draw.uniform(*WIND), draw.uniform(-math.pi, math.pi)
+    speed, direction = draw.uniform(*region.wind), draw.uniform(-math.pi, math.pi)
     return round(speed * math.cos(direction), 4), round(speed * math.sin(direction), 4)

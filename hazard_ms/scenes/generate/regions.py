@@ -7,7 +7,7 @@ faces -y of its own frame.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hazard_ms.spec import Vec2
 
@@ -75,6 +75,8 @@ class Region:
     grounds: tuple[Ground, ...]
     rules: tuple[Rule, ...]
     aisle: float = 0.9  # width of the passages [m]
+    targets: int = 15  # number of things that can blow away [docs/benchmark.md 1]
+    wind: tuple[float, float] = (2.5, 5.0)  # speed [m/s] docs/physics.md 1.3: the shipped scenes
 
 
 def dashes(
@@ -216,4 +218,6 @@ PARK = Region(
     ),
 )
 
-REGIONS: dict[str, Region] = {r.name: r for r in (STREET, CROSSING, PARKING, PARK)}
+PARKING_HARD = replace(PARKING, name="parking_hard", targets=20, wind=(5.0, 8.0))
+
+REGIONS: dict[str, Region] = {r.name: r for r in (STREET, CROSSING, PARKING, PARK, PARKING_HARD)}

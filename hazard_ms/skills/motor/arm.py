@@ -1,8 +1,8 @@
-"""Skills of the arm: `reach_for` a point, `retract`. For things on furniture the arm unfolds above it first."""
+"""Skills of the arm: `reach_for` a point, `fold`. What the map shows is in the way decides how the arm gets there."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,18 +10,28 @@ from numpy.typing import NDArray
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.failures import BLOCKED, MAX_FRAMES, UNREACHABLE
-from hazard_ms.skills.motor.kinematics import Posture, solve
-from hazard_ms.skills.motor.motion import CLOSE, finite, wrap
+from hazard_ms.skills.motor.kinematics import Posture, lifted, solve
+from hazard_ms.skills.motor.motion import BACK_OFF, CLOSE, finite, wrap
+from hazard_ms.skills.motor.routes import NEARLY, Leg, Place, Route, Surface, quickest
 
 REACHED_ERROR = 0.05  # position error at which a posture counts as reaching its point [m]
-OVER = 0.25  # the hand reaches things higher than this from above, with the arm unfolded first [m]
-NEARLY = 0.35  # a posture on the way is passed when every joint is this close [rad]
+CARRIED = 0.6  # the arm counts as folded when every joint is this close; it goes on to fold while the base drives [rad]
 THERE = 0.06  # a posture is reached when every joint is this close [rad]
 REACH_FRAMES = 60  # budget of one movement of the arm [frames]
-HOVER = 0.2  # height above a thing from which the hand comes down on it [m]
-READY = 0.75  # share of the arm's span at which the hand is held out
-ADVANCE = 0.02  # least decrease of the joint gap that counts as progress [rad]
-STALLED_FRAMES = 10  # frames without progress after which something must be in the way
+ADVANCE = 0.02  # least decrease of the joint gap that counts as progress, or of the way left by as many frames [rad]
+STALLED_FRAMES = 6  # frames without progress after which something must be in the way
+HOVER = 0.1  # height above a thing from which the hand comes down on it [m] [ours]
+SPARE = 0.1  # how much more room than that of its elbow an arm may need, as the map makes furniture wider [m] [ours]
+LEG_ROOM = 0.4  # lower furniture does not hinder the unfolding arm [m]
+
+
+def postures(stage: Stage, point: NDArray[np.float64]) -> Iterator[Posture]:
+    """Postures with the hand at `point`, [3] [m], world frame: one for each direction that fingers may point in."""
+    shoulder = stage.robot.shoulder()
+    level = point[:2] - shoulder[:2]
+    level = level / max(float(np.hypot(*level)), 1e-6)
+    for down in stage.robot.pointing:
+        yield solve(stage.robot, point, np.array([*(np.cos(down) * level), -np.sin(down)]))
 
 
 def posture_for(stage: Stage, point: NDArray[np.float64]) -> Posture:
@@ -29,12 +39,8 @@ def posture_for(stage: Stage, point: NDArray[np.float64]) -> Posture:
 
     The fingers point in the first direction that works, else in that which brings the hand nearest.
     """
-    shoulder = stage.robot.shoulder()
-    level = point[:2] - shoulder[:2]
-    level = level / max(float(np.hypot(*level)), 1e-6)
     best: Posture | None = None
-    for down in stage.robot.pointing:
-        found = solve(stage.robot, point, np.array([*(np.cos(down) * level), -np.sin(down)]))
+    for found in postures(stage, point):
         if best is None or found.error < best.error:
             best = found
         if best.error < REACHED_ERROR:
@@ -43,9 +49,7 @@ def posture_for(stage: Stage, point: NDArray[np.float64]) -> Posture:
     return best
 
 
-def reach_for(
-    stage: Stage, point: tuple[float, float, float] | NDArray[np.float64], frames: int = REACH_FRAMES
-) -> Skill:
+def reach_for(stage: Stage, point: tuple[float, float, float] | NDArray[np.float64]) -> Skill:
     """Bring the hand to `point`, [3] [m], world frame, and leave it there; UNREACHABLE where the arm is too short.
 
     Raises ValueError for anything but three finite coordinates.
@@ -57,24 +61,8 @@ def reach_for(
     best = posture_for(stage, goal)
     if best.error > REACHED_ERROR:
         return Result(False, UNREACHABLE)
-    used = 0
-    if goal[2] > OVER:
-        used += (yield from unfold(stage, goal[2] + HOVER)).frames
-    there = yield from go(stage, best.arm, frames)
-    return Result(there.ok, there.reason, used + there.frames)
-
-
-def ready(stage: Stage, height: float) -> NDArray[np.float64]:
-    """Arm joints, [..., J] [rad], with the hand straight before the shoulder, `height` [m] above the floor.
-
-    The fingers slant down.
-    """
-    heading, build = stage.robot.base()[2], stage.robot.build
-    ahead = READY * build.span(height)[1] - build.shoulder[0]
-    level = np.array([np.cos(heading), np.sin(heading)])
-    point = np.array([*(stage.robot.shoulder()[:2] + ahead * level), height])
-    down = stage.robot.pointing[0]
-    return solve(stage.robot, point, np.array([*(np.cos(down) * level), -np.sin(down)])).arm
+    surface = Surface(stage, Place(goal, 0.0, 0.0, 0.0))
+    return (yield from follow(stage, quickest(stage, [Leg(best.arm, 0.0)], surface, 0.0)))
 
 
 def never() -> bool:
@@ -95,37 +83,51 @@ def go(
     It fails as BLOCKED if neither the arm nor the base gets any further.
     """
     x, y, heading = stage.robot.base()
-    limit = stage.robot.build.forward_step
+    build = stage.robot.build
     best, since = np.inf, 0
     for used in range(frames):
         now_x, now_y, now = stage.robot.base()
         left = forward - ((now_x - x) * np.cos(heading) + (now_y - y) * np.sin(heading))
-        driven = abs(left) < CLOSE or used > 2 * abs(forward) / limit  # a base that is held up must not hold up the arm
+        left = 0.0 if abs(left) < CLOSE else left
         gap = stage.arm_gap(arm)
-        if done() or (gap < close and driven):
+        if done() or (gap < close and left == 0.0):
             return Result(True, frames=used)
-        best, since = (gap, used) if gap < best - ADVANCE or not driven else (best, since)
-        if used - since > STALLED_FRAMES:
-            return Result(False, BLOCKED, used)
-        yield stage.act(0.0 if driven else float(np.clip(left, -limit, limit)), wrap(heading - now), arm)
+        to_go = gap + abs(left) * build.arm_step / build.forward_step
+        best, since = (to_go, used) if to_go < best - ADVANCE else (best, since)
+        if used - since > STALLED_FRAMES:  # a base that is held up does not matter once the arm is there
+            return Result(gap < close, "" if gap < close else BLOCKED, used)
+        step = float(np.clip(left, -build.forward_step, build.forward_step))
+        yield stage.act(step, wrap(heading - now), arm)
     return Result(False, MAX_FRAMES, frames)
 
 
-def unfold(stage: Stage, height: float, forward: float = 0.0) -> Skill:
-    """Bring the hand before the shoulder at `height` [m], upper arm first; drive by `forward` [m] meanwhile."""
-    first = yield from go(stage, stage.robot.folded, REACH_FRAMES, close=NEARLY, forward=forward)
-    then = yield from go(stage, ready(stage, height), REACH_FRAMES, close=NEARLY)
-    return Result(then.ok, then.reason, first.frames + then.frames)
+def follow(stage: Stage, route: Route, done: Callable[[], bool] = never, close: float = THERE) -> Skill:
+    """Take the arm, and the base, along `route` until the arm is `close` [rad] to its end, or `done`."""
+    used, at = 0, 0.0
+    for leg in route.legs:
+        last = leg is route.legs[-1]
+        moved = yield from go(stage, leg.arm, REACH_FRAMES, done, close if last else NEARLY, leg.ahead - at)
+        used, at = used + moved.frames, leg.ahead
+        if last or not moved.ok or done():
+            break
+    return Result(moved.ok, moved.reason, used)
 
 
-def retract(stage: Stage, over: float | None = None, forward: float = 0.0) -> Skill:
-    """Fold the arm back beside the torso with what the hand holds, over the height `over` [m] or directly.
+def fold(stage: Stage, place: Place) -> Skill:
+    """Fold the arm beside the torso with what the hand holds, away from the thing that stood at `place`."""
+    tucked, back = stage.robot.tucked, lacking(stage)
+    goals = [Leg(tucked, ahead) for ahead in {0.0, -back}]
+    above = lifted(stage.robot, stage.robot.arm(), HOVER)
+    route = quickest(stage, goals, Surface(stage, place), back, above, leaving=True)
+    moved = yield from follow(stage, route, close=CARRIED)
+    if moved.ok:
+        return moved
+    freed = yield from go(stage, tucked, REACH_FRAMES, close=CARRIED, forward=-BACK_OFF)
+    return Result(freed.ok, freed.reason, moved.frames + freed.frames)
 
-    The base drives by `forward` [m] before the elbow comes down.
-    """
-    used = 0
-    if over is not None:
-        used += (yield from go(stage, ready(stage, over), REACH_FRAMES, close=NEARLY)).frames
-        used += (yield from go(stage, stage.robot.folded, REACH_FRAMES, close=NEARLY, forward=forward)).frames
-    last = yield from go(stage, stage.robot.tucked, REACH_FRAMES, close=NEARLY)
-    return Result(last.ok, last.reason, used + last.frames)
+
+def lacking(stage: Stage) -> float:
+    """Distance [m] by which the base may have to draw back so that the arm can fold or unfold before furniture."""
+    room = stage.robot.build.elbow_room
+    missing = room - stage.room_ahead(LEG_ROOM, room)
+    return missing + SPARE if missing > 0.0 else 0.0

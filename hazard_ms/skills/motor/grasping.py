@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,59 +11,41 @@ from hazard_ms.episode.grasp import GRASP_REACH
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
-from hazard_ms.skills.motor.arm import (
-    HOVER,
-    NEARLY,
-    OVER,
-    REACH_FRAMES,
-    THERE,
-    go,
-    posture_for,
-    ready,
-    retract,
-    unfold,
-)
-from hazard_ms.skills.motor.kinematics import Posture
+from hazard_ms.skills.motor.arm import HOVER, REACH_FRAMES, fold, follow, go, lacking, posture_for, postures
+from hazard_ms.skills.motor.kinematics import lifted
 from hazard_ms.skills.motor.motion import drive, turn_to
+from hazard_ms.skills.motor.navigation import LOW
+from hazard_ms.skills.motor.routes import NEARLY, Leg, Route, Surface, place_of, quickest
 from hazard_ms.skills.motor.walking import known, way_to
 
 LIMIT = 2.5  # greatest distance from the shoulder to the thing at which a pick-up begins (docs/benchmark.md 3) [m]
 GRASP = 0.8 * GRASP_REACH  # the hand shuts this close to the thing [m]
 CLEAR = 0.05  # the hand aims this far off the thing, so that it does not push it away [m]
+GETS_THERE = GRASP - CLEAR  # position error of a posture at which the hand gets close enough to the thing [m]
 APPROACH_FRAMES = 120  # budget for coming near enough [frames]
-ATTEMPTS = 2  # number of attempts, the second from nearer than the first
-PICK_FRAMES = 100  # frames after which no further attempt is begun
-LEG_ROOM = 0.4  # lower furniture does not hinder the unfolding arm [m]
-POSTURES = 2  # number of postures that are tried from one place
 STAND_OFF = 0.85  # share of the arm's span at which the base stands for a pick-up
 SHUT_FRAMES = 4  # frames that the hand needs to shut or to open
+OVER = 0.25  # the hand comes down from above on things higher than this [m]
+FEW_HITS = 8  # points of a route that may lie in something: the map is coarse, and makes things wider [ours]
+ASTRAY = 0.4  # the hand is led to a thing that moved if it is this close [m] [ours]
+TRIES = 2  # number of postures that are tried
+GIVE_UP = 20  # frames after which no other posture is tried [ours]
 
 
-def pick_up(stage: Stage, index: int, frames: int = PICK_FRAMES) -> Skill:
+def pick_up(stage: Stage, index: int) -> Skill:
     """Take the thing `index` into the hand.
 
-    Turn to it, come nearer if the arm is too short, reach, grasp, fold the arm back. No further attempt is begun after
-    `frames`.
+    Turn to it, come nearer if the arm is too short, reach, grasp, fold the arm back.
     """
     reason = _refusal(stage, index)
     if reason:
         return Result(False, reason)
     used = 0
-    for attempt in range(ATTEMPTS):
-        if attempt or not _within_span(stage, stage.position(index)):
-            near = yield from come_near(stage, stage.position(index), attempt)
-            used += near.frames
-            if not near.ok and attempt:
-                break
-        stage.robot.use_hand(stage.position(index), attempt)
-        turned = yield from turn_to(stage, stage.position(index)[:2])
-        taken = yield from _take(stage, index)
-        used += turned.frames + taken.frames
-        if stage.held == index:
-            return Result(True, frames=used)
-        if used >= frames:
-            break
-    return Result(False, failures.UNREACHABLE, used)
+    if not _within_span(stage, stage.position(index)):
+        used += (yield from come_near(stage, stage.position(index))).frames
+    used += (yield from turn_to(stage, stage.position(index)[:2])).frames
+    taken = yield from _take(stage, index)
+    return Result(taken.ok, taken.reason, used + taken.frames)
 
 
 def _refusal(stage: Stage, index: int) -> str:
@@ -85,12 +69,11 @@ def _within_span(stage: Stage, thing: NDArray[np.float64]) -> bool:
     return nearest <= float(np.hypot(thing[0] - x, thing[1] - y)) <= farthest
 
 
-def come_near(stage: Stage, thing: NDArray[np.float64], attempt: int) -> Skill:
-    """Drive to where the arm is long enough for `thing`, [3] [m], world frame; nearer at every further attempt."""
+def come_near(stage: Stage, thing: NDArray[np.float64]) -> Skill:
+    """Drive to where the arm is long enough for `thing`, [3] [m], world frame; not at all if it stays too short."""
     nearest, farthest = stage.robot.build.span(float(thing[2]))
-    stand = max(nearest, farthest * STAND_OFF - 0.1 * attempt)
-    path = way_to(stage, (float(thing[0]), float(thing[1])), stand)
-    if path is None or not len(path.points):
+    path = way_to(stage, (float(thing[0]), float(thing[1])), max(nearest, farthest * STAND_OFF))
+    if path is None or not len(path.points) or path.short > farthest + GRASP_REACH:
         return Result(False, failures.NO_PATH)
     return (yield from drive(stage, path.points, APPROACH_FRAMES))
 
@@ -107,61 +90,87 @@ def aims(stage: Stage, index: int) -> list[NDArray[np.float64]]:
 
 
 def _take(stage: Stage, index: int) -> Skill:
-    """Try the best postures from where the base stands; the arm is folded at the end, with or without the thing."""
-    used, height = 0, float(stage.position(index)[2])
-    over = None if height < OVER else height + HOVER
-    if over is not None:
-        used += (yield from unfold(stage, over, -lacking(stage))).frames
-        used += (yield from close_in(stage, stage.position(index), over)).frames
-    for aim in _reachable(stage, index)[:POSTURES]:
-        used += (yield from _grasp(stage, index, aim)).frames
+    """Reach for the thing from where the base stands; the arm is folded at the end, with or without the thing."""
+    place = place_of(stage, index)
+    used, tried = 0, set[int]()
+    while len(tried) < TRIES and used <= GIVE_UP:
+        stage.robot.use_hand(stage.position(index), len(tried))
+        way = _way(stage, index, tried)
+        if way is None:
+            break
+        number, route = way
+        tried.add(number)
+        used += (yield from _grasp(stage, index, route)).frames
         if stage.held == index:
             break
-    back = yield from retract(stage, over, 0.0 if over is None else -lacking(stage))
-    return Result(stage.held == index, "" if stage.held == index else failures.UNREACHABLE, used + back.frames)
+    if used:
+        used += (yield from fold(stage, place)).frames
+    return Result(stage.held == index, "" if stage.held == index else failures.UNREACHABLE, used)
 
 
-def _grasp(stage: Stage, index: int, aim: NDArray[np.float64]) -> Skill:
-    """Hover above `aim` [m], come down, to its middle if another target is nearer, and shut the hand on it."""
-    used = 0
-    for goal, close in ((aim + np.array([0.0, 0.0, HOVER]), NEARLY), (aim, THERE), (stage.position(index), THERE)):
-        posture = posture_for(stage, goal)
-        moved = yield from go(
-            stage, posture.arm, REACH_FRAMES, lambda: stage.gap(index) < GRASP and stage.would_take() == index, close
-        )
-        used += moved.frames
-        if close == THERE and stage.would_take() == index:
-            used += (yield from _shut(stage, index, posture)).frames
-            break
+def _grasp(stage: Stage, index: int, route: Route) -> Skill:
+    """Follow `route`, go on to the thing's middle if another target is nearer, and shut the hand on it."""
+
+    def close() -> bool:
+        return stage.gap(index) < GRASP and stage.would_take() == index
+
+    moved = yield from follow(stage, route, close)
+    used, arm = moved.frames, route.legs[-1].arm
+    if stage.would_take() != index and stage.gap(index) < ASTRAY:
+        goal = stage.position(index) if moved.ok else aims(stage, index)[0]
+        arm = posture_for(stage, goal).arm
+        if not moved.ok:  # it touched something, or the thing moved: once more from above
+            used += (yield from go(stage, lifted(stage.robot, arm, HOVER), REACH_FRAMES, close, NEARLY)).frames
+        used += (yield from go(stage, arm, REACH_FRAMES, close)).frames
+    if stage.would_take() == index:
+        used += (yield from _shut(stage, index, arm)).frames
     return Result(stage.held == index, frames=used)
 
 
-def lacking(stage: Stage) -> float:
-    """Distance [m] by which the base must draw back so that the arm can fold or unfold before furniture."""
-    room = stage.robot.build.elbow_room
-    return room - stage.room_ahead(LEG_ROOM, room)
+def _way(stage: Stage, index: int, tried: set[int]) -> tuple[int, Route] | None:
+    """The quickest route to the thing, by its frames and what it touches, and the number of its goal.
+
+    Goals in `tried` are left out; None if the arm is too short for all others, or too much is in its way. Aims and
+    places of the base are tried in turn, until there is a route that touches nothing.
+    """
+    surface, back = Surface(stage, place_of(stage, index)), lacking(stage)
+    heading, high = stage.robot.base()[2], stage.position(index)[2] > OVER
+    best: tuple[int, Route] | None = None
+    sides = len(stage.robot.pointing)
+    ends = itertools.product(standings(stage, stage.position(index)), aims(stage, index))
+    for first, (ahead, aim) in enumerate(ends):
+        moved = ahead * np.array([np.cos(heading), np.sin(heading), 0.0])
+        for number, posture in enumerate(postures(stage, aim - moved), first * sides):
+            if number in tried or posture.error > GETS_THERE:
+                continue
+            above = lifted(stage.robot, posture.arm, HOVER) if high else None
+            route = quickest(stage, [Leg(posture.arm, ahead)], surface, back, above)
+            if best is None or route.cost < best[1].cost:
+                best = number, route
+        if best is not None and best[1].hits == 0:
+            break
+    return None if best is None or best[1].hits > FEW_HITS else best
 
 
-def close_in(stage: Stage, thing: NDArray[np.float64], over: float) -> Skill:
-    """Drive straight on, the hand held out at height `over` [m], where the arm is too short for `thing`, [3] [m]."""
+def standings(stage: Stage, thing: NDArray[np.float64]) -> list[float]:
+    """The distances [m] by which the base may drive on to reach for `thing`, [3] [m]: 0, and more if there is room."""
     x, y, _ = stage.robot.base()
-    farthest = stage.robot.build.span(float(thing[2]))[1]
-    missing = float(np.hypot(thing[0] - x, thing[1] - y)) - STAND_OFF * farthest
-    if missing <= 0.0:
-        return Result(True)
-    return (yield from go(stage, ready(stage, over), REACH_FRAMES, close=NEARLY, forward=missing))
+    far = float(np.hypot(thing[0] - x, thing[1] - y))
+    nearer = far - STAND_OFF * stage.robot.build.span(float(thing[2]))[1]
+    room = stage.room_ahead(LOW, far) - stage.robot.build.radius
+    ahead = min(nearer, room)
+    return [0.0, ahead] if ahead > 0.0 else [0.0]
 
 
-def _reachable(stage: Stage, index: int) -> list[NDArray[np.float64]]:
-    """The aims that the hand gets near enough to, best first."""
-    errors = [(posture_for(stage, aim).error, number, aim) for number, aim in enumerate(aims(stage, index))]
-    return [aim for error, number, aim in sorted(errors, key=lambda e: (round(e[0], 2), e[1])) if error < GRASP_REACH]
+def can_reach(stage: Stage, index: int) -> bool:
+    """Whether the arm is long enough for the thing `index` from where the base stands, were nothing in its way."""
+    return any(p.error < GETS_THERE for aim in aims(stage, index) for p in postures(stage, aim))
 
 
-def _shut(stage: Stage, index: int, posture: Posture) -> Skill:
-    """Shut the hand, which takes the nearest target: the thing `index` by now."""
+def _shut(stage: Stage, index: int, arm: NDArray[np.float64]) -> Skill:
+    """Shut the hand at `arm` [rad], [J], which takes the nearest target: the thing `index` by now."""
     used = 0
     while used < SHUT_FRAMES and stage.held != index:
-        yield stage.act(arm=posture.arm, shut=True)
+        yield stage.act(arm=arm, shut=True)
         used += 1
     return Result(stage.held == index, frames=used)

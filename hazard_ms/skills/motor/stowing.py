@@ -6,18 +6,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.episode.grasp import GRASP_REACH, conjugate
+from hazard_ms.episode.safe_places import BAG_REACH
 from hazard_ms.simulation.containers import BASKET_HIGH, BASKET_LOW
 from hazard_ms.simulation.world import rotate
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
-from hazard_ms.skills.motor.arm import HOVER, NEARLY, REACH_FRAMES, THERE, go, posture_for, retract, unfold
-from hazard_ms.skills.motor.grasping import CLEAR, LIMIT, SHUT_FRAMES, close_in, come_near, lacking
+from hazard_ms.skills.motor.arm import REACH_FRAMES, THERE, fold, follow, go, lacking, posture_for
+from hazard_ms.skills.motor.grasping import CLEAR, LIMIT, SHUT_FRAMES, come_near, standings
 from hazard_ms.skills.motor.motion import turn_to
+from hazard_ms.skills.motor.routes import NEARLY, Leg, Place, Surface, quickest
 from hazard_ms.skills.motor.walking import known
 
+OVER_BAG = 0.8 * BAG_REACH  # the hand opens this close to the mouth of the bag [m]
+OFF_CENTRE = 0.04  # distance [m] between the thing and its place over the basket that the arm corrects [ours]
 INSET = 0.14  # least distance from the walls of a basket to where a thing is let go [m] [ours]
-APPROACHES = 2  # number of attempts, the second from nearer than the first
 
 
 def drop(stage: Stage, cart: int | None = None) -> Skill:
@@ -34,10 +37,13 @@ def drop(stage: Stage, cart: int | None = None) -> Skill:
 
 
 def _into_bag(stage: Stage) -> Skill:
-    moved = yield from go(stage, stage.robot.tucked, REACH_FRAMES, close=NEARLY)
+    def over() -> bool:
+        mouth = stage.robot.bag_position()[0].cpu().numpy()
+        return bool(np.linalg.norm(stage.robot.hand() - mouth) < OVER_BAG)
+
+    moved = yield from go(stage, stage.robot.tucked, REACH_FRAMES, over, NEARLY)
     opened = yield from _open(stage, stage.robot.tucked)
-    back = yield from retract(stage)
-    return Result(True, frames=moved.frames + opened.frames + back.frames)
+    return Result(True, frames=moved.frames + opened.frames)
 
 
 def _into_cart(stage: Stage, cart: int, held: int) -> Skill:
@@ -47,29 +53,46 @@ def _into_cart(stage: Stage, cart: int, held: int) -> Skill:
     if float(np.linalg.norm(stage.position(cart) - stage.robot.shoulder())) > LIMIT:
         return Result(False, failures.CART_UNREACHABLE)
     used = 0
-    for attempt in range(APPROACHES):
-        middle = stage.position(cart)
-        if attempt or float(np.hypot(*(_over_basket(stage, cart, held)[:2] - stage.robot.base()[:2]))) > _reach(
-            stage, cart, held
-        ):
-            used += (yield from come_near(stage, middle, attempt)).frames
-        over = _over_basket(stage, cart, held)
-        used += (yield from turn_to(stage, over[:2])).frames
-        high = float(over[2]) + HOVER
-        used += (yield from unfold(stage, high, -lacking(stage))).frames
-        used += (yield from close_in(stage, over, high)).frames
-        posture = posture_for(stage, _over_basket(stage, cart, held))
+    over = _over_basket(stage, cart, held)
+    if float(np.hypot(*(over[:2] - stage.robot.base()[:2]))) > stage.robot.build.span(float(over[2]))[1]:
+        used += (yield from come_near(stage, stage.position(cart))).frames
+    over = _over_basket(stage, cart, held)
+    used += (yield from turn_to(stage, over[:2])).frames
+    goals = _goals(stage, over)
+    if not goals:
+        return Result(False, failures.CART_UNREACHABLE, used)
+    place = _basket(stage, cart, over)
+    route = quickest(stage, goals, Surface(stage, place), lacking(stage))
+    used += (yield from follow(stage, route, close=THERE)).frames
+    arm = route.legs[-1].arm
+    beside = over - stage.position(held)  # the hand holds the thing by its edge
+    beside[2] = 0.0
+    if float(np.linalg.norm(beside)) > OFF_CENTRE:
+        posture = posture_for(stage, over + beside)
         if posture.error < GRASP_REACH:
-            used += (yield from go(stage, posture.arm, REACH_FRAMES, close=THERE)).frames
-            used += (yield from _open(stage, posture.arm)).frames
-            used += (yield from retract(stage, high, -lacking(stage))).frames
-            return Result(True, frames=used)
-        used += (yield from retract(stage, high, -lacking(stage))).frames
-    return Result(False, failures.CART_UNREACHABLE, used)
+            arm = posture.arm
+            used += (yield from go(stage, arm, REACH_FRAMES, close=THERE)).frames
+    used += (yield from _open(stage, arm)).frames
+    used += (yield from fold(stage, place)).frames
+    return Result(True, frames=used)
 
 
-def _reach(stage: Stage, cart: int, held: int) -> float:
-    return stage.robot.build.span(float(_over_basket(stage, cart, held)[2]))[1]
+def _goals(stage: Stage, over: NDArray[np.float64]) -> list[Leg]:
+    """Postures that bring the hand to `over` [m], [3], from where the base stands, or else from nearer."""
+    heading = stage.robot.base()[2]
+    for ahead in standings(stage, over):
+        posture = posture_for(stage, over - ahead * np.array([np.cos(heading), np.sin(heading), 0.0]))
+        if posture.error < GRASP_REACH:
+            return [Leg(posture.arm, ahead)]
+    return []
+
+
+def _basket(stage: Stage, cart: int, over: NDArray[np.float64]) -> Place:
+    """The basket of the `cart` for a hand at `over` [m], [3], which may come down to its rim."""
+    extent = stage.world.extent[0, cart].cpu().numpy().astype(np.float64)
+    size = (np.array(BASKET_HIGH) - np.array(BASKET_LOW)) * extent
+    rim = float(stage.position(cart)[2] + BASKET_HIGH[2] * extent[2])
+    return Place(over, float(size[:2].min()) / 2, rim, rim)
 
 
 def _over_basket(stage: Stage, cart: int, held: int) -> NDArray[np.float64]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.episode.grasp import GRASP_REACH
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.failures import BLOCKED, MAX_FRAMES, NO_PATH, UNKNOWN
 from hazard_ms.skills.motor.motion import drive, turn_to
-from hazard_ms.skills.motor.navigation import Path, plan
+from hazard_ms.skills.motor.navigation import AT_MOST, Path, plan
+from hazard_ms.spec.robot import GRASP_REACH
 
 WALK_FRAMES = 100  # budget of one walk (docs/benchmark.md 3) [frames]
 ARRIVED = 0.5  # distance from the seen edge of the thing at which a walk has arrived (docs/benchmark.md 3) [m]
@@ -24,11 +24,11 @@ def known(stage: Stage, index: int) -> bool:
     return index in stage.seen.objects
 
 
-def way_to(stage: Stage, goal: tuple[float, float], near: float) -> Path | None:
-    """A path to within `near` [m] of `goal` [m] over the map as it is now."""
+def way_to(stage: Stage, goal: tuple[float, float], near: float, enough: float | None = None) -> Path | None:
+    """A path to within `near` [m] of `goal` [m] over the map as it is now; `enough` [m] as for `plan`."""
     x, y, _ = stage.robot.base()
-    seen = stage.seen
-    return plan(stage.obstacles(), seen.explored, seen.cell, seen.origin, (x, y), goal, stage.robot.build.radius, near)
+    seen, radius = stage.seen, stage.robot.build.radius
+    return plan(stage.obstacles(), seen.explored, seen.cell, seen.origin, (x, y), goal, radius, near, enough)
 
 
 def walk_to(stage: Stage, index: int, frames: int = WALK_FRAMES, whole: bool = True) -> Skill:
@@ -72,8 +72,8 @@ def _path(stage: Stage, goal: tuple[float, float], edge: float, height: float) -
     near = ARRIVED + edge
     if np.hypot(goal[0] - x, goal[1] - y) <= near:
         return Path(np.zeros((0, 2)), 0.0, 0.0)
-    path = way_to(stage, goal, near)
     arm = max(ARRIVED, stage.robot.build.span(height)[1]) + GRASP_REACH
+    path = way_to(stage, goal, near, min(near + AT_MOST, arm + edge))
     return path if path is not None and path.short <= arm + edge else None
 
 

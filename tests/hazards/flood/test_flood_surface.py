@@ -182,6 +182,19 @@ def test_water_takes_the_shortest_way_through_doorways(side: str, kind: str) -> 
             assert way <= want[i, j] + 0.1
 
 
+@pytest.mark.parametrize(("side", "second"), [("east", "west"), ("south", "east"), ("west", "north")])
+@pytest.mark.parametrize("kind", DIVIDED)
+def test_water_from_two_walls_comes_from_the_nearer_one(side: str, second: str, kind: str) -> None:
+    """Wherever the ways from the two walls differ, the water is as high as that of the nearer wall alone."""
+    made, world = flood("paper"), room(NOTHING, side, SIZE, 1, (1.0, 1.0), *DIVIDED[kind])
+    both = dataclasses.replace(world, specs=(dataclasses.replace(world.specs[0], second_flood_side=second),))
+    other = room(NOTHING, second, SIZE, 1, (1.0, 1.0), *DIVIDED[kind])
+    points = [(0.3 + 0.9 * i, 0.3 + 0.7 * j) for i in range(11) for j in range(8)]
+    found, *alone = (levels(made, at(made, w, 1400), w, points) for w in (both, world, other))
+    assert found == pytest.approx(np.maximum(*alone), abs=1e-5)
+    assert any(a > b for a, b in zip(*alone, strict=True)) and any(a < b for a, b in zip(*alone, strict=True))
+
+
 @pytest.mark.parametrize("side", ["east", "west"])
 def test_the_level_is_the_same_on_both_sides_of_a_doorway(side: str) -> None:
     made, world = flood("paper"), room(NOTHING, side, SIZE, 1, (1.0, 1.0), *DIVIDED["three"])
@@ -207,6 +220,10 @@ def test_water_flows_out_of_the_doorway_to_all_sides() -> None:
 def test_an_unknown_side_and_impossible_parameters_are_refused() -> None:
     with pytest.raises(ValueError, match="flood_side of test/flood must be one of south, east, north, west, got 'up'"):
         begin(flood("paper"), room(NOTHING, "up"))
+    world = room(NOTHING, "east")
+    strange = (dataclasses.replace(world.specs[0], second_flood_side="down"),)
+    with pytest.raises(ValueError, match="flood_side of test/flood must be one of .*, got 'down'"):
+        begin(flood("paper"), dataclasses.replace(world, specs=strange))
     for name, value in (
         ("rise", 0.0),
         ("every", 0),

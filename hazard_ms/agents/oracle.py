@@ -1,0 +1,205 @@
+"""The oracle: the upper line of what any agent could reach with the skills that all share.
+
+It alone sees what is hidden: where everything is, what is damaged, and what will happen (hazard_ms.sketch.recording).
+At each decision it plans by the exact programme of hazard_ms.planning, tells its map where things really are, and goes
+on by ordinary skills, so that what fails in their execution fails for the oracle, too. With `known=true` it plans only
+with what its map holds, and searches when that is all done: the difference to the oracle is what it costs not to know.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from hazard_ms.agents.base import PrivilegedAgent
+from hazard_ms.agents.truth import Truth
+from hazard_ms.planning.orienteering import solve
+from hazard_ms.planning.problem import PlannedRescue
+from hazard_ms.sketch.rescue_problem import Outset, RescueScene
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision
+from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.motor.walking import ARRIVED
+from hazard_ms.skills.options.landmarks import landmarks
+from hazard_ms.skills.options.macros import Macro, play
+from hazard_ms.skills.options.options import LANDMARK, LOOK, Option
+
+MOST_REACH = 2.0  # distance up to which it reaches for a thing after a walk has arrived [m] [ours]
+NEAR = 0.2  # beyond where a walk arrives, from which it reaches for a thing without walking [m] [ours]
+PROGRESS = 0.2  # a walk that brought it this far was no failure [m]
+GIVE_UP = 1  # failures after which a target is left for the end [ours]
+CART_FAILURES = 3  # after which a cart is no longer used [ours]
+FADING = 2e-4  # share of a target's value that is at risk in each frame until it is safe: skills fail [ours]
+MOVED = 0.2  # a thing that is met farther away than this moves [m] [ours]
+LOYALTY = 20.0  # frames that it deducts for the target that it is on its way to, so that it does not waver [ours]
+ROUNDS = 2  # times that it tries again what it had given up [ours]
+MOST_LABELS = 20_000  # of the exact search: rarely needed [ours]
+BEAM = 2_000  # labels of a layer beyond that [ours]
+
+
+@dataclass
+class Attempts:
+    """The failures and searches of an episode so far."""
+
+    failures: dict[str, int] = field(default_factory=dict)  # by name of the thing
+    rounds: int = 0  # times that what was given up was tried again
+    visits: dict[str, int] = field(default_factory=dict)  # of landmarks in search
+    looked: bool = False  # around, in search
+
+
+class Oracle(PrivilegedAgent):
+    """Plans with the true future and goes on by ordinary skills."""
+
+    def __init__(self, known: bool = False) -> None:
+        """`known`: whether it plans with the targets and carts alone that its map holds."""
+        self._only_known = known
+        self._truth: Truth | None = None
+
+    def attach(self, env: SkillEnv) -> None:
+        """Take the environment, whose map is told the truth from now on."""
+        self._truth = Truth(env, self._only_known)
+
+    def reset(self, brief: Brief) -> None:
+        """Begin an episode. Nothing is random. Raises ValueError where `attach` was not called before."""
+        if self._truth is None:
+            raise ValueError("an environment must be attached to the oracle before its reset, got none")
+        base = self._truth.env.base
+        self._scene = RescueScene(base.specs[0], brief.robot, base.agent.build.radius, brief.max_frames)
+        self._carts = np.array([base.world.index(0, name) for name in brief.containers], np.int64)
+        self._attempts = Attempts()
+        self._goal: str | None = None
+        self._before: tuple[Action, tuple[float, float]] | None = None  # the last action, and where it began [m]
+        self._search: Macro | None = None
+
+    def act(self, decision: Decision) -> Action:
+        """The next action: the first step of the best plan from here on."""
+        assert self._truth is not None
+        self._judge(decision, self._truth)
+        action = self._choose(decision, self._truth)
+        self._before = (action, decision.agent_position)
+        self._truth.reveal()
+        return action
+
+    def _choose(self, decision: Decision, truth: Truth) -> Action:
+        if decision.held is not None and not decision.containers:
+            return self._say("into the bag", Action(DROP))
+        step = self._next_rescue(decision, truth)
+        if step is None:
+            return self._otherwise(decision, truth)
+        self._search = None
+        holding = decision.held is not None
+        index = self._cart(decision, step.cart) if holding else self._arrived_at(decision, truth, step.target)
+        name = self._goal = decision.names[index]
+        if self._is_near(decision, truth, index):
+            return Action(DROP if holding else PICK_UP, name)
+        met = truth.future().position_at(step.met)[index]
+        moves = float(np.linalg.norm(met - truth.position(index))) > MOVED
+        truth.aim = {index: met} if moves and self._came_to(decision) != name else {}
+        return Action(WALK_TO, name)
+
+    def _next_rescue(self, decision: Decision, truth: Truth) -> PlannedRescue | None:
+        """The first step of the best plan, with indices along B for targets; None where nothing can be rescued."""
+        names = decision.names
+        targets = [t for t in decision.targets if t.held or self._considered(t.name, t.index, truth, GIVE_UP)]
+        targets = [t for t in targets if not t.rescued]
+        carts = [c for c in self._carts if self._considered(names[c], int(c), truth, CART_FAILURES)]
+        if not targets or (decision.containers and not len(carts)):
+            return None
+        problem = self._scene.problem(
+            truth.future(),
+            np.array([t.index for t in targets]),
+            np.array([t.value for t in targets]),
+            np.array(carts, np.int64),
+            Outset(decision.agent_position, decision.agent_heading, decision.frame, self._held(decision)),
+            np.array([-LOYALTY * (t.name == self._goal) for t in targets]),
+            FADING,
+        )
+        plan = solve(problem, MOST_LABELS, BEAM)
+        if not plan.rescues:
+            return None
+        self.note = f"plan of {plan.value:g} in {len(plan.rescues)} rescues by frame {plan.frame:.0f}"
+        first = plan.rescues[0]
+        cart = int(np.flatnonzero(self._carts == carts[first.cart])[0]) if decision.containers else -1
+        return first._replace(target=targets[first.target].index, cart=cart)
+
+    def _cart(self, decision: Decision, planned: int) -> int:
+        """The cart that it is on its way to, so that it does not waver, else the planned one; indices along B."""
+        under_way = [c for c in self._carts if decision.names[c] == self._goal]
+        return int((under_way or [self._carts[planned]])[0])
+
+    def _held(self, decision: Decision) -> int | None:
+        return None if decision.held is None else decision.index(decision.held)
+
+    def _considered(self, name: str, index: int, truth: Truth, most: int) -> bool:
+        """Whether a thing is part of the plan: it failed fewer than `most` times and, if that counts, it is known."""
+        return truth.knows(index) and self._attempts.failures.get(name, 0) < most
+
+    def _is_near(self, decision: Decision, truth: Truth, index: int) -> bool:
+        """Whether to reach for a thing from here: a walk has arrived, or would at once and nothing failed before."""
+        away = float(np.hypot(*(truth.position(index)[:2] - decision.agent_position)))
+        name = decision.names[index]
+        if self._came_to(decision) == name:
+            return away <= MOST_REACH
+        return not self._attempts.failures.get(name, 0) and away <= ARRIVED + self._scene.edges[index] + NEAR
+
+    def _arrived_at(self, decision: Decision, truth: Truth, planned: int) -> int:
+        """The target that it has just walked up to, since it is there now, else the planned one; indices along B."""
+        name = self._came_to(decision)
+        for target in decision.targets:
+            if target.name == name and not target.rescued and self._is_near(decision, truth, target.index):
+                return target.index
+        return planned
+
+    def _came_to(self, decision: Decision) -> str | None:
+        """What it has just walked up to."""
+        last, result = decision.last_action, decision.last_result
+        return last.target if last is not None and last.verb == WALK_TO and result is not None and result.ok else None
+
+    def _judge(self, decision: Decision, truth: Truth) -> None:
+        """Count a failure of the last action, unless it was a walk that came further."""
+        if self._before is None or decision.last_result is None:
+            return
+        action, start = self._before
+        stuck = action.verb == WALK_TO and not decision.last_result.frames  # it came to where the thing no longer is
+        if decision.last_result.ok and not (stuck and self._came_to(decision) is not None and truth.aim):
+            return
+        moved = float(np.hypot(*np.subtract(decision.agent_position, start)))
+        if action.target is None or (action.verb == WALK_TO and moved > PROGRESS):
+            return
+        failures = self._attempts.failures
+        failures[action.target] = failures.get(action.target, 0) + 1
+        self._goal = None
+
+    def _otherwise(self, decision: Decision, truth: Truth) -> Action:
+        """The action where no plan rescues anything: search, try again what was given up, or stop."""
+        if all(target.rescued for target in decision.targets):
+            return self._say("every target is rescued", Action(STOP))
+        if self._only_known and (action := self._searched(decision)) is not None:
+            return action
+        if self._attempts.failures and self._attempts.rounds < ROUNDS:
+            self._attempts = Attempts(rounds=self._attempts.rounds + 1, looked=True)
+            return self._say("try again what was given up", Action(EXPLORE))
+        return self._say("nothing can be rescued any more", Action(STOP))
+
+    def _searched(self, decision: Decision) -> Action | None:
+        """The next action of a search; None where nothing is left to search."""
+        if self._search is not None:
+            try:
+                return self._search.send(decision)
+            except StopIteration:
+                self._search = None
+        marks = landmarks(decision, self._attempts.visits, 1)
+        if not self._attempts.looked:
+            option, self._attempts.looked = Option(LOOK), True
+        elif marks:
+            option, visits = Option(LANDMARK, marks[0].name), self._attempts.visits
+            visits[marks[0].name] = visits.get(marks[0].name, 0) + 1
+        else:
+            return None
+        self._search = play(option, decision)
+        return self._say(f"search: {option}", next(self._search))
+
+    def _say(self, note: str, action: Action) -> Action:
+        self.note = note
+        return action

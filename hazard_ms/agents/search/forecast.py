@@ -1,0 +1,80 @@
+"""Forecasts of when things come to harm, from the levels of the hazards that were seen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.agents.search.fire_watch import FireWatch
+from hazard_ms.planning.belief import WaterPlane, extended, last_whole
+from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.sensing.target_table import Target
+from hazard_ms.skills.brief import Brief, HazardBrief
+from hazard_ms.skills.decision import Decision
+
+STRIDE = 20  # frames between those for which levels are forecast [ours]
+WATER = "flood"  # the hazard whose level is that of a plane of water (docs/physics.md 1.2)
+FIRE = "fire"  # the hazard that creeps over the floor (docs/physics.md 1.1)
+
+Array = NDArray[np.float64]
+
+
+class Forecast:
+    """The levels to come, and when they harm what is at a place."""
+
+    def __init__(self, brief: Brief, decision: Decision, watch: FireWatch) -> None:
+        """Forecast the hazards of `brief` from `decision` to the end of the episode; `watch` remembers a fire."""
+        self._hazards = brief.hazards
+        self._frames = np.arange(decision.frame, decision.max_frames + STRIDE, STRIDE, dtype=np.float64)
+        self._water = {
+            number: _water(decision.map, number) for number, hazard in enumerate(brief.hazards) if hazard.name == WATER
+        }
+        self._fire = {
+            number: watch.whole_until(decision, number)
+            for number, hazard in enumerate(brief.hazards)
+            if hazard.name == FIRE and number < len(decision.map.levels)
+        }
+
+    def whole_until(self, target: Target, sighting: Sighting) -> float:
+        """The frame until which a target is believed to stay whole where it was seen: 0 if it is damaged, else inf."""
+        if target.damaged:
+            return 0.0
+        return min(
+            (self._until(number, target, sighting) for number in range(min(len(self._hazards), len(sighting.levels)))),
+            default=float("inf"),
+        )
+
+    def _until(self, number: int, target: Target, sighting: Sighting) -> float:
+        burning = self._fire.get(number, {}).get(target.index)
+        if burning is not None:
+            return burning
+        harms = partial(_harms, self._hazards[number], target, float(sighting.position[2]))
+        return last_whole(harms, self._frames, self._levels(number, sighting))
+
+    def _levels(self, number: int, sighting: Sighting) -> Array:
+        water = self._water.get(number)
+        if water is not None:
+            return water.at(sighting.position[:2], self._frames)[:, 0]
+        history = sighting.history or ((sighting.frame, sighting.levels),)
+        frames = [frame for frame, _ in history]
+        return extended(frames, [levels[number] for _, levels in history], self._frames)
+
+
+def _harms(hazard: HazardBrief, target: Target, height: float, level: float) -> bool:
+    return bool(hazard.threatens(target, level, height))
+
+
+def _water(seen: SemanticMap, number: int) -> WaterPlane:
+    """The plane of water through all levels that were seen on things."""
+    rows: Sequence[tuple[NDArray, int, float]] = [
+        (sighting.position[:2], frame, levels[number])
+        for sighting in seen.objects.values()
+        for frame, levels in sighting.history
+        if number < len(levels)
+    ]
+    points, frames, levels = zip(*rows, strict=True) if rows else ((), (), ())
+    return WaterPlane.fitted(np.array(points, np.float64), frames, levels)

@@ -1,0 +1,92 @@
+"""Places from which to search for targets that were not seen yet, and how many may be found there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from hazard_ms.agents.search.memory import Place
+from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.skills.decision import Decision
+from hazard_ms.skills.options.landmarks import MOST_VISITS, WALKABLE
+
+Mask = NDArray[np.bool_]
+MOST = 5  # places to search that are weighed at a time [ours]
+SIGHT = 3.0  # distance up to which a look surely shows what is on the floor and on furniture [m] [ours]
+DEPTH = 2.0  # how far unseen floor is believed to reach beyond the border of the floor that was seen [m] [ours]
+HIDDEN = 0.3  # share of the targets not seen yet that a look at all this floor would miss [ours]
+LITTLE = 0.05  # share of it that a place must show at least to be worth a search [ours]
+ANEW = 1.5  # distance between places from which things are seen from different sides [m] [ours]
+
+
+@dataclass(frozen=True)
+class Lookout:
+    """A thing from which to look around, and the share of the unseen targets that is expected to be found there."""
+
+    name: str
+    place: Place
+    share: float
+
+
+def lookouts(decision: Decision, visits: Mapping[str, int], avoided: Sequence[str]) -> tuple[Lookout, ...]:
+    """The best places to search: those that show most of the unseen floor for their distance, each what is left.
+
+    `visits`: how often each thing was walked to in search; those in `avoided` are left out. Where no floor is left to
+    see, they are the nearest things that were not visited.
+    """
+    unseen = _middles(decision.map, unseen_floor(decision.map))
+    things = _things(decision, [*avoided, *(name for name, count in visits.items() if count >= MOST_VISITS)])
+    if not len(unseen) or not things:
+        return _unvisited(things, visits)
+    names, places = [name for name, _ in things], np.array([place for _, place in things])
+    shows = np.hypot(*np.moveaxis(places[:, None] - unseen, -1, 0)) < SIGHT
+    ease = 1.0 / (1.0 + np.hypot(*(places - decision.agent_position).T))
+    ease /= 1.0 + np.array([visits.get(name, 0) for name in names])
+    chosen: list[Lookout] = []
+    for _ in range(MOST):
+        share = shows.mean(axis=1)
+        best = int(np.argmax(share * ease))
+        if share[best] < LITTLE:
+            break
+        found = (1 - HIDDEN) * float(share[best]) / (1 + visits.get(names[best], 0))
+        chosen.append(Lookout(names[best], (float(places[best, 0]), float(places[best, 1])), found))
+        shows &= ~shows[best]
+    return tuple(chosen) or _unvisited(things, visits)
+
+
+def unseen_floor(seen: SemanticMap) -> Mask:
+    """The cells, [Y, X], that were not seen and are within DEPTH of floor that was, with no other seen cell between."""
+    floor = seen.explored & (seen.height < WALKABLE)
+    steps = round(DEPTH / seen.cell)
+    return ndimage.binary_dilation(floor, iterations=steps, mask=~seen.explored | floor) & ~seen.explored
+
+
+def _middles(seen: SemanticMap, cells: Mask) -> NDArray[np.float64]:
+    """The middles of cells [m], [P, 2]."""
+    y, x = np.nonzero(cells)
+    return np.asarray(seen.origin + seen.cell * (np.stack([x, y], axis=-1) + 0.5), dtype=np.float64)
+
+
+def _things(decision: Decision, avoided: Sequence[str]) -> list[tuple[str, NDArray[np.float64]]]:
+    """The things on the map and their places [m], the nearest first."""
+    here = np.asarray(decision.agent_position)
+    things = [
+        (decision.names[index], sighting.position[:2].astype(np.float64))
+        for index, sighting in decision.map.objects.items()
+        if decision.names[index] not in (*avoided, decision.held)
+    ]
+    return sorted(things, key=lambda thing: float(np.hypot(*(thing[1] - here))))
+
+
+def _unvisited(things: Sequence[tuple[str, NDArray[np.float64]]], visits: Mapping[str, int]) -> tuple[Lookout, ...]:
+    """The first of `things` that it has not walked to in search, apart from each other."""
+    chosen: list[Lookout] = []
+    for name, place in things:
+        apart = all(np.hypot(*(place - mark.place)) >= ANEW for mark in chosen)
+        if len(chosen) < MOST and apart and not visits.get(name):
+            chosen.append(Lookout(name, (float(place[0]), float(place[1])), HIDDEN / MOST))
+    return tuple(chosen)

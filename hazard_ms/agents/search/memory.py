@@ -1,0 +1,72 @@
+"""The memory of an episode beyond the map: failures, visits, and where things were seen before."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hazard_ms.agents.search.fire_watch import FireWatch
+from hazard_ms.skills.decision import PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
+from hazard_ms.skills.failures import TOO_FAR
+
+PROGRESS = 0.2  # a walk that brought it this far was no failure, even if it did not arrive [m]
+LEGS = 12  # walks without arrival to one thing that together count as a failure: 19 m, longer than any way [ours]
+ELSEWHERE = 1.0  # distance from where a pick-up failed at which one is worth a new try [m] [ours]
+SAME_AGAIN = 0.05  # chance of a pick-up where one has just failed, as a share of that elsewhere [ours]
+
+Place = tuple[float, float]  # [m], world frame
+Seen = tuple[int, Place]  # a frame, and where a thing was seen in it
+
+
+class Memory:
+    """The memory of one episode; `note` enters each decision, `chose` the action that was taken."""
+
+    def __init__(self, seed: int) -> None:
+        """Begin an episode; `seed` fixes all chance in it."""
+        self.fire = FireWatch(seed)
+        self.failures: dict[str, int] = {}  # of walks to a thing, and of picking it up
+        self.missed: dict[str, list[Place]] = {}  # where it stood when the hand did not get to a thing
+        self.visits: dict[str, int] = {}  # to things in search
+        self.tracks: dict[str, list[Seen]] = {}  # frame and place of the sightings of each target
+        self._legs: dict[str, int] = {}
+        self._before: tuple[Action, Place] | None = None  # the last action, and where it began
+
+    def note(self, decision: Decision) -> None:
+        """Enter what the last action came to, and where the targets were seen."""
+        for target in decision.targets:
+            sighting = decision.map.objects.get(target.index)
+            track = self.tracks.setdefault(target.name, [])
+            if sighting is not None and (not track or sighting.frame > track[-1][0]):
+                track.append((sighting.frame, (float(sighting.position[0]), float(sighting.position[1]))))
+        if self._before is not None and decision.last_result is not None and not decision.last_result.ok:
+            self._judge(*self._before, decision)
+
+    def chose(self, decision: Decision, action: Action) -> None:
+        """Enter the action taken at `decision`."""
+        self._before = (action, decision.agent_position)
+
+    def arrived(self, decision: Decision) -> str | None:
+        """The thing that it has just walked up to."""
+        last, result = decision.last_action, decision.last_result
+        return last.target if last is not None and last.verb == WALK_TO and result is not None and result.ok else None
+
+    def _judge(self, action: Action, start: Place, decision: Decision) -> None:
+        """Count the last action's failure, unless it was a walk that came further."""
+        name = action.target
+        if name is None:
+            return
+        if (
+            action.verb in (WALK_TO, WALK_ONE_STEP)
+            and np.hypot(*np.subtract(decision.agent_position, start)) > PROGRESS
+        ):
+            self._legs[name] = self._legs.get(name, 0) + 1
+            if self._legs[name] % LEGS:
+                return
+        self.failures[name] = self.failures.get(name, 0) + 1
+        if action.verb == PICK_UP and decision.last_result is not None and decision.last_result.reason != TOO_FAR:
+            self.missed.setdefault(name, []).append(decision.agent_position)
+
+    def chance(self, decision: Decision, name: str) -> float:
+        """The chance that a pick-up works that is begun by what `decision` knows, as a share of that of a first one."""
+        places = self.missed.get(name, ())
+        again = any(np.hypot(*np.subtract(decision.agent_position, place)) < ELSEWHERE for place in places[-1:])
+        return (SAME_AGAIN if again else 1.0) / (1 + len(places)) ** 2

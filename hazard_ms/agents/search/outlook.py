@@ -1,0 +1,187 @@
+"""The rescue that lies ahead, as an agent believes: a problem for `hazard_ms.planning`, and what its numbers stand for.
+
+Beside the targets that it knows, the problem has the places to search as targets of their own: to go there and look
+around is worth what is expected to be found, and takes the time of fetching that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.agents.base import known
+from hazard_ms.agents.search.forecast import Forecast
+from hazard_ms.agents.search.lookouts import Lookout, lookouts
+from hazard_ms.agents.search.memory import Memory, Place, Seen
+from hazard_ms.agents.search.walks import TURNING, frames_between
+from hazard_ms.planning.belief import drifted, speed_of
+from hazard_ms.planning.problem import Problem
+from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sensing.target_table import Target
+from hazard_ms.sketch import skill_times
+from hazard_ms.sketch.ways import RADIUS, WALK
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import WALK_TO, Action, Decision
+from hazard_ms.skills.motor.walking import ARRIVED
+
+FOUND_WAY = 1.5  # distance to fetch what is found in a search [m] [ours]
+MOST_FOUND = 2.0  # targets that a single search is counted to find: what more there is, is planned when found [ours]
+FOUND_WHOLE = 0.8  # share of its value that a target counts when it has to be found first [ours]
+CART_WAY = 6.0  # distance to a cart while none is known [m] [ours]
+
+
+@dataclass(frozen=True)
+class SkillFrames:
+    """The frames that skills take on average, and the share of pick-ups that work."""
+
+    pick: float  # of a pick-up that works
+    failed_pick: float  # of one that does not
+    works: float  # share of the pick-ups that work
+    bag: float  # of putting into the bag
+    cart: float  # of putting into a cart
+    explore: float  # of looking around
+
+
+@lru_cache
+def skill_frames(robot: str) -> SkillFrames:
+    """The skill frames of a robot as they were measured; those of Fetch for robots that were not."""
+    tables = skill_times.read(skill_times.SHIPPED)
+    times = tables.get(robot, tables["fetch"])
+    works, pick, failed = times.typical(skill_times.PICK_UP)
+    rest = (times.typical(skill)[1] for skill in (skill_times.BAG, skill_times.CART, skill_times.EXPLORE))
+    return SkillFrames(pick, failed, works, *rest)
+
+
+@dataclass(frozen=True)
+class Weights:
+    """The choices of an agent on how it weighs things; all are shares from 0 to 1."""
+
+    loyalty: float = 0.1  # of the way to where it is going already that is not counted
+    fading: float = 0.3  # of its value that a target loses if it is saved at the last frame rather than the first
+    search: float = 1.0  # of what may be found that is counted
+
+    def __post_init__(self) -> None:
+        """Raises ValueError for what is no share."""
+        for name, share in vars(self).items():
+            if not 0.0 <= share <= 1.0:
+                raise ValueError(f"{name} must be a share from 0 to 1, got {share!r}")
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """The goals, numbered as the targets of `problem`: known targets, then the places to search."""
+
+    targets: tuple[str, ...]
+    lookouts: tuple[Lookout, ...]
+    carts: tuple[str, ...]
+    problem: Problem
+
+    def name(self, goal: int) -> str:
+        """The thing to which a goal leads."""
+        return self.targets[goal] if goal < len(self.targets) else self.lookouts[goal - len(self.targets)].name
+
+    def way(self, goal: int) -> float:
+        """The length of the way to a goal from where the agent stands [m]."""
+        (met, _), *_ = self.problem.travel.meetings(self.problem.travel.start, 0.0, [goal])
+        return max(met - TURNING, 0.0) / WALK
+
+    def is_search(self, goal: int) -> bool:
+        """Whether a goal is a place to search."""
+        return goal >= len(self.targets)
+
+
+def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, give_up: int) -> Outlook:
+    """The rescue that is believed to lie ahead at `decision`; things that failed `give_up` times are left out."""
+    failures, times = memory.failures, skill_frames(brief.robot)
+    open_ones = [t for t in decision.targets if not t.rescued and failures.get(t.name, 0) < give_up]
+    held = [t for t in open_ones if t.name == decision.held]
+    seen = [t for t in open_ones if t.index in decision.map.objects and t.name != decision.held]
+    unseen = [t for t in open_ones if t.index not in decision.map.objects and t.name != decision.held]
+    given_up = [name for name, count in failures.items() if count >= give_up]
+    carts = tuple(name for name in known(decision, decision.containers) if failures.get(name, 0) < give_up)
+    wanted = unseen or (held and not carts)
+    places = lookouts(decision, memory.visits, [*given_up, *_failed_ways(failures, seen)]) if wanted else ()
+    targets = [*held, *seen]
+    frames = _frames(decision, memory, targets, places, carts, weights.loyalty)
+    works = [1.0 if t in held else times.works * memory.chance(decision, t.name) for t in targets]
+    forecast = Forecast(brief, decision, memory.fire)
+    whole = [forecast.whole_until(t, decision.map.objects[t.index]) if t in seen else np.inf for t in targets]
+    share = min(1.0, MOST_FOUND / max(sum(mark.share for mark in places) * len(unseen), 1e-9))
+    found = [mark.share * len(unseen) * share for mark in places]
+    mean = weights.search * FOUND_WHOLE * sum(t.value for t in unseen) / max(len(unseen), 1)
+    put_away = times.bag if not decision.containers else times.cart + (0.0 if carts else CART_WAY * WALK)
+    fetch = FOUND_WAY * WALK + _pick(times, times.works) + put_away
+    return Outlook(
+        tuple(t.name for t in targets),
+        places,
+        carts,
+        Problem(
+            travel=StaticTravel(frames, len(carts)),
+            values=[*(t.value * c for t, c in zip(targets, works, strict=True)), *(n * mean for n in found)],
+            damaged_at=[*whole, *(np.inf for _ in places)],
+            pick=[
+                *(_pick(times, c) for c in works),
+                *(times.explore + n * fetch for n in found),
+            ],
+            drop=[times.cart] * len(carts) if carts else [*(put_away for _ in targets), *(0.0 for _ in places)],
+            limit=decision.max_frames,
+            frame=decision.frame,
+            holding=0 if held else None,
+            damaged_share=brief.damaged_share,
+            fading=weights.fading / decision.max_frames,
+        ),
+    )
+
+
+def _pick(times: SkillFrames, works: float) -> float:
+    """The frames that a pick-up is expected to take which works with the chance `works`."""
+    return works * times.pick + (1 - works) * times.failed_pick
+
+
+def _failed_ways(failures: Mapping[str, int], targets: Sequence[Target]) -> list[str]:
+    """Things that are no targets and to which a walk failed: there are others to search from."""
+    names = {target.name for target in targets}
+    return [name for name in failures if name not in names]
+
+
+def _frames(
+    decision: Decision,
+    memory: Memory,
+    targets: Sequence[Target],
+    places: Sequence[Lookout],
+    carts: Sequence[str],
+    loyalty: float,
+) -> NDArray[np.float64]:
+    """Frames between the targets, the places to search, the carts and, last, where the agent stands, [N, N]."""
+    here = np.asarray(decision.agent_position, np.float64)
+    names = [*(t.name for t in targets), *(mark.name for mark in places), *carts]
+    things = [decision.map.objects.get(decision.index(name)) for name in names]
+    goals = [here if thing is None else np.asarray(thing.position[:2], np.float64) for thing in things]
+    near = [ARRIVED + (0.0 if thing is None else thing.radius) for thing in things]
+    fastest = max((float(np.hypot(*_velocity(track))) for track in memory.tracks.values() if track), default=0.0)
+    for number, target in enumerate(targets):
+        track = memory.tracks.get(target.name)
+        if track and target.name != decision.held:
+            arrival = decision.frame + WALK * float(np.hypot(*(goals[number] - here)))
+            goals[number] = drifted(*_columns(track), fastest, arrival)
+    if not names:
+        return np.zeros((1, 1))
+    start = decision.agent_position
+    frames = frames_between(decision.map, start, np.array(goals), np.array(near), RADIUS)
+    for number, name in enumerate(names):
+        if decision.last_action == Action(WALK_TO, name):
+            frames[-1, number] *= 1.0 - loyalty
+    return frames
+
+
+def _velocity(track: Sequence[Seen]) -> NDArray[np.float64]:
+    return speed_of(*_columns(track))
+
+
+def _columns(track: Sequence[Seen]) -> tuple[list[int], list[Place]]:
+    """The frames and the places of a track."""
+    return [frame for frame, _ in track], [place for _, place in track]

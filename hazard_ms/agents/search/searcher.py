@@ -1,0 +1,127 @@
+"""The rules that `planner` and `mcts` share: when to look, walk, pick up and put away. What comes first is theirs."""
+
+from __future__ import annotations
+
+import abc
+from typing import NamedTuple
+
+from hazard_ms.agents.base import Agent, distance, known, open_targets
+from hazard_ms.agents.search.memory import Memory
+from hazard_ms.agents.search.outlook import Outlook, Weights, outlook
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision
+from hazard_ms.skills.failures import TOO_FAR
+from hazard_ms.spec.checks import whole
+
+FARTHEST = 2.2  # distance from the base at which a pick-up surely may begin: 2.5 m from the shoulder [m]
+REACH = 0.2  # way to a target from which it is picked up without walking up to it first [m]
+GIVE_UP = 4  # failures with one thing, after which it is given up [ours]
+MOST_FAILURES = 100  # any larger number to give up at is a slip of the pen [ours]
+
+
+class First(NamedTuple):
+    """The beginning of a plan: a goal of the outlook, the cart that it is for, -1 for none, and the reason."""
+
+    goal: int
+    cart: int
+    why: str
+
+
+class Searcher(Agent):
+    """An agent that believes, plans the rest of the rescue anew at each decision, and does what comes first."""
+
+    def __init__(self, weights: Weights, reach: float, give_up: int) -> None:
+        """Choose how it weighs things.
+
+        `reach`: length of the way to a target from which it is picked up without a walk first [m]; `give_up`: failures
+        after which a thing is given up. Raises ValueError unless the first is from 0 to FARTHEST and the second a
+        positive whole number.
+        """
+        if not 0.0 <= reach <= FARTHEST:
+            raise ValueError(f"reach must be from 0 to {FARTHEST} m, got {reach!r}")
+        self._reach = reach
+        self._weights, self._give_up = weights, whole(give_up, 1, MOST_FAILURES, "give_up")
+
+    def reset(self, brief: Brief) -> None:
+        """Begin an episode with an empty memory."""
+        self._brief, self._memory = brief, Memory(brief.random_seed)
+        self._goal: tuple[str, frozenset[str]] | None = None  # where it goes to search, and the targets known then
+
+    def act(self, decision: Decision) -> Action:
+        """The next action: put away what it holds, else what the rest of the rescue begins with."""
+        self._memory.note(decision)
+        action = self._choose(decision)
+        self._memory.chose(decision, action)
+        return action
+
+    @abc.abstractmethod
+    def first(self, ahead: Outlook) -> First | None:
+        """The goal to begin with; None where none can be reached in time."""
+
+    def _choose(self, decision: Decision) -> Action:
+        last, result = decision.last_action, decision.last_result
+        if last is None or result is None:
+            return self._say("look around first", Action(EXPLORE))
+        if decision.targets and all(target.rescued for target in decision.targets):
+            return self._say("every target is rescued", Action(STOP))
+        if decision.held is not None and not decision.containers:
+            return self._say("into the bag", Action(DROP))
+        arrived = self._memory.arrived(decision)
+        if decision.held is None and arrived in open_targets(decision):
+            return self._say("it is here", Action(PICK_UP, arrived))
+        if decision.held is not None and arrived in decision.containers:
+            return self._say("over the cart", Action(DROP, arrived))
+        if not result.ok and result.reason == TOO_FAR and self._memory.failures.get(last.target or "") == 1:
+            return self._say("it is perhaps elsewhere by now", Action(EXPLORE))
+        searching = self._still_searching(decision, arrived)
+        if searching is not None:
+            return searching
+        ahead = outlook(self._brief, decision, self._memory, self._weights, self._give_up)
+        begin = None if decision.held is not None and not ahead.carts else self.first(ahead)
+        if begin is None:
+            return self._without_plan(decision, ahead)
+        if decision.held is not None:
+            return self._say(begin.why, Action(WALK_TO, ahead.carts[begin.cart]))
+        name = ahead.name(begin.goal)
+        if ahead.is_search(begin.goal):
+            return self._search(decision, name, begin.why)
+        near = distance(decision, decision.map.objects[decision.index(name)]) < FARTHEST
+        near &= ahead.way(begin.goal) <= self._reach and not self._memory.failures.get(name)
+        return self._say(begin.why, Action(PICK_UP if near else WALK_TO, name))
+
+    def _search(self, decision: Decision, name: str, why: str) -> Action:
+        """Begin to walk to a place from where to look around."""
+        self._memory.visits[name] = self._memory.visits.get(name, 0) + 1
+        self._goal = name, frozenset(known(decision, open_targets(decision)))
+        return self._say(why, Action(WALK_TO, name))
+
+    def _still_searching(self, decision: Decision, arrived: str | None) -> Action | None:
+        """Go on with a search until it has looked around, unless a new target came into view or the way is barred."""
+        if self._goal is None:
+            return None
+        name, targets = self._goal
+        if arrived == name:
+            self._goal = None
+            return self._say("look around from here", Action(EXPLORE))
+        if self._memory.failures.get(name) or frozenset(known(decision, open_targets(decision))) - targets:
+            self._goal = None
+            return None
+        return self._say(f"on the way to {name}, to search there", Action(WALK_TO, name))
+
+    def _without_plan(self, decision: Decision, ahead: Outlook) -> Action:
+        """Try what is nearest, although it will hardly be safe in time; stop where nothing is left to try."""
+        holding = decision.held is not None
+        names = [n for n in (ahead.carts if holding else ahead.targets) if n != decision.held]
+        if not names or (holding and not ahead.carts):
+            names = [mark.name for mark in ahead.lookouts]
+        if not names:
+            return self._say("nothing is left to try", Action(STOP))
+        name = min(names, key=lambda n: distance(decision, decision.map.objects[decision.index(n)]))
+        why = "too late by any plan, but the nearest"
+        if name not in (*ahead.targets, *ahead.carts):
+            return self._search(decision, name, why)
+        return self._say(why, Action(WALK_TO, name))
+
+    def _say(self, note: str, action: Action) -> Action:
+        self.note = note
+        return action

@@ -1,0 +1,86 @@
+"""Frames that walks take over what was seen: the cheapest ways past the obstacles of a semantic map."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.sparse import csgraph
+
+from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.sketch.ways import WALK
+from hazard_ms.skills.motor.navigation import AT_MOST, BORDER, OBSTACLE_COST, SHORT, known_floor
+
+Array = NDArray[np.float64]
+STEPS = 1.05  # length of a way by steps to the eight neighbours, over that of straight pieces: mean of all directions
+TURNING = 20.0  # frames of a walk that go into turns, starts and stops: about 120 degrees of turns [ours]
+MOST_CELLS = 16_000  # of a grid that is searched cell by cell; larger ones by squares of four [ours]
+
+
+def frames_between(seen: SemanticMap, start: tuple[float, float], goals: Array, near: Array, radius: float) -> Array:
+    """Frames of the walks between G `goals` [m], [G, 2], and the `start` [m], [G + 1, G + 1], the start last.
+
+    A walk ends within `near` [m], [G], of a goal, or a little short of it; inf where there is no way. `radius` of the
+    robot [m]. Floor that was never seen counts as free.
+    """
+    grid = _Grid(seen, np.vstack([goals, start]), radius)
+    here = grid.nearest_free(np.asarray(start))
+    ends = [*grid.ends(goals, near, here), here]
+    lengths = grid.lengths(ends)
+    frames = WALK / STEPS * lengths + TURNING
+    np.fill_diagonal(frames, 0.0)
+    return frames
+
+
+class _Grid:
+    """The part of a map that walks can use, and what steps over it cost."""
+
+    def __init__(self, seen: SemanticMap, points: Array, radius: float) -> None:
+        cells = np.floor((points - seen.origin) / seen.cell).astype(int)[:, ::-1]
+        used = np.argwhere(seen.explored)
+        ends = np.vstack([cells, used.min(0)[None], used.max(0)[None]]) if len(used) else cells
+        inside = np.clip(ends, 0, len(seen.explored) - 1)
+        low = np.maximum(inside.min(0) - BORDER, 0)
+        high = inside.max(0) + BORDER + 1
+        height, self._cell = seen.height[low[0] : high[0], low[1] : high[1]], seen.cell
+        if height.size > MOST_CELLS:
+            height = ndimage.maximum_filter(height, size=2, origin=-1, mode="nearest")[::2, ::2]
+            self._cell *= 2
+        cost, self._graph = known_floor(height, self._cell, radius)
+        self._free = (cost < OBSTACLE_COST).ravel()
+        self._yx = np.stack(np.divmod(np.arange(cost.size), cost.shape[1]), axis=-1)
+        self._centres = seen.origin + low[::-1] * seen.cell + (self._yx[:, ::-1] + 0.5) * self._cell
+
+    def nearest_free(self, place: Array) -> int:
+        """The number of the free cell nearest to a `place` [m], [2]; of the nearest cell where none is free."""
+        far = np.hypot(*(self._centres - place).T)
+        return int(np.argmin(np.where(self._free, far, far + OBSTACLE_COST)))
+
+    def ends(self, goals: Array, near: Array, start: int) -> list[int]:
+        """The cells where walks from the cell `start` to within `near` [m], [G], of `goals` [m], [G, 2], end; or -1."""
+        spent = csgraph.dijkstra(self._graph, indices=start)
+        spent = np.where(self._free & (spent < OBSTACLE_COST * self._cell / 2), spent, np.inf)
+        cells = []
+        for goal, enough in zip(goals, near, strict=True):
+            missed = np.maximum(np.hypot(*(self._centres - goal).T) - enough, 0.0)
+            paid = np.where(missed <= AT_MOST, spent + SHORT * missed, np.inf)
+            best = int(np.argmin(paid))
+            cells.append(best if np.isfinite(paid[best]) else -1)
+        return cells
+
+    def lengths(self, ends: list[int]) -> Array:
+        """Lengths [m] of the cheapest ways between N cells, [N, N]; inf from and to -1."""
+        found = np.full((len(ends), len(ends)), np.inf)
+        reached = [number for number, cell in enumerate(ends) if cell >= 0]
+        cells = [ends[number] for number in reached]
+        _, before = csgraph.dijkstra(self._graph, indices=cells, return_predecessors=True)
+        for row, chain in zip(reached, before, strict=True):
+            for column, cell in zip(reached, cells, strict=True):
+                found[row, column] = self._length(chain, cell)
+        return found
+
+    def _length(self, before: NDArray[np.int32], end: int) -> float:
+        cells = [end]
+        while before[cells[-1]] >= 0:
+            cells.append(int(before[cells[-1]]))
+        return float(np.hypot(*np.diff(self._yx[cells], axis=0).T).sum() * self._cell)

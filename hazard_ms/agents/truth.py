@@ -1,0 +1,76 @@
+"""The truth that is hidden from all agents but the oracle: where things really are, and what will happen."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.sketch.recording import ahead
+from hazard_ms.sketch.timeline import Timeline
+from hazard_ms.skills.executor import SkillEnv
+
+SURPRISE = 0.25  # how far a target may be from where it was expected before the future is told anew [m] [ours]
+
+
+class Truth:
+    """The true state and future of a running episode, and the way in which the map is told of it."""
+
+    def __init__(self, env: SkillEnv, only_known: bool) -> None:
+        """Tell the map of `env` the truth from now on, after every look; `only_known`: about what it holds alone."""
+        self.env, self._only_known = env, only_known
+        self.aim: dict[int, NDArray[np.float32]] = {}  # where else the map shall hold some things [m], by index
+        self._future: Timeline | None = None
+        self._free: NDArray[np.bool_] = np.zeros(0, bool)  # the things that were free when the future was told
+        look = env.stage.look
+
+        def looked() -> None:
+            look()
+            self.reveal()
+
+        env.stage.look = looked
+
+    def knows(self, index: int) -> bool:
+        """Whether the thing `index` along B may be part of a plan."""
+        held = bool(self.env.base.world.held[0, index])
+        return not self._only_known or held or index in self.env.seen.objects
+
+    def position(self, index: int) -> NDArray[np.float32]:
+        """The position of the middle of the thing `index` [m], [3], world frame."""
+        return self.env.base.world.position[0, index].cpu().numpy()
+
+    def future(self) -> Timeline:
+        """The timeline from here on if nobody acts, foretold anew when a target is not as it was foretold."""
+        base = self.env.base
+        world, now = base.world, int(base.world.frame[0])
+        free = (~(world.safe | world.held | world.away)[0]).cpu().numpy()
+        if self._future is not None and np.array_equal(free, self._free):
+            things = slice(len(self._future.names))
+            off = world.position[0, things].cpu().numpy() - self._future.position_at(now)
+            damaged = base.episode.damage.damaged[0, things].cpu().numpy()
+            expected = (self._future.damaged_at >= 0) & (self._future.damaged_at <= now)
+            as_told = (np.linalg.norm(off, axis=-1) <= SURPRISE) & (damaged == expected)
+            if as_told[(free & world.target[0].cpu().numpy())[things]].all():
+                return self._future
+        self._future, self._free = ahead(base), free
+        return self._future
+
+    def reveal(self) -> None:
+        """Enter into the map where targets and containers really are, or where `aim` says."""
+        base, seen = self.env.base, self.env.seen
+        world = base.world
+        there = (world.target[0] & ~(world.safe | world.held | world.away)[0]).cpu().numpy()
+        there[[world.index(0, cart.name) for cart in base.specs[0].containers]] = True
+        places, extents = world.position[0].cpu().numpy(), world.extent[0].cpu().numpy()
+        damaged = base.episode.damage.damaged[0].cpu().numpy()
+        made = {}
+        for index in np.flatnonzero(there).tolist():
+            if not self.knows(index):
+                continue
+            place, (x, y, z) = self.aim.get(index, places[index]), extents[index]
+            old = seen.objects.get(index)
+            levels, history = (old.levels, old.history) if old else ((), ())
+            radius, top = float(np.hypot(x, y)) / 2, float(place[2] + z / 2)
+            # no pixels: the next look knows better
+            made[index] = Sighting(place, radius, top, self.env.frame, 0, levels, bool(damaged[index]), history)
+        seen.objects = {**seen.objects, **made}

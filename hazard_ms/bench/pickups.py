@@ -1,0 +1,198 @@
+"""Measures what picking up and putting away cost, target by target, for `hazard-ms bench --pickups`.
+
+Each target of the scenes is picked up once at the start of an episode, before its hazard moves anything much. The
+robot is put where a walk to the target ends, and looks at it. What it got is then put away: into the bag, or over the
+nearest cart. Frames do not depend on the machine.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from hazard_ms.evaluation.options import EnvOptions
+from hazard_ms.scenes.floor import FLOOR_CELL, connected, free_floor
+from hazard_ms.skills.decision import DROP, PICK_UP, Action
+from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.motor.grasping import can_reach
+from hazard_ms.skills.motor.walking import ARRIVED
+from hazard_ms.spec.checks import whole
+
+MOST = 10**5  # pick-ups [-] [ours]
+MARGIN = 0.05  # room that walks keep besides the robot's radius, from the cells of their map [m] [ours]
+LOOKS = 4  # looks that show everything around, with a field of view of 120 degrees [-]
+PLACES = 8  # places around a target from which reach is judged [-] [ours]
+
+
+@dataclass(frozen=True)
+class Handling:
+    """One pick-up or drop."""
+
+    robot: str
+    verb: str
+    env_id: str
+    scene: str
+    target: str
+    height: float  # middle of the target above the floor [m]
+    clearance: float  # horizontal distance from the target to the nearest floor that the robot can stand on [m]
+    distance: float  # horizontal distance from the robot to the target, or to the cart, at the start [m]
+    frames: int
+    ok: bool
+    reason: str
+    reachable: bool  # whether the arm gets there from any place that the robot can stand on
+
+
+def handlings(env_id: str, robot: str, count: int, seed: int) -> Iterator[Handling]:
+    """Pick up `count` targets of training scenes with `robot`, put them away, and tell of each.
+
+    Raises ValueError for an unknown task or robot and for a `count` that is not positive.
+    """
+    EnvOptions(env_id, robot_uids=robot).check()
+    whole(count, 1, MOST, "count")
+    env = SkillEnv.make(env_id, robot_uids=robot, deterministic=False, effects="off")
+    seen: set[str] = set()
+    tried = 0
+    try:
+        for drawn in range(seed, seed + MOST):
+            env.reset(seed=drawn)
+            spec = env.base.specs[0]
+            if spec.name in seen:
+                continue
+            seen.add(spec.name)
+            floor = _floor(env)
+            for number, body in enumerate(spec.targets):
+                if tried == count:
+                    return
+                if number:
+                    env.reset(seed=drawn)
+                tried += 1
+                yield from _handled(env, robot, body.name, floor)
+    finally:
+        env.close()
+
+
+def _handled(env: SkillEnv, robot: str, target: str, floor: NDArray[np.float64]) -> Iterator[Handling]:
+    """Pick `target` up, from where a walk over `floor` [m], [C, 2], ends, and put it away if that worked."""
+    index = env.base.world.index(0, target)
+    place, clearance = env.stage.position(index), 0.0
+
+    def told(verb: str, distance: float, frames: int, ok: bool, reason: str, reachable: bool) -> Handling:
+        height, task = round(float(place[2]), 3), env.base.task.name
+        near, far, scene = round(clearance, 3), round(distance, 3), env.base.specs[0].name
+        return Handling(robot, verb, task, scene, target, height, near, far, frames, ok, reason, reachable)
+
+    clearance = float(np.hypot(*(floor - place[:2]).T).min())
+    spot = _end_of_walk(env, index, floor)
+    if spot is None:
+        yield told(PICK_UP, clearance, 0, False, "no_place", False)
+        return
+    _stand(env, spot, place)
+    distance = float(np.hypot(*(env.stage.position(index)[:2] - spot)))
+    result = env.step(Action(PICK_UP, target))[-1]["result"]
+    reachable = result.ok or _in_reach(env, index, floor)
+    yield told(PICK_UP, distance, result.frames, result.ok, result.reason, reachable)
+    if not result.ok:
+        return
+    carts = env.brief().containers
+    if not carts:
+        dropped = env.step(Action(DROP))[-1]["result"]
+        yield told(DROP, 0.0, dropped.frames, dropped.ok, dropped.reason, True)
+        return
+    here = np.array(env.stage.robot.base()[:2])
+    cart = min(carts, key=lambda name: np.hypot(*(env.stage.position(env.base.world.index(0, name))[:2] - here)))
+    number = env.base.world.index(0, cart)
+    beside = _end_of_walk(env, number, floor)
+    if beside is None:
+        return
+    _stand(env, beside, env.stage.position(number))
+    distance = float(np.hypot(*(env.stage.position(number)[:2] - beside)))
+    dropped = env.step(Action(DROP, cart))[-1]["result"]
+    yield told(DROP, distance, dropped.frames, dropped.ok, dropped.reason, True)
+
+
+def _floor(env: SkillEnv) -> NDArray[np.float64]:
+    """Middles of the cells on which the robot can stand and that it can get to [m], [C, 2]."""
+    spec = env.base.specs[0]
+    radius = env.stage.robot.build.radius
+    free = connected(free_floor(spec, radius + MARGIN), spec.agent_start.position)
+    if not free.any():
+        free = connected(free_floor(spec, radius), spec.agent_start.position)
+    return np.asarray((np.argwhere(free) + 0.5) * FLOOR_CELL, dtype=np.float64)
+
+
+def _end_of_walk(env: SkillEnv, index: int, floor: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """The place [m], [2], where a walk to the thing ends; None if none is within the arm's reach of it.
+
+    Like `walk_to`, it is the first place from the start that is near enough, or else the nearest one.
+    """
+    thing = env.stage.position(index)
+    edge = float(env.base.world.extent[0, index, :2].norm()) / 2
+    far = np.hypot(*(floor - thing[:2]).T)
+    if far.min() > max(ARRIVED, env.stage.robot.build.span(float(thing[2]))[1]) + edge:
+        return None
+    start = np.asarray(env.base.specs[0].agent_start.position)
+    near = far <= ARRIVED + edge
+    if not near.any():
+        return np.asarray(floor[np.argmin(far)])
+    return np.asarray(floor[near][np.argmin(np.hypot(*(floor[near] - start).T))])
+
+
+def _stand(env: SkillEnv, spot: NDArray[np.float64], facing: NDArray[np.float64]) -> None:
+    """Put the robot at `spot` [m], [2], facing the point `facing` [m], [3], after LOOKS looks around from there."""
+    heading = math.atan2(facing[1] - spot[1], facing[0] - spot[0])
+    base = env.base
+    for look in reversed(range(LOOKS)):
+        turned = torch.tensor([heading + look * 2.0 * math.pi / LOOKS])
+        base.agent.place(torch.tensor([0]), torch.tensor(np.float32(spot))[None], turned)
+        base.world.read()
+        base.episode.see(base.agent)
+        env.look()
+
+
+def _in_reach(env: SkillEnv, index: int, floor: NDArray[np.float64]) -> bool:
+    """Whether the arm gets to the thing from one of PLACES around it, wherever nothing else is in its way."""
+    thing = env.stage.position(index)
+    nearest, farthest = env.stage.robot.build.span(float(thing[2]))
+    far = np.hypot(*(floor - thing[:2]).T)
+    around = floor[(far >= nearest) & (far <= farthest)]
+    for spot in around[np.linspace(0, len(around) - 1, min(PLACES, len(around))).astype(int)]:
+        heading = torch.tensor([math.atan2(thing[1] - spot[1], thing[0] - spot[0])])
+        env.base.agent.place(torch.tensor([0]), torch.tensor(np.float32(spot))[None], heading)
+        env.stage.robot.use_hand(thing)
+        if can_reach(env.stage, index):
+            return True
+    return False
+
+
+def report(made: Sequence[Handling]) -> str:
+    """The table of `made`: how often each verb works, how many frames it takes, and what failures cost by reason."""
+    lines = []
+    for robot, verb in sorted({(h.robot, h.verb) for h in made}, reverse=True):
+        rows = [h for h in made if (h.robot, h.verb) == (robot, verb)]
+        able = [h for h in rows if h.reachable]
+        worked = [h.frames for h in rows if h.ok]
+        share = f"{len(worked)} of {len(able)} reachable worked ({len(worked) / max(len(able), 1):.1%})"
+        lines.append(f"{robot} {verb}: {len(rows)} tried, {share}; frames {_frames(worked)}")
+        for reason, number in Counter(h.reason for h in rows if not h.ok).most_common():
+            failed = [h for h in rows if h.reason == reason]
+            able_too = sum(h.reachable for h in failed)
+            lines.append(f"  {reason}: {number}, {able_too} reachable; frames {_frames([h.frames for h in failed])}")
+    return "\n".join(lines)
+
+
+def _frames(frames: Sequence[int]) -> str:
+    if not frames:
+        return "-"
+    return f"median {np.median(frames):.0f}, mean {np.mean(frames):.0f}, most {max(frames)}"
+
+
+def lines(made: Sequence[Handling]) -> str:
+    """The text of a file of `made`, one JSON object a line."""
+    return "".join(json.dumps(asdict(h)) + "\n" for h in made)

@@ -1,0 +1,95 @@
+"""Plays one episode in a process that must survive it: whatever an agent raises costs that episode alone."""
+
+from __future__ import annotations
+
+import traceback
+from dataclasses import replace
+from pathlib import Path
+
+import torch
+
+from hazard_ms.agents.base import PrivilegedAgent, agent
+from hazard_ms.evaluation.options import EpisodeOptions
+from hazard_ms.evaluation.result import ERROR, EpisodeResult, Played
+from hazard_ms.evaluation.runner import play, result_of
+from hazard_ms.evaluation.watchers import Watcher
+from hazard_ms.evaluation.workers import Job, Outcome, Say, Word
+from hazard_ms.registry import AGENTS, load
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import STOP, Action, Decision
+from hazard_ms.skills.executor import SkillEnv
+
+LONGEST_ERROR = 300  # characters of an agent's error that are shown [ours]
+
+
+def attempt(job: Job, say: Say) -> Outcome:
+    """Play one episode in this process, with one thread. Whatever its agent raises costs only this episode."""
+    torch.set_num_threads(1)
+    teller = Teller(job.options, say)
+    try:
+        player = None if job.actions is None else Recorded(job.actions, job.options.agent)
+        return Outcome(play(job.options, [teller], player))
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        told, so_far = _told(error), teller.so_far
+        return Outcome(so_far and replace(so_far, ended=ERROR, error=told), told)
+
+
+class Teller(Watcher):
+    """Says before each decision what the episode has come to, and after it that the agent has answered."""
+
+    def __init__(self, options: EpisodeOptions, say: Say) -> None:
+        self._options, self._say = options, say
+        self.so_far: EpisodeResult | None = None
+
+    def begin(self, env: SkillEnv, decision: Decision) -> None:
+        """Remember the environment."""
+        self._env = env
+
+    def asked(self, so_far: Played) -> None:
+        """Say what the episode has come to."""
+        self.so_far = result_of(self._options, self._env, so_far)
+        self._say(Word(self.so_far))
+
+    def decided(self, decision: Decision, action: Action, note: str) -> None:
+        """Say that the agent has answered."""
+        self._say(Word(None))
+
+
+class Recorded(PrivilegedAgent):
+    """Takes the actions that an agent took earlier, and stops after the last one.
+
+    Where that agent is privileged, it is asked, too, since it tells the map what it knows. Its answers do not matter.
+    Nobody's code is loaded because a file names it: only registered agents are asked.
+    """
+
+    def __init__(self, actions: tuple[tuple[str, str | None], ...], name: str) -> None:
+        self._left = [Action(STOP), *(Action(verb, target) for verb, target in reversed(actions))]
+        entry = AGENTS.get(name.partition(":")[0])
+        asked = entry is not None and issubclass(load(entry.agent), PrivilegedAgent)
+        self._source = agent(name) if asked else None
+
+    def attach(self, env: SkillEnv) -> None:
+        """Let the agent of the record see what is hidden, if it is privileged."""
+        if isinstance(self._source, PrivilegedAgent):
+            self._source.attach(env)
+
+    def reset(self, brief: Brief) -> None:
+        """Begin an episode."""
+        if self._source is not None:
+            self._source.reset(brief)
+
+    def act(self, decision: Decision) -> Action:
+        """The next action of the record."""
+        if self._source is not None:
+            self._source.act(decision)
+        return self._left.pop() if len(self._left) > 1 else self._left[0]
+
+
+def _told(error: BaseException) -> str:
+    """An error in one line, with the place in the code where it was raised."""
+    calls = traceback.extract_tb((error.__cause__ or error).__traceback__)
+    where = f" ({Path(calls[-1].filename).name}, line {calls[-1].lineno})" if calls else ""
+    text = "".join(c if c.isprintable() else " " for c in f"{type(error).__name__}: {error}")
+    return f"{text[:LONGEST_ERROR]}{where}"

@@ -1,0 +1,1 @@
+"""Agents compared over folders of results: scores with intervals, differences, regret, curves, one page."""

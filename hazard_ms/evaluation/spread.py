@@ -1,0 +1,115 @@
+"""Spreads episodes over processes and machines. Results depend neither on how many there are nor on the order.
+
+`shard`s are for any scheduler: each plays its own part of the episodes, chosen by the names of their files.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import re
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+
+from hazard_ms.evaluation.attempts import attempt
+from hazard_ms.evaluation.workers import Crew, Job, Outcome
+
+MOST_SHARDS = 100_000  # [ours]
+SCHEDULER = "SLURM_ARRAY_TASK_"  # how the variables of an array job begin
+
+
+def shard(text: str | None, variables: Mapping[str, str] = os.environ) -> tuple[int, int]:
+    """The number of this part, from 1, and of all parts: of `text`, "2/3", else of the scheduler's `variables`.
+
+    Raises ValueError for other texts, and for variables of the scheduler that are not numbers.
+    """
+    if text is None:
+        if f"{SCHEDULER}ID" not in variables:
+            return 1, 1
+        told = [variables.get(f"{SCHEDULER}{name}", usual) for name, usual in (("ID", ""), ("MIN", "0"), ("STEP", "1"))]
+        count = variables.get(f"{SCHEDULER}COUNT", "")
+        if not all(word.isdecimal() for word in (*told, count)) or told[2] == "0":
+            raise ValueError(f"{SCHEDULER}ID, _MIN, _STEP and _COUNT must be numbers, got {told} and {count!r}")
+        task, first, step = map(int, told)
+        text = f"{(task - first) // step + 1}/{count}"
+    found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
+    part, parts = (int(found[1]), int(found[2])) if found else (0, 0)
+    if not 1 <= part <= parts <= MOST_SHARDS:
+        raise ValueError(f"shard must be i/N with i from 1 to N, such as 2/3, got {text!r}")
+    return part, parts
+
+
+def in_shard(name: str, part: int, parts: int) -> bool:
+    """Whether the file `name` belongs to `part`, from 1 to `parts`. Each name belongs to one part, everywhere."""
+    return int.from_bytes(hashlib.sha256(name.encode()).digest()[:8], "big") % parts == part - 1
+
+
+@contextlib.contextmanager
+def spread(
+    jobs: Sequence[Job], workers: int, backend: str = "local", address: str | None = None
+) -> Iterator[Iterator[tuple[Job, Outcome]]]:
+    """Play `jobs` where `backend` says, and give each with its outcome as soon as it is there.
+
+    serial: in this process, where an agent that dies or hangs takes it along; local: in `workers` processes; ray: on
+    the machines of the ray cluster at `address`, by default this one alone. 0 workers: one for each core. Raises
+    ValueError where ray is missing.
+    """
+    if backend == "serial" or not jobs:
+        yield _serial(jobs)
+        return
+    most = len(jobs)
+    if backend == "ray":
+        crew: _RaySeats | Crew = _RaySeats(workers, most, address)
+    else:
+        crew = Crew(min(workers or os.cpu_count() or 1, most), attempt)
+    try:
+        yield crew.play(jobs)
+    except BaseException:  # Ctrl-C, or a disk that is full
+        crew.end(now=True)
+        raise
+    crew.end()
+
+
+def _serial(jobs: Sequence[Job]) -> Iterator[tuple[Job, Outcome]]:
+    for job in jobs:
+        yield job, attempt(job, lambda word: None)
+
+
+class _RaySeats:
+    """As many actors of ray as there are workers, each with one process that it may replace."""
+
+    def __init__(self, workers: int, most: int, address: str | None) -> None:
+        try:
+            import ray
+        except ImportError:
+            wanted = "backend must be serial or local where ray is missing, got ray; pip install 'hazard_ms[cluster]'"
+            raise ValueError(wanted) from None
+        paths = os.pathsep.join(filter(None, sys.path))
+        ray.init(address=address, runtime_env={"env_vars": {"PYTHONPATH": paths}}, include_dashboard=False)
+        count = min(workers or int(ray.cluster_resources().get("CPU", 1)), most)
+        seat = ray.remote(num_cpus=1, max_restarts=-1, max_task_retries=1, scheduling_strategy="SPREAD")(_Seat)
+        self._seats = [seat.remote() for _ in range(count)]
+
+    def play(self, jobs: Sequence[Job]) -> Iterator[tuple[Job, Outcome]]:
+        """Play `jobs` in any order."""
+        from ray.util import ActorPool
+
+        yield from ActorPool(self._seats).map_unordered(lambda seat, job: seat.play.remote(job), jobs)
+
+    def end(self, now: bool = False) -> None:
+        """Leave the cluster; processes end with their actors."""
+        import ray
+
+        ray.shutdown()
+
+
+class _Seat:
+    """What an actor of ray does: it plays one episode at a time in a process of its own."""
+
+    def __init__(self) -> None:
+        self._crew = Crew(1, attempt)
+
+    def play(self, job: Job) -> tuple[Job, Outcome]:
+        """Play one episode."""
+        return next(self._crew.play([job]))

@@ -1,0 +1,62 @@
+"""The options of N rescues at once: the same numbers, slots and masks as `hazard_ms.skills.options.options`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hazard_ms.sketch.rescues.scene import SPOTS, Bools, Floats, Ints, Stack
+from hazard_ms.sketch.rescues.state import Rescues
+from hazard_ms.skills.options.landmarks import AROUND, MOST_VISITS
+from hazard_ms.skills.options.options import (
+    CART,
+    COUNT,
+    END,
+    FIRST,
+    GIVE_UP,
+    LANDMARK,
+    LANDMARK_SLOTS,
+    LOOK,
+)
+
+LONGEST_EDGE = 2.0 * AROUND  # border around a landmark of which almost nothing was seen: a straight line past it [m]
+
+
+def edges(stack: Stack, state: Rescues) -> Floats:
+    """Length of the border to unexplored floor around each landmark, as its unseen share gives it [m], [N, L]."""
+    unseen = stack.all_spots[state.scene] & ~state.spots
+    return LONGEST_EDGE / SPOTS * np.bitwise_count(unseen)
+
+
+def distances(stack: Stack, state: Rescues, site: Ints) -> Floats:
+    """Distance from each robot to `site` [N, ...], [N, ...] [m]."""
+    extra = (slice(None), *(None,) * (site.ndim - 1))
+    off = stack.position[state.scene[extra], site] - state.place[extra]
+    return np.sqrt((off**2).sum(-1))
+
+
+def landmark_slots(stack: Stack, state: Rescues) -> Ints:
+    """The best landmarks of each rescue, best first, as `landmarks` ranks them: [N, LANDMARK_SLOTS]; -1 where none."""
+    made = np.full((len(state.frame), LANDMARK_SLOTS), -1)
+    edge = edges(stack, state)
+    first = state.known.shape[1] - edge.shape[1]
+    tempting = state.known[:, first:] & (state.visits < MOST_VISITS)
+    away = distances(stack, state, stack.landmark_site[state.scene])
+    score = np.where(tempting, edge / (1.0 + away) / (1 + state.visits) ** 2, 0.0)
+    order = np.argsort(-score, axis=1, kind="stable")[:, :LANDMARK_SLOTS]
+    best = np.take_along_axis(score, order, axis=1)
+    made[:, : order.shape[1]] = np.where(best > 0.0, order, -1)
+    return made
+
+
+def mask(stack: Stack, state: Rescues, slots: Ints, stop: bool) -> Bools:
+    """Mask of the options that can be chosen, [N, A]; `slots`: see `landmark_slots`; `stop`: whether that can be."""
+    targets, carts = stack.value.shape[1], stack.cart_site.shape[1]
+    made = np.zeros((len(state.frame), COUNT), bool)
+    free, running = (state.held < 0)[:, None], ~state.over
+    trying = state.known[:, : targets + carts] & (state.failures < GIVE_UP)
+    made[:, :targets] = free & trying[:, :targets] & (state.rescued_at < 0) & stack.there[state.scene]
+    made[:, FIRST[CART] : FIRST[CART] + carts] = ~free & trying[:, targets:]
+    made[:, FIRST[LANDMARK] : FIRST[LANDMARK] + LANDMARK_SLOTS] = slots >= 0
+    made[:, FIRST[END]] = stop
+    made[:, FIRST[LOOK]] = ~state.looked | ~made[:, : FIRST[LOOK]].any(axis=1)
+    return made & running[:, None]

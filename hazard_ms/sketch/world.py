@@ -1,0 +1,250 @@
+"""The sketch: N rescues at once in numpy, with the options of `hazard_ms.skills.options`, without a simulator.
+
+    option        what happens
+    target i      walk to where it was last seen, or to where it can be met; pick up; with a bag: put it in
+    cart c        walk to it and let go over it what is in the hand
+    landmark l    walk there and look around
+    look          look around
+    stop          the episode ends
+
+Ways, sight and fates come from scenes (`hazard_ms.sketch.rescues.scene`), times of skills from tables. Nothing that the
+robot does changes the hazard, and nothing is pushed aside. A rescue is a function of its scene, its seed and its
+options: it goes the same alone as among thousands. The rewards of an episode add up to its score Value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import torch
+from numpy.typing import ArrayLike
+
+from hazard_ms.simulation.chance import Chance
+from hazard_ms.sketch.rescues import menu
+from hazard_ms.sketch.rescues.looking import look, stands, target_site
+from hazard_ms.sketch.rescues.pursuit import ahead, apart, in_sight, journey, meeting
+from hazard_ms.sketch.rescues.scene import LOOKS, Bools, Floats, Ints, SketchScene, Stack
+from hazard_ms.sketch.rescues.state import AS_MEASURED, Domain, Rescues
+from hazard_ms.sketch.skill_times import BAG, EXPLORE, NO_PATH, PICK_UP, SkillTimes
+from hazard_ms.sketch.skill_times import CART as OVER_CART
+from hazard_ms.skills.motor.walking import WALK_FRAMES
+from hazard_ms.skills.options.environment import IDLE
+from hazard_ms.skills.options.macros import LEGS, NEAR
+from hazard_ms.skills.options.options import CART, CART_SLOTS, COUNT, END, FIRST, LANDMARK, LOOK, TARGET, TARGET_SLOTS
+
+WALK_BUDGET = LEGS * WALK_FRAMES  # frames after which an approach is given up
+THINGS = TARGET_SLOTS + CART_SLOTS  # targets and carts that a scene can have: landmarks are numbered from there
+TRIES = 2  # walks to a thing that moves: the second when it is seen from where it was expected [ours]
+DRAWS = 6  # uniform numbers of a step: two each for the pick-up, the drop, and a walk without a path
+
+
+class Sketch:
+    """Many rescues at once: `state` tells all about them, `mask` [N, A] what can be chosen, `step` plays an option."""
+
+    def __init__(
+        self,
+        scenes: Sequence[SketchScene],
+        times: SkillTimes,
+        count: int,
+        domain: Domain = AS_MEASURED,
+        stop: bool = True,
+    ) -> None:
+        """Make `count` rescues in worlds out of `domain`, to be begun with `reset`; `stop`: whether they can be ended.
+
+        Raises ValueError for no scenes, for scenes with different hazards, and for a count below 1.
+        """
+        if count < 1:
+            raise ValueError(f"count must be at least 1, got {count}")
+        self.stack, self.times = Stack(scenes), times
+        self.domain, self._stop = domain, stop
+        self.state = Rescues.allocate(count, self.stack)
+        self._chance = Chance(count)
+        self._targets = self.stack.value.shape[1]
+        self._plays = (
+            (self._fetch, FIRST[TARGET], FIRST[CART]),
+            (self._stow, FIRST[CART], FIRST[LANDMARK]),
+            (self._search, FIRST[LANDMARK], FIRST[LOOK]),
+            (self._explore, FIRST[LOOK], FIRST[END]),
+        )
+        self._menu()
+
+    def reset(self, scene: ArrayLike, seeds: ArrayLike, rows: ArrayLike | None = None) -> None:
+        """Begin the episodes of `seeds` [R] in the scenes with the numbers `scene` [R], at `rows` [R]: all if None.
+
+        Raises ValueError for numbers of another shape, and for scenes that there are not.
+        """
+        which = np.arange(len(self.state.frame)) if rows is None else np.asarray(rows, np.int64)
+        scenes, drawn = np.asarray(scene, np.int64), np.asarray(seeds, np.int64)
+        if not scenes.shape == drawn.shape == which.shape:
+            raise ValueError(f"scene and seeds must have shape {which.shape}, got {scenes.shape} and {drawn.shape}")
+        if len(scenes) and not 0 <= scenes.min() <= scenes.max() < len(self.stack.names):
+            raise ValueError(f"scene must be from 0 to {len(self.stack.names) - 1}, got {scenes.max()}")
+        self._chance.restart(torch.from_numpy(which), torch.from_numpy(drawn))
+        chance, state = self._draw("sketch.domain", 2 + 2 * TARGET_SLOTS)[which], self.state
+        state.restart(which, scenes, self.stack, chance, self.domain)
+        state.stand[which] = stands(self.stack, scenes, state.place[which])
+        self._look(which, state.place[which][:, None], state.heading[which][:, None], state.frame[which][:, None])
+        self._menu()
+
+    def step(self, option: ArrayLike) -> tuple[Floats, Bools]:
+        """Play `option` [N], one of those of `mask` [N, A]: the rewards, [N], and whether each episode is over, [N].
+
+        An option that cannot be chosen costs a few frames; what is over stays as it is. Raises ValueError for anything
+        but numbers of options.
+        """
+        chosen = np.asarray(option)
+        if chosen.shape != self.state.frame.shape or chosen.dtype.kind not in "iu":
+            raise ValueError(f"option must be {len(self.state.frame)} whole numbers, got {chosen!r:.100}")
+        if chosen.min() < 0 or chosen.max() >= COUNT:
+            raise ValueError(f"option must be from 0 to {COUNT - 1}, got {chosen.min()} to {chosen.max()}")
+        state, before, started = self.state, self.state.score.copy(), self.state.frame.copy()
+        allowed = self.mask[np.arange(len(chosen)), chosen]
+        self._chance.tick()
+        self._luck = self._draw("sketch.skill", DRAWS)
+        for play, first, end in self._plays:
+            rows = np.flatnonzero(allowed & (chosen >= first) & (chosen < end))
+            if len(rows):
+                play(rows, chosen[rows] - first)
+        stopped = allowed & (chosen == FIRST[END])
+        state.frame[~state.over & (state.frame == started) & ~stopped] += IDLE
+        limit = self.stack.max_frames[state.scene]
+        state.frame = np.minimum(state.frame, limit)
+        self._drift_in()
+        done = ((state.rescued_at >= 0) | (state.value == 0.0)).all(axis=1)
+        state.over |= (state.frame >= limit) | done | stopped
+        self._menu()
+        return state.score - before, state.over.copy()
+
+    # ------------------------------------------------------------------ options
+
+    def _fetch(self, rows: Ints, target: Ints) -> None:
+        """Walk to a target and pick it up; with a bag, put it in."""
+        stack, state = self.stack, self.state
+        goal, here, trying = state.seen_site[rows, target], np.zeros(len(rows), bool), np.arange(len(rows))
+        for _ in range(TRIES):
+            some, wanted = rows[trying], target[trying]
+            seen = in_sight(stack, state, some, wanted)
+            goal[trying] = np.where(seen, meeting(stack, state, some, wanted), goal[trying])
+            arrived = self._walk(some, goal[trying])
+            actual = target_site(stack, state, some, wanted, state.frame[some])
+            here[trying] = arrived & (apart(stack, state, some, actual, goal[trying]) < NEAR)
+            trying = trying[arrived & ~here[trying] & in_sight(stack, state, some, wanted)]
+            if not len(trying):
+                break
+        worked = np.zeros(len(rows), bool)
+        worked[here] = self._pick_up(rows[here], target[here])
+        state.failures[rows, target] += ~worked
+        state.looked[rows] = False
+
+    def _pick_up(self, rows: Ints, target: Ints) -> Bools:
+        """Pick up what is near, and with a bag put it in; whether that worked, [R]."""
+        stack, state, scene = self.stack, self.state, self.state.scene[rows]
+        place = stack.height[scene, target], stack.clearance[scene, target]
+        worked, frames = self.times.draw(PICK_UP, self._luck[rows, :2], *place, state.ease[rows])
+        worked &= self._pass(rows, frames)
+        damaged = stack.damaged_at[scene, target]
+        state.spoiled[rows, target] |= worked & (damaged >= 0) & (damaged <= state.frame[rows])
+        state.held[rows[worked]] = target[worked]
+        bag = worked & ~stack.cart_there[scene].any(axis=1)
+        worked[bag] = self._let_go(rows[bag], BAG)
+        return worked
+
+    def _let_go(self, rows: Ints, skill: str) -> Bools:
+        """Drop what is in the hand; whether it is safe now, [R]. Where it is not, it lies where the robot is."""
+        state, target, nowhere = self.state, self.state.held[rows], np.zeros(len(rows))
+        safe, frames = self.times.draw(skill, self._luck[rows, 2:4], nowhere, nowhere, state.ease[rows])
+        safe &= self._pass(rows, frames)
+        state.held[rows] = -1
+        lost = rows[~safe], target[~safe]
+        state.laid[lost] = state.seen_site[lost] = state.site[rows[~safe]]
+        state.rescue(rows[safe], target[safe], state.frame[rows[safe]])
+        return safe
+
+    def _drift_in(self) -> None:
+        """Count the targets that the hazard itself brought to a safe place, if nobody took them before."""
+        state, safe_at = self.state, self.stack.safe_at[self.state.scene]
+        if (safe_at >= 0).any():
+            safe = (safe_at >= 0) & (safe_at <= state.frame[:, None]) & (state.rescued_at < 0) & (state.laid < 0)
+            safe &= ~state.over[:, None] & (np.arange(self._targets) != state.held[:, None])
+            rows, target = np.nonzero(safe)
+            damaged = self.stack.damaged_at[state.scene[rows], target]
+            state.spoiled[rows, target] = (damaged >= 0) & (damaged <= safe_at[rows, target])
+            state.rescue(rows, target, safe_at[rows, target])
+
+    def _stow(self, rows: Ints, cart: Ints) -> None:
+        """Walk to a cart and let go over it what is in the hand."""
+        state = self.state
+        arrived = self._walk(rows, self.stack.cart_site[state.scene[rows], cart])
+        safe = np.zeros(len(rows), bool)
+        safe[arrived] = self._let_go(rows[arrived], OVER_CART)
+        state.failures[rows, self._targets + cart] += ~safe
+        state.looked[rows] = False
+
+    def _search(self, rows: Ints, slot: Ints) -> None:
+        """Walk to a landmark, or as far as it goes, and look around there."""
+        state, mark = self.state, self.slots[rows, slot]
+        goal = self.stack.landmark_site[state.scene[rows], mark]
+        state.visits[rows, mark] += 1
+        state.looked[rows] = False
+        reachable = np.isfinite(ahead(self.stack, state, rows, goal))
+        self._walk(rows, goal)
+        self._explore(rows[reachable])
+
+    def _explore(self, rows: Ints, _: Ints | None = None) -> None:
+        """Turn once around, with looks."""
+        state, nothing = self.state, np.zeros(len(rows))
+        frames = self.times.draw(EXPLORE, self._luck[rows, :2], nothing, nothing, np.ones(len(rows)))[1]
+        whole = self._pass(rows, frames)
+        self._look(rows, state.place[rows][:, None], None, state.frame[rows][:, None])
+        state.looked[rows] = whole
+
+    # ------------------------------------------------------------------ parts of options
+
+    def _pass(self, rows: Ints, frames: Floats) -> Bools:
+        """Let `frames` [R] at usual pace pass; whether the episode lasts so long, [R]."""
+        after = self.state.frame[rows] + np.rint(frames * self.state.pace[rows]).astype(np.int64)
+        limit = self.stack.max_frames[self.state.scene[rows]]
+        self.state.frame[rows] = np.minimum(after, limit)
+        return after <= limit
+
+    def _walk(self, rows: Ints, goal: Ints) -> Bools:
+        """Walk to the sites `goal` [R], with looks on the way; whether the robot arrived, [R]."""
+        state, scene = self.state, self.state.scene[rows]
+        frames = ahead(self.stack, state, rows, goal) * state.pace[rows]
+        none = ~np.isfinite(frames)
+        room = self.stack.max_frames[scene] - state.frame[rows]
+        spent = np.minimum(np.where(none, 0.0, np.minimum(frames, WALK_BUDGET)), room)
+        share = np.where(none, 0.0, np.where(frames > 0.0, spent / np.maximum(frames, 1e-9), 1.0))
+        if none.any():
+            nothing, sure = np.zeros(len(rows)), np.ones(len(rows))
+            lost = self.times.draw(NO_PATH, self._luck[rows, 4:], nothing, nothing, sure)[1]
+            spent = np.where(none, np.minimum(lost * state.pace[rows], room), spent)
+        there, some = share == 1.0, np.flatnonzero(~none & (frames > 0.0))
+        self._travel(rows[some], goal[some], share[some], spent[some])
+        state.frame[rows] += np.rint(spent).astype(np.int64)
+        state.site[rows[some]] = np.where(there, goal, -1)[some]
+        return there
+
+    def _travel(self, rows: Ints, goal: Ints, share: Floats, spent: Floats) -> None:
+        """Move along the first `share` [R] of the ways to the sites `goal` [R], and look on the way."""
+        points, facing = journey(self.stack, self.state, rows, goal, share)
+        passed = np.rint(spent[:, None] * np.arange(1, LOOKS + 1) / LOOKS).astype(np.int64)
+        self._look(rows, points, facing, self.state.frame[rows][:, None] + passed)
+        self.state.place[rows], self.state.heading[rows] = points[:, -1], facing[:, -1]
+        self.state.stand[rows] = stands(self.stack, self.state.scene[rows], points[:, -1])
+
+    def _look(self, rows: Ints, points: Floats, facing: Floats | None, frame: Ints) -> None:
+        missed = None
+        if self.domain.missed > 0.0:
+            targets, carts, marks = self._targets, self.stack.cart_site.shape[1], self.stack.landmark_site.shape[1]
+            columns = np.r_[:targets, TARGET_SLOTS : TARGET_SLOTS + carts, THINGS : THINGS + marks]
+            missed = self._draw("sketch.sight", THINGS + marks)[rows][:, columns] < self.domain.missed
+        look(self.stack, self.state, rows, points, facing, frame, missed)
+
+    def _draw(self, stream: str, count: int) -> Floats:
+        return self._chance.uniform(stream, count).numpy().astype(np.float64)
+
+    def _menu(self) -> None:
+        self.slots = menu.landmark_slots(self.stack, self.state)
+        self.mask = menu.mask(self.stack, self.state, self.slots, self._stop)

@@ -1,0 +1,88 @@
+"""Where to search: what unseen floor is, which places show most of it, and that each counts what others leave."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hazard_ms.agents.search.lookouts import HIDDEN, SIGHT, lookouts, unseen_floor
+from hazard_ms.skills.decision import Decision
+from tests.worlds.playground import Playground
+
+
+def looked(places: dict[str, tuple[float, float]], sight: float = 3.0) -> Decision:
+    """What is known after a look around from the origin, by which all of `places` are known."""
+    ground = Playground(places, {}, sight=20.0)
+    ground.look()
+    ground.map.explored[:] = False
+    ground.sight = sight
+    ground.look()
+    return ground.decision()
+
+
+def test_unseen_floor_lies_beyond_the_border_of_what_was_seen() -> None:
+    """A ring of 2 m around a disc of 3 m."""
+    seen = looked({}).map
+    ring = unseen_floor(seen)
+    y, x = np.nonzero(ring)
+    far = np.hypot(seen.origin[0] + (x + 0.5) * 0.1, seen.origin[1] + (y + 0.5) * 0.1)
+    assert 2.9 < far.min() and far.max() < 5.1
+    assert not (ring & seen.explored).any()
+
+
+def test_nothing_is_unseen_behind_walls() -> None:
+    """A wall of half a metre around the floor that was seen: no floor borders on what was not."""
+    decision = looked({})
+    seen = decision.map
+    y, x = np.nonzero(seen.explored)
+    outer = np.hypot(*(seen.origin + 0.1 * (np.stack([x, y], -1) + 0.5)).T) > 2.5
+    seen._firm[y[outer], x[outer]] = 1.0
+    assert not unseen_floor(seen).any()
+
+
+def test_the_farther_out_the_more_a_place_shows() -> None:
+    """Beside where it stands, a thing shows nothing new; at the border it shows most."""
+    found = {mark.name: mark.share for mark in lookouts(looked({"here": (0.2, 0.0), "border": (2.9, 0.0)}), {}, [])}
+    assert set(found) == {"border"}
+    assert 0.1 < found["border"] < 0.5
+
+
+def test_places_beside_each_other_count_once() -> None:
+    """A second thing 0.3 m away shows little that the first did not; one on the other side shows as much."""
+    names = {"first": (2.9, 0.0), "beside": (2.9, 0.3), "opposite": (-2.9, 0.0)}
+    found = {mark.name: mark.share for mark in lookouts(looked(names), {}, [])}
+    sides = {"first", "beside"} & set(found)
+    assert max(found[name] for name in sides) == pytest.approx(found["opposite"], rel=0.1)
+    assert sum(found[name] for name in sides) < 1.35 * found["opposite"]
+
+
+def test_no_more_is_found_than_there_is() -> None:
+    around = {f"t{n}": (2.9 * np.cos(n), 2.9 * np.sin(n)) for n in range(7)}
+    assert sum(mark.share for mark in lookouts(looked(around), {}, [])) <= 1 - HIDDEN + 1e-9
+
+
+def test_visited_places_promise_less_and_in_the_end_nothing() -> None:
+    decision = looked({"border": (2.9, 0.0)})
+    fresh, once = lookouts(decision, {}, [])[0].share, lookouts(decision, {"border": 1}, [])[0].share
+    assert once == pytest.approx(fresh / 2)
+    assert lookouts(decision, {"border": 2}, []) == lookouts(decision, {}, ["border"]) == ()
+
+
+def test_where_no_floor_is_left_it_goes_to_what_it_has_not_visited() -> None:
+    decision = looked({"near": (1.0, 0.0), "beside": (1.2, 0.0), "far": (-3.0, 0.0)})
+    seen = replace(decision, map=decision.map)
+    seen.map._firm[:] = 1.0
+    assert [mark.name for mark in lookouts(seen, {}, [])] == ["near", "far"]
+    assert [mark.name for mark in lookouts(seen, {"near": 1}, [])] == ["beside", "far"]
+
+
+def test_what_is_out_of_sight_of_all_places_is_not_counted() -> None:
+    """A single place at the border shows the part of the ring within SIGHT of it."""
+    decision = looked({"border": (2.9, 0.0)})
+    seen = decision.map
+    y, x = np.nonzero(unseen_floor(seen))
+    points = seen.origin + 0.1 * (np.stack([x, y], -1) + 0.5)
+    expected = (1 - HIDDEN) * float((np.hypot(*(points - (2.9, 0.0)).T) < SIGHT).mean())
+    assert lookouts(decision, {}, [])[0].share == pytest.approx(expected, abs=0.01)

@@ -1,0 +1,76 @@
+"""What is remembered: which failures count, where things were seen, and what a second try is worth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from hazard_ms.agents.search.memory import LEGS, SAME_AGAIN, Memory
+from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action, Decision, Result
+from hazard_ms.skills.failures import TOO_FAR
+from tests.worlds.playground import Playground
+
+
+def looked() -> Playground:
+    ground = Playground({"a": (2.0, 0.0), "b": (0.0, 2.0)}, {"a": 1.0, "b": 5.0})
+    ground.look()
+    return ground
+
+
+def after(ground: Playground, action: Action, ok: bool, at: tuple[float, float] = (0.0, 0.0)) -> Decision:
+    """The decision after an action that began at the origin and ended at a place [m]."""
+    return replace(ground.decision(), last_action=action, last_result=Result(ok, "", 10), agent_position=at)
+
+
+def test_a_walk_that_came_further_is_no_failure_but_many_are() -> None:
+    ground, memory, walk = looked(), Memory(0), Action(WALK_TO, "a")
+    for number in range(1, LEGS + 1):
+        memory.chose(ground.decision(), walk)
+        memory.note(after(ground, walk, False, (0.5, 0.0)))
+        assert memory.failures == ({"a": 1} if number == LEGS else {})
+    memory.chose(ground.decision(), walk)
+    memory.note(after(ground, walk, False, (0.1, 0.0)))
+    assert memory.failures == {"a": 2}, "it hardly moved"
+
+
+def test_what_works_is_no_failure() -> None:
+    ground, memory = looked(), Memory(0)
+    for action in (Action(WALK_TO, "a"), Action(PICK_UP, "a"), Action(EXPLORE)):
+        memory.chose(ground.decision(), action)
+        memory.note(after(ground, action, True))
+    assert memory.failures == {} and memory.chance(ground.decision(), "a") == 1.0
+
+
+def test_a_second_try_is_worth_a_quarter_from_elsewhere_and_hardly_any_from_there() -> None:
+    ground, memory, pick = looked(), Memory(0), Action(PICK_UP, "a")
+    memory.chose(ground.decision(), pick)
+    memory.note(after(ground, pick, False))
+    assert memory.chance(ground.decision(), "a") == pytest.approx(SAME_AGAIN / 4)
+    assert memory.chance(replace(ground.decision(), agent_position=(3.0, 1.0)), "a") == pytest.approx(1 / 4)
+    assert memory.chance(ground.decision(), "b") == 1.0
+
+
+def test_a_thing_that_went_away_is_as_easy_to_pick_up_as_before() -> None:
+    ground, memory, pick = looked(), Memory(0), Action(PICK_UP, "a")
+    memory.chose(ground.decision(), pick)
+    memory.note(replace(after(ground, pick, False), last_result=Result(False, TOO_FAR, 0)))
+    assert memory.failures == {"a": 1} and memory.chance(ground.decision(), "a") == 1.0
+
+
+def test_a_track_grows_with_every_sighting() -> None:
+    ground, memory = looked(), Memory(0)
+    memory.note(ground.decision())
+    memory.note(ground.decision())
+    ground.frame, ground.places["a"] = 50, (2.0, 0.5)
+    ground.look()
+    memory.note(ground.decision())
+    assert memory.tracks["a"] == [(0, (2.0, 0.0)), (50, (2.0, 0.5))]
+
+
+def test_it_knows_where_it_has_arrived() -> None:
+    ground, memory = looked(), Memory(0)
+    assert memory.arrived(ground.decision()) is None
+    assert memory.arrived(after(ground, Action(WALK_TO, "a"), True)) == "a"
+    assert memory.arrived(after(ground, Action(WALK_TO, "a"), False)) is None
+    assert memory.arrived(after(ground, Action(PICK_UP, "a"), True)) is None

@@ -1,0 +1,71 @@
+"""Walks over a map against lengths that geometry gives: straight on, around a wall, and where there is no way."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hazard_ms.agents.search import walks
+from hazard_ms.agents.search.walks import TURNING, frames_between
+from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.sketch.ways import RADIUS, WALK
+
+
+def open_floor(half: float = 4.0) -> SemanticMap:
+    """A map on which a square of floor around the origin was seen, from -half to half [m]."""
+    seen = SemanticMap((0.0, 0.0), np.zeros(1, bool))
+    for y, x in np.ndindex(seen.explored.shape):
+        seen.explored[y, x] = max(map(abs, seen.centre_of(y, x))) < half
+    return seen
+
+
+def build(seen: SemanticMap, low: tuple[float, float], high: tuple[float, float], height: float = 1.0) -> None:
+    """Let something stand on the map from the corner `low` to `high` [m]."""
+    (y0, x0), (y1, x1) = seen.cell_of(low), seen.cell_of(high)
+    seen._firm[y0:y1, x0:x1] = height
+
+
+def metres(seen: SemanticMap, start: tuple[float, float], *goals: tuple[float, float], near: float = 0.5) -> np.ndarray:
+    """Lengths of the walks between goals and start [m], [G + 1, G + 1]."""
+    frames = frames_between(seen, start, np.array(goals), np.full(len(goals), near), RADIUS)
+    return (frames - TURNING) / WALK
+
+
+def test_a_walk_over_open_floor_ends_before_its_goal() -> None:
+    """3 m less 0.5 m; back from there to the start, and on to another goal: all straight, to a cell or two."""
+    found = metres(open_floor(), (-1.5, 0.0), (1.5, 0.0), (1.5, 3.0))
+    assert found[2, 0] == pytest.approx(2.5, abs=0.2)
+    assert found[0, 2] == pytest.approx(2.5, abs=0.2)
+    assert found[0, 1] == pytest.approx(2.5, abs=0.5)
+    assert frames_between(open_floor(1), (0, 0), np.array([(3.0, 0.0)]), np.array([0.5]), RADIUS)[1, 1] == 0.0
+
+
+def test_a_walk_goes_around_a_wall() -> None:
+    """A wall of 5 m along y between start and goal: over its nearer end, at 2 m, with 0.15 m to spare."""
+    seen = open_floor()
+    build(seen, (-0.1, -3.0), (0.1, 2.0))
+    way = metres(seen, (-1.5, 0.0), (1.5, 0.0))[1, 0]
+    assert way == pytest.approx(2 * np.hypot(1.5, 2.15 + RADIUS) - 0.5, rel=0.12)
+
+
+def test_there_is_no_way_into_a_closed_room() -> None:
+    seen = open_floor()
+    for low, high in (((1, -1), (1.2, 1)), ((3, -1), (3.2, 1)), ((1, -1.2), (3.2, -1)), ((1, 1), (3.2, 1.2))):
+        build(seen, low, high)
+    found = metres(seen, (-1.5, 0.0), (2.1, 0.0), (-1.5, 2.0))
+    assert np.isinf(found[2, 0]) and np.isinf(found[1, 0]) and np.isinf(found[0, 1])
+    assert found[2, 1] == pytest.approx(1.5, abs=0.2)
+
+
+def test_a_robot_that_stands_too_close_to_something_still_walks() -> None:
+    seen = open_floor()
+    build(seen, (-1.5, 0.2), (1.0, 0.4))
+    assert metres(seen, (-1.0, 0.1), (2.0, -1.0))[1, 0] == pytest.approx(np.hypot(3.0, 1.1) - 0.5, rel=0.15)
+
+
+def test_coarse_cells_give_the_same_lengths_where_gaps_are_wide(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = open_floor()
+    build(seen, (-0.1, -3.0), (0.1, 2.0))
+    fine = metres(seen, (-1.5, 0.0), (1.5, 0.0), (1.5, 3.0))
+    monkeypatch.setattr(walks, "MOST_CELLS", 1000)
+    assert metres(seen, (-1.5, 0.0), (1.5, 0.0), (1.5, 3.0)) == pytest.approx(fine, abs=0.45)

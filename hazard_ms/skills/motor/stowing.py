@@ -78,13 +78,19 @@ def _into_cart(stage: Stage, cart: int, held: int) -> Skill:
 
 
 def _goals(stage: Stage, over: NDArray[np.float64]) -> list[Leg]:
-    """Postures that bring the hand to `over` [m], [3], from where the base stands, or else from nearer."""
+    """The posture for a hand at `over` [m], [3], from where the base stands, or from nearer if that is closer.
+
+    Empty if the arm is too short.
+    """
     heading = stage.robot.base()[2]
+    found: list[tuple[float, Leg]] = []
     for ahead in standings(stage, over):
         posture = posture_for(stage, over - ahead * np.array([np.cos(heading), np.sin(heading), 0.0]))
         if posture.error < GRASP_REACH:
-            return [Leg(posture.arm, ahead)]
-    return []
+            found.append((posture.error, Leg(posture.arm, ahead)))
+        if posture.error < OFF_CENTRE:
+            break
+    return [min(found, key=lambda each: each[0])[1]] if found else []
 
 
 def _basket(stage: Stage, cart: int, over: NDArray[np.float64]) -> Place:

@@ -24,8 +24,9 @@ EVERY, LOOKS = 5, 200  # frames between two looks at an episode, and number of l
 LIGHTS = {"full": ("day", "night", "failing"), "fast": ("day", "failing")}  # in which labels are looked at, by effects
 # of the soak, per task; before memory must be flat; at each end of the rest, for the mean
 RESETS, WARM, PART = 170, 70, 40
-# of resident memory from one end of the rest to the other, at most [MiB]: records kept of each episode alone take 25
-GROWTH = 5.0
+# of resident memory from one end of the rest to the other, at most [MiB]: records kept of each episode alone take 25,
+# and the allocator takes one step of 5 now and then
+GROWTH = 12.5
 EFFECTS = ("full", "fast", "off")
 
 

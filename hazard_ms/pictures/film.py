@@ -1,4 +1,4 @@
-"""Films an episode: every so many frames a picture of the room, of what the robot sees, and of what it knows."""
+"""Films an episode: every few frames a picture of the room, of what the robot sees, and of what it knows."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.video import Video
 from hazard_ms.sensing.target_table import Target
+from hazard_ms.simulation.viewpoint import corner_view, following_view
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import EXPLORE, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
@@ -88,6 +89,7 @@ class Film(Watcher):
             self._head = base.observer.look()
         self._shots += 1
         rgb, view = self._head
+        self._follow()
         room = base.render()[0].cpu().numpy()
         now = fates(env)
         self._tell_rescues(now)
@@ -117,6 +119,13 @@ class Film(Watcher):
         )
         self._video.add(picture)
         return picture
+
+    def _follow(self) -> None:
+        """In the open, where the robot would be a dot, move the camera along with it."""
+        spec, (x, y, _heading) = self._env.base.specs[0], self._env.stage.robot.base()
+        if spec.room.open_air:
+            for camera in self._env.base.scene.human_render_cameras.values():
+                camera.camera.set_local_pose(following_view(corner_view(spec), (x, y)))
 
     def _targets(self, now: tuple[Fate, ...]) -> tuple[Target, ...]:
         """The target table as it is at this frame.

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.sensing.camera import AGENT, NOTHING
+from hazard_ms.sensing.far_floor import floor_between
 from hazard_ms.sensing.sighting import Sighting, merged, sightings
 from hazard_ms.sensing.view import View
 
@@ -141,6 +142,14 @@ class SemanticMap:
         if view.labels is not None:
             self._see_objects(view, frozenset(ignore), damaged)
         self._mark(view, *_pixels(*view.depth.shape), agent, ignore)
+        self._see_floor(view)
+
+    def _see_floor(self, view: View) -> None:
+        """Mark the floor between points that lie farther apart than cells, as they do far from the camera."""
+        between = floor_between(view, max(1, view.depth.shape[1] // GRID), self.cell)
+        x, y = np.floor((between - self.origin) / self.cell).astype(np.int64).T
+        inside = (x >= 0) & (x < len(self.explored)) & (y >= 0) & (y < len(self.explored))
+        self.explored[y[inside], x[inside]] = True
 
     def _see_objects(self, view: View, ignore: frozenset[int], damaged: NDArray[np.bool_] | None) -> None:
         found = sightings(view, self.frame, len(self.loose), ignore, damaged)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.sensing.view import View
 
-SEEN_PIXELS = 3  # pixels from which a thing counts as seen: a key at 2 m has about so many in an image of 256 x 256
+SEEN_PIXELS = 3  # pixels from which a thing counts as seen: a key at 2 m has about as many in an image of 256 x 256
 MEDIAN_PIXELS = 400  # least number of a thing's pixels that give its position: as good as all 20,000 [ours]
 VIEW_ERROR = 0.1  # a median can move by this much because the angle of view changed [m]
 REMEMBERED = 256  # number of the newest levels of hazards that are kept for each thing

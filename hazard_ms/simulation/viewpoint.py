@@ -1,4 +1,4 @@
-"""The third person: from where a camera overlooks a whole scene."""
+"""The third person: from where a camera overlooks a whole scene, or follows the robot where that is too large."""
 
 from __future__ import annotations
 
@@ -14,6 +14,14 @@ from hazard_ms.spec import SceneSpec
 TALL, BESIDE = 1.3, 0.4
 HIDING = 12.0  # one box in the view weighs as much as being this much nearer to the agent [m] [ours]
 EYES_OUTDOORS = 6.0  # height of the camera that watches a scene in the open [m] [ours]
+BEHIND, ABOVE = 4.5, 3.2  # of a camera that follows the robot: how far from it, and how high [m] [ours]
+
+
+def following_view(whole: sapien.Pose, place: tuple[float, float]) -> sapien.Pose:
+    """Pose of a camera that looks at `place` [m] from the side from which the camera at `whole` overlooks the scene."""
+    ahead = whole.to_transformation_matrix()[:2, 0]
+    eye = np.append(np.asarray(place) - BEHIND * ahead / np.linalg.norm(ahead), ABOVE)
+    return look_at(eye, [*place, 0.6]).sp
 
 
 def corner_view(spec: SceneSpec) -> sapien.Pose:

@@ -12,10 +12,11 @@ import tyro
 
 from hazard_ms import registry
 from hazard_ms.evaluation.choices import BACKENDS, EFFECTS, LIGHTINGS, PRESETS, SPLITS, flag, offer
+from hazard_ms.spec.order import natural
 
 SCENE_FILE = ".json"  # how names of scene files end
 EPISODES = 25  # of every agent, unless another number is asked for: a split of the original has as many scenes
-MOST = 10**6  # episodes, seeds and frames between pictures: any larger number is a slip of the pen [-] [ours]
+MOST = 10**6  # episodes, seeds and frames between pictures: any larger number must be a mistake [-] [ours]
 MOST_WORKERS = 1024  # processes [ours]
 LONGEST_DECISION = 86_400.0  # [s] [ours]
 
@@ -168,7 +169,7 @@ class SweepOptions:
     address: str | None = None
     """Address of the ray cluster, such as auto; this machine alone if not given."""
     shard: str | None = None
-    """Part i/N of the episodes that is played here, such as 2/3; by default as the variables of a Slurm array say."""
+    """Part i/N of the episodes that is played here, such as 2/3; by default that of the Slurm array job."""
     timeout: float = 60.0
     """Wall time that an agent has for a decision [s]; one that takes longer loses the rest of its episode."""
     output: Annotated[Path, flag("-o", "--output", old="out")] = Path("evaluation")
@@ -202,7 +203,7 @@ class SweepOptions:
         """The files of the folder of scenes, scene-2 before scene-10; none if there is no folder."""
         if self.scenes is None:
             return []
-        found = sorted(self.scenes.glob(f"*{SCENE_FILE}"), key=_natural)
+        found = sorted(self.scenes.glob(f"*{SCENE_FILE}"), key=lambda path: natural(path.stem))
         if not found:
             raise ValueError(f"scenes must be a folder that holds files *{SCENE_FILE}, got {self.scenes}")
         return [str(path) for path in found]
@@ -224,7 +225,3 @@ def _default(name: str) -> Any:
 def _flag(name: str) -> str:
     return "--" + name.replace("_", "-")
 
-
-def _natural(path: Path) -> list[int | str]:
-    """Sorts scene-2 before scene-10: texts and numbers take turns."""
-    return [int(word) if word.isdecimal() else word for word in re.split(r"(\d+)", path.stem)]

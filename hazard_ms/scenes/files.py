@@ -11,6 +11,7 @@ from typing import Any
 from hazard_ms.assets.foreign import printable, read_foreign
 from hazard_ms.scenes.schema import LARGEST_FILE, from_json
 from hazard_ms.spec import SceneSpec, Task
+from hazard_ms.spec.order import natural
 
 MOST_FILES = 2000  # that one folder may hold
 
@@ -55,15 +56,7 @@ def read_scene(path: Path) -> SceneSpec:
 
 def _files(given: Path) -> list[Path]:
     """The JSON files that a path means, at least one."""
-    found = sorted(given.glob("*.json"), key=_natural) if given.is_dir() else [given]
+    found = sorted(given.glob("*.json"), key=lambda path: natural(path.stem)) if given.is_dir() else [given]
     if not found or len(found) > MOST_FILES:
         raise ValueError(f"{given} must hold 1 to {MOST_FILES} files *.json, got {len(found)}")
     return found
-
-
-def _natural(path: Path) -> list[tuple[int, str]]:
-    """Sorts scene-2 before scene-10."""
-    parts: list[tuple[int, str]] = []
-    for word in path.stem.replace("_", "-").split("-"):
-        parts.append((int(word), "") if word.isascii() and word.isdigit() and len(word) < 10 else (-1, word))
-    return parts

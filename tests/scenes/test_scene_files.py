@@ -5,10 +5,12 @@ from __future__ import annotations
 import dataclasses
 import json
 import time
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from hazard_ms.scenes.files import read_scenes
 from hazard_ms.scenes.schema import LARGEST_FILE, check, from_json, to_json
 from hazard_ms.scenes.splits import scene
 from hazard_ms.spec import Parameter, SceneSpec
@@ -105,6 +107,13 @@ def test_large_files_are_refused_at_once() -> None:
     with pytest.raises(ValueError, match="digits"):
         from_json('{"format": ' + "9" * (LARGEST_FILE - 100) + "}")
     assert time.process_time() - before < 2.0
+
+
+def test_a_folder_gives_its_scenes_in_the_order_of_their_names(tmp_path: Path) -> None:
+    """That in which `hazard-ms evaluate --scenes` plays them, too."""
+    for name in ("room10", "room9", "yard"):
+        (tmp_path / f"{name}.json").write_text(to_json(dataclasses.replace(SPEC, name=name)))
+    assert tuple(read_scenes(tmp_path)) == ("room9", "room10", "yard")
 
 
 def test_names_must_differ() -> None:

@@ -16,7 +16,7 @@ from hazard_ms.scenes.floor import connected, free_floor
 from hazard_ms.spec import SceneSpec
 from hazard_ms.spec.catalogue import WIND_POOL
 
-EVERY = 6  # one scene in so many; all of them with --long
+EVERY = 6  # one scene of this many is looked at; all of them with --long
 
 NAMES = splits.all_scene_names("outdoor")
 SAMPLE = [pytest.param(n, marks=() if k % EVERY == 0 else pytest.mark.long) for k, n in enumerate(NAMES)]

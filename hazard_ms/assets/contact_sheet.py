@@ -18,7 +18,7 @@ from hazard_ms.machine.render_backend import DEVICES, backend
 
 TILE = 220  # edge of a picture [pixels]
 CAPTION = 30  # height of the words below it [pixels]
-FIELD_OF_VIEW = 0.5  # [rad]: long enough a lens that sizes do not look distorted
+FIELD_OF_VIEW = 0.5  # [rad]: a lens long enough that sizes do not look distorted
 DIRECTION = (0.55, -0.75, 0.5)  # from the model to the camera: models face -y
 GROUND = (0.62, 0.65, 0.68)  # linear colour of the floor below
 INK = (40, 40, 40)  # colour of words: red, green, blue

@@ -1,4 +1,4 @@
-"""Reads files of others with a limit, and shows their words without what a terminal would carry out."""
+"""Reads other people's files up to a size limit, and shows their text without codes that a terminal would act on."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def name_of(kind: str, cavities: list[tuple[float, float]]) -> str:
 
 
 def boxes_of(name: str) -> tuple[Box, ...]:
-    """The boxes that make up the shape called `name`. Raises ValueError for names of no shape."""
+    """The boxes that make up the shape called `name`. Raises ValueError for unknown names."""
     found = NAME.fullmatch(name)
     if found is None:
         raise ValueError(

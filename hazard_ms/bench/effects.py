@@ -1,4 +1,4 @@
-"""Measures what effects cost in a picture, as ratios to a picture without, for `hazard-ms bench --effects`.
+"""Measures what effects cost in a picture, as ratios to a picture without them, for `hazard-ms bench --effects`.
 
 Full and fast have shader packs of their own: full is compared with SAPIEN's default pack, and so is fast, which
 replaces it where pictures must be cheap. Compare the ratios: times belong to the machine, and to what else it does.
@@ -60,7 +60,7 @@ def _advanced(env_id: str, mode: str, seed: int) -> gym.Env:
 
 
 def go_on(base: Any, frames: int) -> None:
-    """Let the hazards of a HazardEnv go on for so many frames, while all things stay where they are.
+    """Let the hazards of a HazardEnv go on for this many frames, while all things stay where they are.
 
     That is quick, and the same on any machine.
     """
@@ -71,7 +71,7 @@ def go_on(base: Any, frames: int) -> None:
 
 
 def _picture(base: Any) -> float:
-    """Time for which a picture is made and fetched [s]."""
+    """Time that making and fetching a picture takes [s]."""
     start = time.perf_counter()
     base.observer.show()
     base.scene.update_render(update_sensors=True, update_human_render_cameras=False)

@@ -90,7 +90,7 @@ def watched(base: Any) -> Stopwatch:
 
 
 def _spans(env: gym.Env, frames: int, seed: int) -> list[float]:
-    """Time of each of so many frames under random motion of the base [s]."""
+    """Time of each of this many frames under random motion of the base [s]."""
     rng = np.random.default_rng(seed)
     action = np.zeros(env.unwrapped.single_action_space.shape, np.float32)  # type: ignore[attr-defined]
     spans = []

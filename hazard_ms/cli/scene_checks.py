@@ -24,7 +24,7 @@ class CheckedScene:
     spent: float = 0.0  # on generating it [s]
 
     def line(self) -> str:
-        """A line for people, or several where there are problems."""
+        """A line of text, or several where there are problems."""
         if self.problems:
             return "\n".join([f"PROBLEM {printable(self.name)}", *(f"    {printable(p)}" for p in self.problems)])
         return f"ok {printable(self.name):18s} {self.size}, generated in {self.spent:.2f} s"

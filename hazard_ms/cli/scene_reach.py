@@ -10,7 +10,9 @@ from hazard_ms.spec import Build, SceneSpec
 
 
 def print_reach(names: Sequence[str], robots: Sequence[str]) -> None:
-    """Print what of the scenes `names`, JSON files and folders of them among these, each of the `robots` can get at.
+    """Print which targets each of `robots` can get at in scenes.
+
+    `names`: of the scenes, of JSON files that hold one, or of folders of such files.
 
     Raises ValueError for an unknown scene or robot, and for a file that holds no scene.
     """

@@ -67,7 +67,7 @@ def check(
     agents: tuple[Annotated[str, offer(POLICIES)], ...] = ("greedy", "rule"),
     trials: int = 16,
 ) -> int:
-    """Compare the sketch with real episodes of the same agents in the same scenes. Ends with 1 where it is too far off.
+    """Compare the sketch with real episodes of the same agents in the same scenes. Ends with 1 if it is too far off.
 
     Raises ValueError for unknown agents, and for folders without results of any of them.
 

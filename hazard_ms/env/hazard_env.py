@@ -76,7 +76,7 @@ class HazardEnv(BuiltEnv):
             affects_agent: Whether the hazards act on the robot.
             robot_uids: The rescuer, by our name of it or by ManiSkill's; also a tuple of one.
             deterministic: Rebuild the scene for every episode, so that a seed gives the same bits (about 1 s a reset).
-            scene_every: With `deterministic=False`, every so many resets without a seed draw a new scene; 0: none does.
+            scene_every: With `deterministic=False`, n: every n-th reset without a seed draws a new scene; 0: none does.
                 What they draw follows from the last seed, so that a training run sees the same scenes again.
             effects: How hazards look: full, fast or off. Never changes physics or labels.
             lighting: day, evening, night, failing (lamps go out during the episode), random (by the seed). Never
@@ -177,11 +177,11 @@ class HazardEnv(BuiltEnv):
         return ObservationTable(joints, self.task.observations, levels, self._most_frames)
 
     def limit_of(self, frames: int) -> int:
-        """The limit that gymnasium means by `frames`: that of the split where it is the task's usual one."""
+        """The limit that gymnasium's `frames` stands for: that of the split if `frames` is the task's usual one."""
         return self.task.max_frames if frames == TASKS[self.task.name].max_frames else frames
 
     def allow_frames(self, frames: int) -> None:
-        """Let episodes have up to `frames`, if that is more than the task has: a bound of observations."""
+        """Let episodes last up to `frames`, if that is more than the task allows; observations are bounded by it."""
         if frames > self._most_frames:
             self._most_frames = frames
             self.update_obs_space(self._init_raw_obs)

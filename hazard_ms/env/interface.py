@@ -1,4 +1,4 @@
-"""The exchange of a learner with a live environment, number by number: observation, action, reward and info."""
+"""All that a learner exchanges with a live environment, number by number: observation, action, reward and info."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ KNOWN = (*inspect.signature(BaseEnv.__init__).parameters,)[1:]
 RENDER_MODES = ("human", "rgb_array", "sensors", "all")
 REWARD_MODES = ("normalized_dense", "dense", "sparse", "none")
 CAMERAS = ("sensor_configs", "human_render_camera_configs")
-MOST_ENVS = 2**20  # environments of a batch: any larger number is a slip of the pen [-] [ours]
+MOST_ENVS = 2**20  # environments of a batch: any larger number must be a mistake [-] [ours]
 NEVER = 0  # reconfiguration_freq of a scene that stays
 
 

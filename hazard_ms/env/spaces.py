@@ -1,4 +1,4 @@
-"""Observation spaces that tell the truth: bounds from the table of observations, instead of -inf to inf."""
+"""Observation spaces with true bounds, taken from the table of observations, instead of -inf to inf."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Files appear whole or not at all, whatever interrupts their writing: the one way in which the package writes them.
 
-A file is first a draft beside its place, under a name that nobody can foresee. It is brought to the disk and only then
+A file is first a draft beside its place, under a name that nobody can predict. It is brought to the disk and only then
 given its name, so that readers see the older file or the new one. A draft is locked while it is written: what a killed
 process left is known by the missing lock, and the next run deletes it.
 """
@@ -55,7 +55,7 @@ class Draft:
             self.path.write_bytes(content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content)
 
     def flush(self) -> None:
-        """Bring the draft to the disk."""
+        """Flush the draft to the disk."""
         with _refusing(self.target), self.path.open("rb") as file:
             os.fsync(file.fileno())
 
@@ -152,7 +152,7 @@ def _kept(draft: Draft) -> Path | None:
 
 @contextlib.contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Let nobody else publish in `folder` meanwhile, and bring its new names to the disk; where it can do so."""
+    """Let nobody else publish in `folder` meanwhile, and flush its new names to the disk, where it can."""
     opened = -1
     with contextlib.suppress(OSError):
         opened = os.open(folder, os.O_RDONLY)

@@ -52,7 +52,7 @@ class Plan:
         cv2.polylines(self.image, [corners], True, INK, 1, cv2.LINE_AA)
 
     def write(self, text: str, x: float, y: float, size: float = 0.33) -> None:
-        """Words in the middle of a point."""
+        """Words centred on a point."""
         (w, h), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, size, 1)
         px, py = self.at(x, y)
         cv2.putText(self.image, text, (px - w // 2, py + h // 2), cv2.FONT_HERSHEY_SIMPLEX, size, INK, 1, cv2.LINE_AA)

@@ -1,1 +1,1 @@
-"""Plans of rescues: the exact programme, bounds on what any plan can reach, and tree search. Nothing is simulated."""
+"""Plans of rescues: an exact search, bounds on what any plan can reach, and tree search. Nothing is simulated."""

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 POSITION_ERROR = 0.15  # by which a thing at rest seems to move between two sightings [m] [ours]
 FEWEST_FRAMES = 15  # between two sightings that tell a speed [ours]
 SPEEDING = 1.5  # a thing is not believed to move faster than this many times the fastest that was seen [ours]
-LONGEST_DRIFT = 200.0  # frames for which a thing is believed to drift on as it was seen to: then it meets a wall [ours]
+LONGEST_DRIFT = 200.0  # frames for which a thing is believed to go on drifting: by then it meets a wall [ours]
 RISE = 0.001  # rise of the water that is believed before it was seen to rise [m/frame] (docs/physics.md 1.2)
 CAP = 1.5  # highest level of the water [m] (docs/physics.md 1.2)
 LEVEL_ERROR = 0.02  # of a level that was seen [m] [ours: it was seen somewhere on the thing]
@@ -39,7 +39,7 @@ def drifted(frames: ArrayLike, places: ArrayLike, fastest: float, at: float) -> 
 def speed_of(frames: ArrayLike, places: ArrayLike) -> Array:
     """The velocity [m/frame], [2], of a thing that was seen at `places` [m], [S, 2], at increasing `frames`, [S].
 
-    It is zero where the last sightings tell none, or no more than their error.
+    It is zero where the last sightings show none, or no more than their error.
     """
     times, seen = np.asarray(frames, np.float64), np.asarray(places, np.float64)
     earlier = np.flatnonzero(times <= times[-1] - FEWEST_FRAMES)
@@ -61,8 +61,8 @@ class WaterPlane:
     def fitted(cls, points: ArrayLike, frames: ArrayLike, levels: ArrayLike) -> WaterPlane:
         """The plane of the least squared errors through `levels` [m], [S], at `points` [m], [S, 2], and `frames`, [S].
 
-        Points that were dry have the level 0 and say nothing. What few sightings leave open is as it is believed to be
-        before any: level ground, and a rise by RISE from nothing.
+        Points that were dry have the level 0 and say nothing. What few sightings leave open stays as it was believed to
+        be before any: a level surface that rises by RISE from nothing.
         """
         where, heights = np.asarray(points, np.float64).reshape(-1, 2), np.asarray(levels, np.float64)
         wet = heights > 0.0
@@ -96,9 +96,9 @@ def extended(frames: ArrayLike, levels: ArrayLike, at: ArrayLike) -> Array:
 
 
 def last_whole(harms: Callable[[float], bool], frames: ArrayLike, levels: ArrayLike) -> float:
-    """The last of frames [...] before the first one at whose level, of the levels [...], a thing comes to harm.
+    """The last of `frames`, [F], before the first one at whose level, of `levels`, [F], a thing comes to harm.
 
-    It is 0 where that is the first of all, and inf where there is none. Levels are in the unit of their hazard.
+    It is 0 if that is the first of all, and inf if there is none. Levels are in the unit of their hazard.
     """
     times = np.asarray(frames, np.float64)
     for number, level in enumerate(np.asarray(levels, np.float64).tolist()):

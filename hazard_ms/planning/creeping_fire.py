@@ -1,7 +1,7 @@
 """Futures of a fire that creeps over the floor, drawn from its law, and the flames behind temperatures that were seen.
 
-The law is that of docs/physics.md 1.1, the rules of the challenge, which every agent may know. What chance will do is
-drawn anew: a future is one of many. Times step by STEP frames, in which things heat up twice.
+The law is that of docs/physics.md 1.1, the rules of the challenge, which every agent may know. Chance is drawn anew
+for each future. Times step by STEP frames, in which things heat up twice.
 
     temperature seen at a point   T = (20 + 600 F + sum of w T of things) / (1 + F + sum of w of things)
     so the weight of the flames   F = ((T - 20) + sum of w (T - T of things)) / (600 - T),  w = (0.5 / max(d, 0.5))^2
@@ -28,7 +28,7 @@ FIRST_CHANCE = 0.02  # probability of an attempt up to the younger of AGES
 AGES = (150, 250)  # frames since the last success between which the probability rises to 1
 WAYS = ((0, 1), (0, -1), (1, 0), (-1, 0))  # the neighbours of a cell, along y and x
 
-FARTHEST = 10  # cells that a fire creeps in an episode at most, and room around the flames that were seen
+FARTHEST = 10  # most cells that a fire creeps in an episode, and room around the flames that were seen
 FAINT = 0.15  # weight of flames at a point below which it tells nothing of where they are [ours]
 NEVER = 1e9  # a frame that does not come
 

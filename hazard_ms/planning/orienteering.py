@@ -1,4 +1,4 @@
-"""The exact programme: time-dependent orienteering with soft deadlines, by labels of partial plans.
+"""The exact search: time-dependent orienteering with soft deadlines, by labels of partial plans.
 
 A label is a partial plan: what is rescued, where one stands, the frame and the value. Of labels that rescued the same
 and stand at the same node, those that are later without being worth more are dropped; so are those whose optimistic

@@ -21,12 +21,12 @@ class Stow(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """PlannedRescue as much value as possible by `limit`, with one hand.
+    """The problem of rescuing as much value as possible by `limit`, with one hand.
 
     A target is met, picked up and put into the bag there, or carried to a cart where `travel` has carts. It counts
     its value if it is safe by `damaged_at`, else `damaged_share` of it. Frames may be fractions. With `fading` it
-    counts the less the later it is safe, since much can go wrong until then: of plans that save the same, that one is
-    best which saves first what is dear.
+    counts less the later it is safe, since much can go wrong until then: of plans that save the same, the best is the
+    one that saves valuable targets first.
     """
 
     travel: Travel
@@ -41,7 +41,7 @@ class Problem:
     fading: float = 0.0  # share of its value by which a target counts less with every frame until it is safe
 
     def __post_init__(self) -> None:
-        """Raises ValueError for wrong lengths, for NaN, and for what is negative or infinite but must not be."""
+        """Raises ValueError for wrong lengths, for NaN, and for negative or infinite numbers that must not be."""
         targets, carts = self.travel.targets, self.travel.carts
         lengths = {"values": targets, "damaged_at": targets, "pick": targets, "drop": carts or targets}
         for name, length in lengths.items():
@@ -94,5 +94,5 @@ class Plan:
     value: float
     frame: float  # at which the last rescue is done; now where there is none
     exact: bool  # proven: no plan is worth more, and none that is worth as much is done earlier
-    gap: float  # at most so much more value could be rescued
+    gap: float  # at most this much more value could be rescued
     labels: int  # partial plans that were kept

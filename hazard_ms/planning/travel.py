@@ -28,7 +28,7 @@ class Travel(ABC):
     def meetings(self, spot: Spot, frame: float, targets: Sequence[int]) -> list[tuple[float, Spot]]:
         """The earliest frame at which each of `targets` can be met after `frame`, and where; inf for never.
 
-        Waiting is allowed, so who leaves later never meets earlier.
+        Waiting is allowed, so leaving later never means meeting earlier.
         """
 
     @abstractmethod

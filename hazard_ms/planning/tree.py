@@ -67,7 +67,7 @@ class Node(Generic[State, Option]):
 def search(
     model: Model[State, Option], state: State, simulations: int = SIMULATIONS, seed: int = 0, depth: int = DEPTH
 ) -> Choice[Option]:
-    """The best option found in so many simulations, each with a roll-out of at most `depth` options.
+    """The best option found in this many simulations, each with a roll-out of at most `depth` options.
 
     All randomness derives from `seed`. Raises ValueError unless `simulations` is positive, `depth` is not negative and
     the state has an option.
@@ -96,7 +96,7 @@ def search(
 
 
 def exploration_rate(visits: int) -> float:
-    """The weight of exploration at a node after so many visits, c(n)."""
+    """The weight of exploration at a node after this many visits, c(n)."""
     return math.log((1 + visits + BASE) / BASE) + CONSTANT
 
 

@@ -32,7 +32,7 @@ AGENT_NAME = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)?")
 class TaskEntry:
     """A task: `maker(physics, **options)` gives the `hazard_ms.spec.Task`; episodes last `max_frames` at most.
 
-    `split_frames`: that number in the splits in which it is another one.
+    `split_frames`: that number for each split in which it differs.
     """
 
     name: str  # the id under which gymnasium knows it, "HazardFire-v1"
@@ -97,7 +97,7 @@ def register_task(
 ) -> None:
     """Add a task, and make it known to gymnasium and ManiSkill.
 
-    `max_frames`: the greatest length of an episode; `split_frames`: that in the splits in which it is another one.
+    `max_frames`: the greatest length of an episode; `split_frames`: that for each split in which it differs.
 
     Raises ValueError for a name that no environment can have, one that is taken, and a wrong number of frames.
     """

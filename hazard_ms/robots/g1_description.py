@@ -36,7 +36,7 @@ SMALL_MASS = 0.2  # of links that only connect joints [kg], besides the robot's 
 
 
 class UnknownDescriptionError(RuntimeError):
-    """The installed robot is not the one that we know how to put on its legs."""
+    """Raised if the installed robot is not the one that we know how to put on its legs."""
 
 
 @cache

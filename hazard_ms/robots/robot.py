@@ -27,9 +27,8 @@ class Robot(abc.ABC):
     head_camera: str  # uid of the sensor
     skill_control_mode: str  # the control mode whose actions `action` makes
     tucked: NDArray[np.float64]  # arm joints where the arm is out of the way [rad], [J]
-    between: tuple[
-        NDArray[np.float64], ...
-    ]  # arm joints that lead past furniture to where the hand is needed [rad], [J]
+    # arm joints that lead past furniture to where the hand is needed [rad], [J] each
+    between: tuple[NDArray[np.float64], ...]
     pointing: tuple[float, ...]  # how far below the horizon the fingers point at a thing, in the order of trying [rad]
 
     @abc.abstractmethod

@@ -54,7 +54,7 @@ def check(spec: SceneSpec) -> list[str]:
 
 
 def _missing(spec: SceneSpec) -> Iterator[str]:
-    """Models that are not there."""
+    """Models that do not exist."""
     for t in spec.things:
         try:
             asset(t.asset)

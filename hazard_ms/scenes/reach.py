@@ -22,7 +22,7 @@ PUSHED_HEIGHT = 0.15  # things up to this height are pushed aside, as the robots
 
 
 def reachable(spec: SceneSpec, build: Build) -> tuple[str, ...]:
-    """Names of the targets that a robot can get near enough to, without fetching anything out of its way.
+    """Names of the targets that a robot can get close enough to, without clearing anything out of its way.
 
     It counts where the robot's circle fits between everything that is higher than PUSHED_HEIGHT at the start, in the
     part of the floor on which it starts. There the arm, stretched at the height of the target's middle, must bring the

@@ -181,7 +181,7 @@ def whole_number(digits: str) -> int:
 
 
 def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object of JSON. Raises ValueError for a key that stands in it twice."""
+    """An object of JSON. Raises ValueError for a key that occurs twice."""
     made: dict[str, Any] = {}
     for key, value in pairs:
         if key in made:

@@ -1,12 +1,12 @@
-"""Bounds on the Value that any agent can reach in an episode: the exact programme with times that nobody can beat.
+"""Bounds on the Value that any agent can reach in an episode: the exact search with times that nobody can beat.
 
     walks      straight lines at full speed, without turns, between places from which things can just be reached
     pick-ups   as short as the arm's joints allow
     damage     as in the timeline: what an agent carries away no longer heats or crowds what is left, so that a thing
                may burn a little earlier or later than without an agent. `strict` ignores damage instead
 
-Things that move are met wherever they come nearest (into the bag), or wherever that brings them to a cart earliest from
-when they can be met on.
+Things that move are met wherever they come nearest (if they go into the bag), or wherever that brings them to a cart
+earliest.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.episode.grasp import GRASP_REACH
 from hazard_ms.planning.bound import never_damaged
 from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import Problem
@@ -24,6 +23,7 @@ from hazard_ms.planning.travel import Spot, StaticTravel, Travel
 from hazard_ms.simulation import building
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.spec import Build, SceneSpec
+from hazard_ms.spec.robot import GRASP_REACH
 
 # A pick-up takes an arm at least 10 frames out, at 0.1 rad a frame, 4 to shut the hand and 10 back to the bag [ours]
 PICK = 24.0  # [frames]
@@ -40,10 +40,10 @@ def bound(
     """The share of the value of all targets that no agent exceeds, 0 to 1.
 
     `values` are those of `spec.targets`; `build` is the robot's; `limit`: the last frame of the episode;
-    `strict`: nothing is ever damaged. Raises ValueError for another number of values than of targets.
+    `strict`: nothing is ever damaged. Raises ValueError unless there are as many values as targets.
     """
     if len(values) != len(spec.targets):
-        raise ValueError(f"values must be as many as targets, {len(spec.targets)}, got {len(values)}")
+        raise ValueError(f"values must be {len(spec.targets)}, one for each target, got {len(values)}")
     worth = np.asarray(values, np.float64)
     targets = np.array([timeline.index(target.name) for target in spec.targets], np.int64)
     alone = timeline.safe_at[targets] >= 0  # it becomes safe by itself
@@ -105,8 +105,8 @@ def _nearest(ways: Metres, start: Metres, reach: Metres) -> Metres:
 class _Chase(Travel):
     """Travel between carts that rest and targets that move, each of which is carried from its best place to a cart.
 
-    Between two samples a target may come nearer than in both, by half of the way that it goes: so far reaches are
-    lengthened. Frames are those at the nearer one of the samples' ends.
+    Between two samples a target may come nearer than at both, by half of the way that it goes: reaches are lengthened
+    by that much. Frames are those at the nearer one of the samples' ends.
     """
 
     def __init__(

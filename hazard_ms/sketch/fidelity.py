@@ -14,7 +14,7 @@ from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.sketch.world import Sketch
 
 TRIALS = 16  # rescues in the sketch for each real one: their mean is known to about 0.05 [ours]
-# what is demanded of the sketch (hazard-ms sketch check)
+# what is required of the sketch (hazard-ms sketch check)
 MOST_VALUE_GAP = 0.05  # difference of mean Values
 LEAST_CORRELATION = 0.6  # Spearman's, of the Values of episodes
 MOST_FRAMES_GAP = 0.10  # relative difference of mean frames for each rescue
@@ -45,7 +45,7 @@ class Fidelity:
 
     @property
     def good(self) -> bool:
-        """Whether it is as near as is demanded."""
+        """Whether the sketch is as close as required."""
         frames = abs(self.sketch_frames / self.real_frames - 1.0) <= MOST_FRAMES_GAP
         return (
             abs(self.sketch_value - self.real_value) <= MOST_VALUE_GAP

@@ -19,9 +19,9 @@ from hazard_ms.skills import decision, failures
 
 HEIGHTS = (-math.inf, 0.25, 0.9, math.inf)  # ends of the bands: floor, tables, shelves [m] [ours]
 CLEARANCES = (-math.inf, 0.4, 0.7, math.inf)  # ends of the bands: at hand, over an edge, at arm's length [m] [ours]
-FEWEST = 12  # attempts of a band, with fewer of which it takes the numbers of all bands [ours]
+FEWEST = 12  # attempts: a band with fewer takes the numbers of all bands [ours]
 QUANTILES = 11  # numbers that a distribution of frames is kept as [ours]
-# failures that say nothing about how the skill goes: time ran out, or the agent asked for what cannot be
+# failures that say nothing about the skill: time ran out, or the agent asked for something impossible
 NO_ATTEMPT = (
     failures.EPISODE_OVER,
     failures.UNKNOWN,
@@ -40,12 +40,12 @@ class Attempt:
     skill: str  # one of SKILLS
     ok: bool
     frames: int
-    height: float = math.nan  # of the thing above the floor [m]; NaN where nobody noted it
+    height: float = math.nan  # of the thing above the floor [m]; NaN if it was not recorded
     clearance: float = math.nan  # from the thing to where the robot can stand [m]
 
 
 def attempt(verb: str, ok: bool, reason: str, frames: int, carts: bool, **place: float) -> Attempt | None:
-    """The attempt behind an action's outcome; None for actions of other kinds, and for what was no attempt.
+    """The attempt behind an action's outcome; None for other actions and where it was not really tried.
 
     `carts`: whether things are safe in carts and not in a bag; `place`: height [m] and clearance [m], where known.
     """

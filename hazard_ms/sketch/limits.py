@@ -12,7 +12,7 @@ STEPS = 24  # halvings of a range, after which a limit is known to a millionth o
 def limit_of(hazard: Hazard, category: str, height: float) -> float:
     """The level, in its unit, from which `hazard` damages a target of `category` at `height` [m]; or infinity.
 
-    A higher level is never less of a threat. The limit is sought from 10 times its usual range down.
+    A higher level is never less of a threat. The limit is sought in up to 10 times the usual range of the level.
     """
     target = _told(category)
     low, high = hazard.level.low, hazard.level.low + 10.0 * (hazard.level.high - hazard.level.low)

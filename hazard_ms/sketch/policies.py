@@ -1,4 +1,4 @@
-"""Agents that can be played in the sketch: their rules over options, as close as can be to those over actions.
+"""Agents that can be played in the sketch: their rules over options, as close as possible to those over actions.
 
 They serve to compare the sketch with the real environment (`hazard_ms.sketch.fidelity`), where `hazard_ms.agents` has
 them under the same names. They see what an agent sees: what was sighted, never what is.

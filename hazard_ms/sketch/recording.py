@@ -1,4 +1,4 @@
-"""Records timelines: of whole episodes in which nobody does anything, and of what follows the present of a running one.
+"""Records timelines: of whole episodes in which nobody does anything, and of the rest of a running one.
 
 Hazards that push nothing, such as fire, need no simulator: many scenes are advanced at once, and a copy of a running
 episode is advanced exactly, since all chance is counted. Where things float off or are blown away, each scene is
@@ -29,18 +29,17 @@ from hazard_ms.machine.cache import home
 from hazard_ms.scenes.schema import to_json
 from hazard_ms.simulation import bare_scene, building
 from hazard_ms.simulation.world import World
-from hazard_ms.sketch.timeline import Timeline, read
+from hazard_ms.sketch.timeline import STRIDE, Timeline, read
 from hazard_ms.spec import SceneSpec, Task
 
-STRIDE = 10  # frames from sample to sample: water and flames change every 10 frames [ours]
 STILL = 0.01  # what never gets farther than this from its start is at rest [m] [ours]
-NOWHERE = 1e3  # where the hand of nobody is [m]
+NOWHERE = 1e3  # where the hand is put when nobody acts [m]
 LAWS = ("hazards", "kernels", "simulation", "episode")  # folders whose code decides what happens
 PACKAGE = Path(__file__).parents[1]
 
 
 class Running(Protocol):
-    """The part of an environment with a running episode that is needed; `hazard_ms.env.HazardEnv` has it."""
+    """The part of a running environment that recordings need; `hazard_ms.env.HazardEnv` has it."""
 
     world: World
     episode: Episode
@@ -69,11 +68,11 @@ def record(
 ) -> list[Timeline]:
     """The timelines of episodes of `task` in the scenes `specs`, each with the seed of the same number.
 
-    `frames`: their length, by default that of the task. Raises ValueError for an unknown preset of `physics`, and for
-    another number of seeds than of scenes.
+    `frames`: their length, by default that of the task. Raises ValueError for an unknown preset of `physics`, and
+    unless there are as many seeds as scenes.
     """
     if len(specs) != len(seeds):
-        raise ValueError(f"seeds must be as many as scenes, {len(specs)}, got {len(seeds)}")
+        raise ValueError(f"seeds must be {len(specs)}, one for each scene, got {len(seeds)}")
     length = task.max_frames if frames is None else frames
     if pushes(task.hazards):
         courses = [_simulated(task, physics, spec, seed) for spec, seed in zip(specs, seeds, strict=True)]
@@ -109,7 +108,7 @@ def pushes(hazards: Sequence[Hazard]) -> bool:
 
 
 def suite_of(task: Task, physics: str, spec: SceneSpec, frames: int | None = None) -> str:
-    """A digest of all that a timeline follows from but the seed: scene, models, hazards, laws and length."""
+    """A digest of all that determines a timeline, except the seed: scene, models, hazards, laws and length."""
     sizes = [(building.extent_of(thing), building.mass_of(thing)) for thing in spec.things]
     length = task.max_frames if frames is None else frames
     parts = (task.name, repr(task.hazards), FREQUENCIES[physics], length, STRIDE, to_json(spec), sizes, _laws())
@@ -124,7 +123,7 @@ def _laws() -> str:
 
 
 class _Course:
-    """E episodes without anyone who acts, with or without simulators."""
+    """E episodes in which nobody acts, with or without simulators."""
 
     def __init__(self, episode: Episode, frame_seconds: float) -> None:
         self.episode, self.world, self.frame_seconds = episode, episode.world, frame_seconds

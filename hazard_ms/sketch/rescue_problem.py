@@ -24,7 +24,7 @@ OTHERS = "fetch"  # whose skill times stand in for those of a robot without any
 
 @dataclass(frozen=True)
 class Outset:
-    """The place and the frame from which a rescue goes on."""
+    """The place and the frame from which a rescue continues."""
 
     place: tuple[float, float]  # of the robot [m]
     heading: float | None  # of the robot [rad]; None: it faces the way
@@ -81,7 +81,7 @@ class RescueScene:
         """Travel between all nodes, and the frames by which each walk is shorter than it says."""
         ways = future.positions(targets)[..., :2].astype(np.float64)  # [S, T, 2]
         rest = future.positions(carts)[0, :, :2].astype(np.float64)
-        near = int(np.searchsorted(future.frames, outset.frame))
+        near = min(int(np.searchsorted(future.frames, outset.frame)), len(ways) - 1)
         if np.linalg.norm(ways[near:] - ways[near], axis=-1).max(initial=0.0) > DRIFT:
             walk = straight_line(WALK * DETOUR)
             moving = MovingTravel(future.frames[near:], ways[near:], np.asarray(outset.place), walk, rest)

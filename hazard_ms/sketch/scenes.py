@@ -17,9 +17,9 @@ from hazard_ms.robots import robot_class
 from hazard_ms.simulation.building import extent_of
 from hazard_ms.sketch.limits import limit_of
 from hazard_ms.sketch.recording import recorded
-from hazard_ms.sketch.rescues.scene import LOOKS, SPOTS, STRIDE, Floats, Ints, SketchScene
+from hazard_ms.sketch.rescues.scene import LOOKS, SPOTS, Floats, Ints, SketchScene
 from hazard_ms.sketch.sight import FETCH, G1, Sight
-from hazard_ms.sketch.timeline import Timeline
+from hazard_ms.sketch.timeline import STRIDE, Timeline
 from hazard_ms.sketch.ways import Ways
 from hazard_ms.skills.options.landmarks import AROUND, MIN_SPACING
 from hazard_ms.spec import SceneSpec, Task
@@ -56,7 +56,7 @@ def scenes_of(
 def training_scenes(env_id: str, physics: str, count: int, robot: str = "fetch") -> list[SketchScene]:
     """The first `count` scenes of a task's split `train`, numbered by their seeds.
 
-    Raises ValueError for unknown names, and for a count that the split does not have.
+    Raises ValueError for unknown names, and for a count above its number of scenes.
     """
     names = task_of(env_id, physics).scenes("train")
     some = names[: whole(count, 1, len(names), "count")]
@@ -156,7 +156,7 @@ class _Maker:
         room, edge = self.spec.room, OUTDOOR_CELL if self.spec.room.open_air else INDOOR_CELL
         border = room.beyond if room.open_air else 0.0
         shape = (int(np.ceil((room.size[1] + 2 * border) / edge)), int(np.ceil((room.size[0] + 2 * border) / edge)))
-        floor = self._floor()
+        floor = self.ways.places
         at = (floor + border) / edge
         order = np.argsort(np.abs(at % 1.0 - 0.5).max(axis=1), kind="stable")
         x, y = np.clip(np.floor(at[order]).astype(int), 0, np.array(shape[::-1]) - 1).T
@@ -173,11 +173,6 @@ class _Maker:
             "grid_shape": shape,
         }
 
-    def _floor(self) -> Floats:
-        """Places to which the robot can walk [m], [F, 2]."""
-        y, x = np.nonzero(self.ways.free)
-        return np.asarray(self.ways.origin + (np.stack([x, y], axis=-1) + 0.5) * self.ways.cell, dtype=np.float64)
-
     def _travel(self, stand: Floats, position: Floats, edge: Floats) -> dict[str, Any]:
         """Ways from `stand` [P, 2] [m] to things of `edge` [S] [m] at `position` [S, 2] [m]."""
         route = self.ways.route(stand[:, None], position[None], edge[None])
@@ -191,11 +186,11 @@ class _Maker:
 
     def _clearance(self, position: Floats) -> Floats:
         """Distance from things at `position` [m], [T, 2], to where the robot can stand [m], [T]."""
-        floor = self._floor()
+        floor = self.ways.places
         return np.array([np.hypot(*(floor - place).T).min() for place in position]).reshape(len(position))
 
     def _limits(self, height: Floats) -> Floats:
-        """Level of each hazard from which each target is damaged, [T, H]; infinite where none does that."""
+        """Level of each hazard from which each target is damaged, [T, H]; infinite where it never is."""
         return np.array(
             [
                 [limit_of(hazard, self.spec.things[n].category, float(h)) for hazard in self.task.hazards]

@@ -75,26 +75,20 @@ class Sight:
         upright = np.einsum("bij,bj->bi", self._turn, self._half * _row((0, 0, 1)))
         self._middle = np.array([t.position for t in spec.things], np.float32).reshape(-1, 3) + upright
 
-    def sees(self, places: ArrayLike, things: ArrayLike, positions: ArrayLike | None = None) -> Bools:
-        """Whether a robot at `places` [m], [P, 2], that looks around sees `things`, numbers along B, [S]: [P, S].
-
-        `positions` [m], [S, 3] or [P, S, 3]: the middles of their boxes; None: as at the start of the scene.
-        """
-        return self.pixels(places, None, things, positions) >= SEEN_PIXELS
-
     def visible(
-        self, places: ArrayLike, heading: ArrayLike, things: ArrayLike, positions: ArrayLike | None = None
+        self, places: ArrayLike, heading: ArrayLike | None, things: ArrayLike, positions: ArrayLike | None = None
     ) -> Bools:
-        """Whether a robot at `places` [m], [P, 2], with `heading` [rad], [P], sees `things` in one look: [P, S].
+        """Whether a robot at `places` [m], [P, 2], sees `things`, numbers along B, [S]: [P, S].
 
-        Other arguments as for `sees`.
+        It has `heading` [rad], [P], and looks once; None: it looks all around. `positions` [m], [S, 3] or [P, S, 3]:
+        the middles of the things' boxes; None: as at the start of the scene.
         """
         return self.pixels(places, heading, things, positions) >= SEEN_PIXELS
 
     def pixels(
         self, places: ArrayLike, heading: ArrayLike | None, things: ArrayLike, positions: ArrayLike | None = None
     ) -> Floats:
-        """The number of pixels of things in looks, about: [P, S]; without a `heading`, looking at each of them.
+        """The approximate number of pixels of things in looks, [P, S]; without a `heading`, looking at each of them.
 
         Other arguments as for `visible`.
         """

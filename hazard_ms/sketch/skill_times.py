@@ -21,14 +21,14 @@ FORMAT = 1  # goes up when a field of the file changes its meaning
 SHIPPED = Path(__file__).with_name("skill_times.json")
 PICK_UP, BAG, CART, EXPLORE, NO_PATH = "pick_up", "bag", "cart", "explore", "no_path"
 SKILLS = (PICK_UP, BAG, CART, EXPLORE, NO_PATH)  # the drops into the bag and over a cart are apart
-LONGEST = 10_000  # frames of one skill, of which any larger number is a slip of the pen [ours]
+LONGEST = 10_000  # frames of one skill: any larger number must be a mistake [ours]
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class SkillRow:
-    """The outcome and the duration of one skill in one band. Raises ValueError for numbers that cannot be."""
+    """The outcome and the duration of one skill in one band. Raises ValueError for impossible numbers."""
 
     skill: str
     count: int  # attempts in the band; a row of a band with few of them rests on those of all
@@ -99,6 +99,11 @@ class SkillTimes:
         table = np.array([(row.success, _mean(row.frames), _mean(row.failed)) for row in rows])
         success, frames, failed = np.average(table, axis=0, weights=weight)
         return float(success), float(frames), float(failed)
+
+    def usual(self, skill: str, height: float) -> float:
+        """Mean frames of the attempts that work on a thing at `height` [m], bands by their counts."""
+        rows = [row for row in self._of[skill] if row.height[0] <= height < row.height[1]]
+        return float(np.average([_mean(row.frames) for row in rows], weights=[max(row.count, 1) for row in rows]))
 
     def as_dict(self) -> dict[str, Any]:
         """The tables of this robot as plain data, for JSON; null for a band that is open."""

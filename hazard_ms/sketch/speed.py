@@ -15,7 +15,7 @@ from hazard_ms.sketch.world import Sketch
 from hazard_ms.skills.options.options import END, FIRST
 
 COUNTS = (1, 16, 256)  # rescues at once
-WANTED = {1: 1_000, 256: 20_000}  # decisions a second that are demanded of one idle core
+WANTED = {1: 1_000, 256: 20_000}  # decisions a second that are required of one idle core
 DECISIONS = 1_000  # of a measurement with few rescues [ours]
 FEWEST_STEPS = 50  # of one with many [ours]
 PARTS = 5  # of a measurement, of which the fastest counts: other work on the machine slows the others [ours]
@@ -31,7 +31,7 @@ def report(scenes: Sequence[SketchScene], times: SkillTimes) -> str:
         torch.set_num_threads(threads)
     lines = [f"{len(scenes)} scenes, random options, one thread, best of {PARTS} parts, {platform.machine()}"]
     for count, rate in found.items():
-        wanted = f"   demanded: {WANTED[count]:,}" if count in WANTED else ""
+        wanted = f"   required: {WANTED[count]:,}" if count in WANTED else ""
         lines.append(f"  {count:4d} rescues at once {rate:10,.0f} decisions/s{wanted}")
     return "\n".join(lines)
 

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from hazard_ms.machine import files
 
 FORMAT = 1  # goes up when older files can no longer be read
+STRIDE = 10  # frames from sample to sample: water and flames change every 10 frames [ours]
 DIGEST_BYTES = hashlib.sha256().digest_size  # at the start of a file
 TEXTS = ("scene", "task", "physics", "suite")
 
@@ -100,7 +101,7 @@ def from_bytes(content: bytes) -> Timeline:
     """The record that `to_bytes` gave. Raises ValueError for any other content."""
     digest, packed = content[:DIGEST_BYTES], content[DIGEST_BYTES:]
     if hashlib.sha256(packed).digest() != digest:
-        raise ValueError("a timeline must have the digest of its contents, got another: it is damaged, or no timeline")
+        raise ValueError("a timeline must have the digest of its contents, got another: damaged, or something else")
     with np.load(io.BytesIO(packed), allow_pickle=False) as stored:
         columns: dict[str, Any] = {name: stored[name] for name in stored.files}
     found = int(columns.pop("format"))

@@ -61,7 +61,7 @@ class Ways:
         """Prepare the ways of `spec` for a robot of `radius` [m], over cells of edge `cell` [m].
 
         `bodies` names the bodies that stand in the way: all but the targets where it is None. Raises ValueError for a
-        cell or a radius that is not positive, and for names of no body.
+        cell or a radius that is not positive, and for unknown names.
         """
         self.cell = (OUTDOOR_CELL if spec.room.open_air else INDOOR_CELL) if cell is None else cell
         self.radius = radius
@@ -79,6 +79,11 @@ class Ways:
         """The cells that a robot can get to from its start, bool [Y, X]; `origin` [m] is the corner of cell (0, 0)."""
         return self._free.reshape(self._cost.shape)
 
+    @property
+    def places(self) -> Array:
+        """Middles of the `free` cells [m], [F, 2]."""
+        return self._centres[self._free]
+
     def frames(self, a: ArrayLike, b: ArrayLike, heading: ArrayLike | None = None, edge: ArrayLike = 0.0) -> Array:
         """Frames of the walks from `a` to things at `b` [m], [..., 2] each: [...], inf for no way.
 
@@ -86,14 +91,6 @@ class Ways:
         ValueError for points of another shape.
         """
         return self.route(a, b, edge).frames(heading)
-
-    def table(self, points: ArrayLike, edge: ArrayLike = 0.0) -> Array:
-        """Frames of the walks between N `points` [m], [N, 2]: from that of the row to that of the column, [N, N].
-
-        `edge` of the things there [m], [N]. Raises ValueError for points of another shape.
-        """
-        places = _points(points)
-        return self.frames(places[:, None], places[None], edge=edge)
 
     def route(self, a: ArrayLike, b: ArrayLike, edge: ArrayLike = 0.0) -> Route:
         """The ways from `a` to things at `b` [m], [..., 2] each; `edge` [m] and what is raised as for `frames`."""

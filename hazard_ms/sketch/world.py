@@ -2,7 +2,7 @@
 
     option        what happens
     target i      walk to where it was last seen, or to where it can be met; pick up; with a bag: put it in
-    cart c        walk to it and let go over it what is in the hand
+    cart c        walk to it and let go of what is in the hand over it
     landmark l    walk there and look around
     look          look around
     stop          the episode ends
@@ -72,7 +72,7 @@ class Sketch:
     def reset(self, scene: ArrayLike, seeds: ArrayLike, rows: ArrayLike | None = None) -> None:
         """Begin the episodes of `seeds` [R] in the scenes with the numbers `scene` [R], at `rows` [R]: all if None.
 
-        Raises ValueError for numbers of another shape, and for scenes that there are not.
+        Raises ValueError for numbers of another shape, and for scene numbers out of range.
         """
         which = np.arange(len(self.state.frame)) if rows is None else np.asarray(rows, np.int64)
         scenes, drawn = np.asarray(scene, np.int64), np.asarray(seeds, np.int64)
@@ -173,7 +173,7 @@ class Sketch:
             state.rescue(rows, target, safe_at[rows, target])
 
     def _stow(self, rows: Ints, cart: Ints) -> None:
-        """Walk to a cart and let go over it what is in the hand."""
+        """Walk to a cart and let go of what is in the hand over it."""
         state = self.state
         arrived = self._walk(rows, self.stack.cart_site[state.scene[rows], cart])
         safe = np.zeros(len(rows), bool)

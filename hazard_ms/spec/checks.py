@@ -44,7 +44,7 @@ def one_of(value: Any, allowed: Iterable[str], what: str, listing: str = "", sho
 
 
 def whole(value: Any, low: int, high: int, what: str) -> int:
-    """`value` as an int in [low, high]. Raises ValueError for all else, bools and floats among them."""
+    """`value` as an int in [low, high]. Raises ValueError for anything else, bools and floats among them."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not low <= int(value) <= high:
         raise ValueError(f"{what} must be a whole number from {low} to {high}, got {value!r}")
     return int(value)
@@ -60,14 +60,14 @@ def finite(values: Any, count: int, what: str) -> tuple[float, ...]:
 
 
 def flag(value: Any, what: str) -> bool:
-    """`value` if it is True or False. Raises ValueError for all else, numbers among them."""
+    """`value` if it is True or False. Raises ValueError for anything else, numbers among them."""
     if not isinstance(value, (bool, np.bool_)):
         raise ValueError(f"{what} must be True or False, got {value!r}")
     return bool(value)
 
 
 def seeds(value: Any, num_envs: int) -> Any:
-    """The `seed` of a reset: None, one seed, or a list of one per environment. Raises ValueError for all else.
+    """The `seed` of a reset: None, one seed, or a list of one per environment. Raises ValueError for anything else.
 
     An array without axes, np.array(3), is the seed that it holds.
     """
@@ -83,7 +83,7 @@ def seeds(value: Any, num_envs: int) -> Any:
 
 
 def options(value: Any, num_envs: int) -> dict[str, Any]:
-    """The `options` of a reset, the rows of `env_idx` as a tensor. Raises ValueError for what no reset understands."""
+    """The `options` of a reset, the rows of `env_idx` as a tensor. Raises ValueError for any that no reset knows."""
     if value is None:
         return {}
     if not isinstance(value, dict):
@@ -100,7 +100,7 @@ def options(value: Any, num_envs: int) -> dict[str, Any]:
 
 
 def rows(value: Any, num_envs: int, what: str) -> Any:
-    """The numbers of some of `num_envs` environments as a tensor, [R]. Raises ValueError for all else."""
+    """The numbers of some of `num_envs` environments as a tensor, [R]. Raises ValueError for anything else."""
     import torch
 
     listed = numbers(value, what).tolist() if isinstance(value, (np.ndarray, torch.Tensor)) else value
@@ -111,7 +111,7 @@ def rows(value: Any, num_envs: int, what: str) -> Any:
 
 
 def backends(num_envs: int, sim: Any, render: Any) -> None:
-    """Check the names of backends, and what `num_envs` asks of them. Raises ValueError for what cannot be."""
+    """Check the names of backends, and what `num_envs` asks of them. Raises ValueError for impossible combinations."""
     one_of(sim.split(":")[0] if isinstance(sim, str) else sim, SIM_BACKENDS, "sim_backend")
     one_of(render.split(":")[0] if isinstance(render, str) else render or "none", RENDER_BACKENDS, "render_backend")
     import torch

@@ -1,4 +1,4 @@
-"""The agents of the paper in a room without physics: what they choose, what they save, and that they always end."""
+"""Agents in a room without physics: what they choose, what they save, and that they always end."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hazard_ms.agents.base import Agent
+from hazard_ms.agents.base import Agent, agent
 from hazard_ms.agents.greedy import Greedy
 from hazard_ms.agents.random import Random
 from hazard_ms.skills.decision import (
@@ -25,10 +25,13 @@ from hazard_ms.skills.decision import (
 )
 from tests.worlds.playground import Playground, brief, play
 
+RESCUERS = ("greedy", "planner")  # agents that fetch what is worth most, and search for more
 
-def test_greedy_rescues_everything_near_and_stops() -> None:
+
+@pytest.mark.parametrize("name", ["greedy", "planner", "mcts:simulations=200"])
+def test_rescuers_bring_in_everything_near_and_stop(name: str) -> None:
     ground = Playground({"a": (1.0, 0.0), "b": (0.0, 2.0), "c": (-1.5, 1.0)}, {"a": 1.0, "b": 5.0, "c": 1.0})
-    taken = play(Greedy(), ground)
+    taken = play(agent(name), ground)
     assert ground.rescued == {"a", "b", "c"} and taken[-1] == Action(STOP)
     assert taken[0] == Action(EXPLORE)
 
@@ -53,43 +56,47 @@ def test_greedy_counts_what_will_be_damaged_at_half() -> None:
     assert player.act(replace(ground.decision(), frame=100)).target == "hot"
 
 
-def test_greedy_goes_where_it_has_not_been() -> None:
+@pytest.mark.parametrize("name", RESCUERS)
+def test_rescuers_go_where_they_have_not_been(name: str) -> None:
     """The target is out of sight; a landmark at the edge of sight leads to it, one amid explored floor does not."""
     ground = Playground({"table": (2.8, 0.0), "sofa": (0.4, 0.4), "far": (5.0, 0.0)}, {"far": 5.0})
-    taken = play(Greedy(), ground)
+    taken = play(agent(name), ground)
     assert [a.target for a in taken if a.verb == WALK_TO][0] == "table"
     assert ground.rescued == {"far"}
 
 
+@pytest.mark.parametrize("name", RESCUERS)
 @pytest.mark.parametrize("fault", ["broken", "slippery"])
-def test_greedy_gives_up_on_what_fails_and_saves_the_rest(fault: str) -> None:
+def test_rescuers_give_up_what_fails_and_save_the_rest(fault: str, name: str) -> None:
     ground = Playground(
         {"bad": (1.0, 0.0), "good": (0.0, 2.5)},
         {"bad": 5.0, "good": 1.0},
         **{fault: frozenset({"bad"})},  # type: ignore[arg-type]
     )
-    taken = play(Greedy(), ground)
+    taken = play(agent(name), ground)
     assert ground.rescued == {"good"}
     assert sum(a.target == "bad" for a in taken) <= 20 and taken[-1].verb == STOP
 
 
-def test_greedy_brings_things_to_a_cart() -> None:
+@pytest.mark.parametrize("name", RESCUERS)
+def test_rescuers_bring_things_to_carts_that_work(name: str) -> None:
     places = {"a": (1.0, 0.0), "b": (0.0, 2.0), "cart": (-2.0, 0.0), "stuck": (0.5, -0.5)}
     ground = Playground(places, {"a": 1.0, "b": 5.0}, carts=("cart", "stuck"), broken=frozenset({"stuck"}))
-    play(Greedy(), ground)
+    play(agent(name), ground)
     assert ground.rescued == {"a", "b"}
 
 
+@pytest.mark.parametrize("name", RESCUERS)
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=40, deadline=None)
-def test_greedy_ends_whatever_fails(seed: int) -> None:
+@settings(max_examples=20, deadline=None)
+def test_rescuers_end_whatever_fails(name: str, seed: int) -> None:
     """Any room, any set of things that fail: never more than 300 decisions, and what can be saved nearby is saved."""
     draw = np.random.default_rng(seed)
     names = [f"t{i}" for i in range(int(draw.integers(1, 8)))]
     places = {n: (float(x), float(y)) for n, (x, y) in zip(names, draw.uniform(-4, 4, (len(names), 2)), strict=True)}
     some = [frozenset(n for n in names if draw.random() < 0.3) for _ in range(2)]
     ground = Playground(places, {n: float(draw.choice([1, 5])) for n in names[:5]}, broken=some[0], slippery=some[1])
-    taken = play(Greedy(), ground, most=1000)
+    taken = play(agent(name), ground, most=1000)
     assert len(taken) < 300
     assert ground.frame >= 1500 or taken[-1].verb == STOP
     near = {n for n in ground.values if np.hypot(*places[n]) < 2.0} - some[0] - some[1]

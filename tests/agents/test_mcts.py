@@ -10,14 +10,14 @@ from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.planning.tree import search
-from hazard_ms.skills.decision import EXPLORE, STOP, Action
+from hazard_ms.skills.decision import Action
 from tests.worlds.playground import Playground, play
 
 
 def on_a_line(
     places: tuple[float, ...], carts: tuple[float, ...] = (), frames_per_metre: float = 62.0, **more: object
 ) -> Problem:
-    """A rescue along a line from 0, targets and carts at so many metres; pick-ups and drops take no time."""
+    """A rescue along a line from 0, targets and carts at these places [m]; pick-ups and drops take no time."""
     x = np.array([*places, *carts, 0.0])
     travel = StaticTravel(frames_per_metre * np.abs(x[:, None] - x), len(carts))
     count = len(places)
@@ -47,10 +47,8 @@ def test_a_thing_in_the_hand_is_put_away_first() -> None:
     model = Rescue(on_a_line((0.0, 4.0), carts=(-1.0, 3.0), holding=0))
     assert [(step.goal, step.cart, step.safe) for step in model.options(model.start)] == [(0, 0, 62.0), (0, 1, 186.0)]
     state = model.step(model.start, model.options(model.start)[1])[0]
-    assert {(step.goal, step.safe) for step in model.options(state)} == {
-        (1, 186.0 + 62.0 + 62.0),
-        (1, 186.0 + 62.0 + 310.0),
-    } - {(1, 558.0)}
+    (last,) = model.options(state)  # back at the other cart it would be frame 558: too late
+    assert (last.goal, last.cart, last.safe) == (1, 1, 186.0 + 62.0 + 62.0)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -69,13 +67,6 @@ def test_what_it_begins_with_leads_to_nearly_the_best_plan(seed: int) -> None:
         state = model.step(state, choice.option)[0]
     best = solve(problem)
     assert 0.8 * best.value <= saved <= best.value + 1e-9
-
-
-def test_it_rescues_everything_near_and_stops() -> None:
-    ground = Playground({"a": (1.0, 0.0), "b": (0.0, 2.0), "c": (-1.5, 1.0)}, {"a": 1.0, "b": 5.0, "c": 1.0})
-    taken = play(Mcts(simulations=200), ground)
-    assert ground.rescued == {"a", "b", "c"}
-    assert taken[0] == Action(EXPLORE) and taken[-1] == Action(STOP)
 
 
 def test_it_is_a_function_of_its_seed_and_says_why() -> None:

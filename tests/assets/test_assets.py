@@ -27,7 +27,7 @@ MADE = ("models", "hulls", "textures", "skies")
 MOST_FACES = {"object": 6000, "fixture": 8200, "structure": 8200}
 WHOLE_SET = 25e6  # bytes in all, at most
 HULL_SLACK = 0.005  # a collision shape may stand out of the model so far [m]
-FLAT, SOFT = 0.015, 0.05  # a support's height may differ so much from the model's: furniture, cushions [m]
+FLAT, SOFT = 0.015, 0.05  # a support's height may differ by this much from the model's: furniture, cushions [m]
 
 
 def test_every_row_is_free_to_ship_and_says_whose_it_is() -> None:

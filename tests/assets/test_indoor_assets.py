@@ -56,7 +56,7 @@ def test_objects_have_household_sizes(name: str) -> None:
     [("table", 6), ("shelf", 6), ("cabinet", 6), ("chair", 3), ("sofa", 2), ("bed", 2), ("stool", 2)],
 )
 def test_furniture_has_places_within_reach(category: str, least: int) -> None:
-    """At least so many models, all but two of which carry something between knee and chest."""
+    """At least this many models, all but two of which carry something between knee and chest."""
     ids = asset_ids(category=category)
     with_places = [i for i in ids if any(LEVELS[0] <= s.z <= LEVELS[1] for s in asset(i).supports)]
     assert len(ids) >= least and len(with_places) >= least - 2, with_places

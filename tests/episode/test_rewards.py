@@ -53,7 +53,7 @@ class Scene:
         self.world.position[0, index] = gripper + torch.tensor([float(half) + distance, 0.0, 0.0])
 
     def save(self, index: int, damaged: bool = False, ago: int = 0) -> None:
-        """Let a target be rescued, so many frames ago."""
+        """Let a target be rescued, this many frames ago."""
         self.rescue.safe[0, index] = self.world.safe[0, index] = True
         self.rescue.damaged[0, index] = damaged
         self.rescue.frame[0, index] = self.world.frame[0] - ago

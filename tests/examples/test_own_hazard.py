@@ -41,7 +41,7 @@ def env() -> Iterator[Any]:
 
 
 def shaken(env: Any, frames: int) -> Any:
-    """How far all things have moved [m], [B], after so many frames."""
+    """How far all things have moved [m], [B], after this many frames."""
     env.reset(seed=3)
     world = env.unwrapped.world
     start = world.position.clone()

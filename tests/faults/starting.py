@@ -86,7 +86,7 @@ def can_mount() -> bool:
 
 @contextmanager
 def mounted(folder: Path, free: int | None = None, read_only: bool = False) -> Iterator[None]:
-    """Put a file system of its own on `folder`: with so many bytes `free`, or read-only."""
+    """Put a file system of its own on `folder`: with `free` bytes, or read-only."""
     subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={SIZE}", "tmpfs", str(folder)], check=True)
     try:
         if free is not None:

@@ -37,7 +37,7 @@ def test_the_rules_are_those_of_the_fire() -> None:
 def burnt_in_truth(frames: int) -> tuple[np.ndarray, np.ndarray]:
     """The frame at which each book catches fire in many runs of the fire itself, [N, M]; inf for not by `frames`.
 
-    And the temperatures when the first flame was grown [C], [M], before chance had a say.
+    And the temperatures when the first flame was grown [C], [M], before chance plays any part.
     """
     books = [("book", (ORIGIN[0] + d, ORIGIN[1], 0.0)) for d in DISTANCES]
     fire, world = Fire(), room_world(books, [ORIGIN], copies=COPIES)

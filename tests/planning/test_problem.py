@@ -1,4 +1,4 @@
-"""Targets that count the less the later they are safe: by hand, and the exact programme against every order."""
+"""Targets that count less the later they are safe: by hand, and the exact search against every order."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ def test_the_oracle_alone_of_all_agents_can_know_the_future() -> None:
 
     future = {"sketch.timeline", "sketch.recording"}
     privileged = {module for module in modules() if room(module) == "agents" and used(module, set()) & future}
-    assert privileged == {"agents.oracle", "agents.truth"}
+    assert privileged == {"agents.courses", "agents.hindsight", "agents.oracle", "agents.truth"}
 
 
 def test_nobody_reaches_into_an_environment() -> None:

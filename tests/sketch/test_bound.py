@@ -12,54 +12,14 @@ from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.sketch.bound import BAG, PICK, STOW, bound
 from hazard_ms.sketch.recording import record
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
-from hazard_ms.sketch.timeline import Timeline
-from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec
+from hazard_ms.spec import AgentStart
 from hazard_ms.tasks import task_of
+from tests.worlds.halls import CART, SIZE, future, hall
 
 FETCH = HazardFetch.build
-SIZE = 0.2  # edges of the boxes [m]
 HALF = SIZE * 3**0.5 / 2  # half of a box's longest diagonal [m]
 # Farthest horizontal distance at which Fetch can touch a box: shoulder, arm, assisted grasp, half of the box [m]
 TOUCH = 0.15 + 0.95 + 0.15 + HALF
-CART = 0.5  # edges of the cart [m]
-
-
-def hall(*at: float, cart: float | None = None) -> SceneSpec:
-    """Boxes on a line `at` distances from the robot's start [m], and perhaps a cart there."""
-    bodies = tuple(
-        Body(f"box_{k}", "box", "plain_box", (1.0 + x, 3.0, 0.0), scale=(SIZE,) * 3) for k, x in enumerate(at)
-    )
-    fixtures = (
-        () if cart is None else (Fixture("cart", "cart", "plain_box", (1.0 + cart, 3.0, 0.0), scale=(CART,) * 3),)
-    )
-    return SceneSpec("test/hall", Room((40.0, 6.0)), fixtures, bodies, ("box",), (), AgentStart((1.0, 3.0)))
-
-
-def future(spec: SceneSpec, speed: float = 0.0, damaged: int = -1, alone: bool = False) -> Timeline:
-    """300 frames in which box 0 goes along x at `speed` [m/frame], and is damaged in a frame or becomes safe alone."""
-    things = len(spec.things)
-    offsets = np.zeros((31, 1, 3), np.float16)
-    offsets[:, 0, 0] = 10 * speed * np.arange(31)
-    damaged_at, safe_at = np.full(things, -1, np.int32), np.full(things, -1, np.int32)
-    damaged_at[0], safe_at[0] = damaged, 50 if alone else -1
-    return Timeline(
-        scene=spec.name,
-        task="",
-        physics="paper",
-        suite="",
-        seed=0,
-        first=0,
-        stride=10,
-        names=tuple(thing.name for thing in spec.things),
-        start=np.array([thing.position for thing in spec.things], np.float32),
-        moves=np.array([0], np.int16),
-        offsets=offsets,
-        levels=np.zeros((31, 1, things), np.float16),
-        damaged_at=damaged_at,
-        safe_at=safe_at,
-        flame_birth=np.zeros(0, np.int32),
-        flame_place=np.zeros((0, 2), np.float32),
-    )
 
 
 def test_one_box_is_safe_after_the_shortest_walk_and_pick_up() -> None:
@@ -105,7 +65,7 @@ def test_what_becomes_safe_by_itself_counts() -> None:
 
 def test_values_must_be_as_many_as_targets() -> None:
     spec = hall(5.0)
-    with pytest.raises(ValueError, match="values must be as many as targets, 1, got 2"):
+    with pytest.raises(ValueError, match="values must be 1, one for each target, got 2"):
         bound(future(spec), spec, FETCH, [1.0, 1.0], 300)
 
 

@@ -222,5 +222,5 @@ def test_the_models_of_a_scene_belong_to_the_suite(task: Task, monkeypatch: pyte
 
 
 def test_seeds_must_be_as_many_as_scenes(task: Task) -> None:
-    with pytest.raises(ValueError, match="seeds must be as many as scenes, 1, got 2"):
+    with pytest.raises(ValueError, match="seeds must be 1, one for each scene, got 2"):
         record(task, "paper", (task.build("kitchen_b/01"),), (1, 2))

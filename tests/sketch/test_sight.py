@@ -41,7 +41,7 @@ def test_what_is_ahead_is_seen_and_what_is_behind_is_not(heading: float) -> None
         place = eye + 2.5 * np.array([np.cos(heading + np.deg2rad(off)), np.sin(heading + np.deg2rad(off))])
         here = spec((printer(*place),))
         assert sees(here, heading) == seen, off
-        assert Sight(here).sees([HERE], [0]).all()
+        assert Sight(here).visible([HERE], None, [0]).all()
 
 
 def test_what_stands_too_high_is_above_the_picture() -> None:
@@ -49,7 +49,7 @@ def test_what_stands_too_high_is_above_the_picture() -> None:
     for up, seen in ((30.0, True), (50.0, False)):
         height = CAMERA[2] + 2.0 * np.tan(np.deg2rad(up))
         assert sees(spec((printer(CAMERA[0] + 2.0, CAMERA[1], height - 0.1),))) == seen
-        assert Sight(spec((printer(6.0, 4.0, height),))).sees([HERE], [0])[0, 0] == seen
+        assert Sight(spec((printer(6.0, 4.0, height),))).visible([HERE], None, [0])[0, 0] == seen
 
 
 def test_furniture_hides_what_is_behind_it_and_not_what_is_on_or_under_it() -> None:
@@ -98,7 +98,7 @@ def test_things_are_seen_where_they_are_now() -> None:
 
 def test_places_of_another_shape_are_refused() -> None:
     with pytest.raises(ValueError, match=r"places must have shape \[P, 2\], got \[3\]"):
-        Sight(spec()).sees((1.0, 2.0, 3.0), [])
+        Sight(spec()).visible((1.0, 2.0, 3.0), None, [])
 
 
 def test_a_look_alone_is_that_of_many(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -62,6 +62,8 @@ def test_a_thing_is_reached_before_its_edge_and_who_is_there_stays() -> None:
     ways, a, b = Ways(EMPTY), (2.05, 3.05), (5.05, 3.05)
     near, far = ways.frames(a, b, edge=0.0), ways.frames(a, b, edge=0.4)
     assert near - far == pytest.approx(62 * 0.4, abs=0.1)
+    across = ways.frames((3.05, 1.05), b, edge=0.4)  # diagonally over cells, inside one of which it ends
+    assert across == pytest.approx(62 * (np.sqrt(8.0) - 0.5 - 0.4) + SETTLE, abs=1.0)
     assert ways.frames((4.65, 3.05), b) == SETTLE
     assert np.allclose(ways.along((4.65, 3.05), b, 5.0), (4.65, 3.05))
 
@@ -106,21 +108,22 @@ def test_bodies_stand_in_the_way_unless_they_are_targets_or_left_out() -> None:
     assert Ways(replace(blocked, target_categories=("printer",))).frames(a, b) == Ways(EMPTY).frames(a, b)
 
 
-def test_a_table_holds_the_frames_between_all_places() -> None:
+def test_many_walks_at_once_take_the_same_frames_as_alone() -> None:
     points = np.array([(1.05, 1.05), (3.05, 5.05), (6.05, 1.05)])
     ways, edge = Ways(divided(doorway=True)), np.array([0.0, 0.2, 0.1])
-    table = ways.table(points, edge)
-    fresh = [
+    together = ways.frames(points[:, None], points[None], edge=edge)
+    alone = [
         [Ways(divided(doorway=True)).frames(points[i], points[j], edge=edge[j]) for j in range(3)] for i in range(3)
     ]
-    assert np.array_equal(table, fresh)
+    assert np.array_equal(together, alone)
 
 
 def test_what_is_not_kept_any_more_is_made_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MOST_FIELDS", 3)
     ways, rng = Ways(EMPTY), np.random.default_rng(0)
     points = rng.uniform(0.5, 5.5, (12, 2))
-    assert np.array_equal(ways.table(points), ways.table(points))
+    first, second = (ways.frames(points[:, None], points[None]) for _ in range(2))
+    assert np.array_equal(first, second)
     assert len(ways._fields) == 3
 
 

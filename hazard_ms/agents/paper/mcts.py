@@ -11,7 +11,7 @@ from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.spec.checks import whole
 
-MOST_SIMULATIONS = 10**6  # of a decision: any larger number is a slip of the pen [ours]
+MOST_SIMULATIONS = 10**6  # of a decision: any larger number must be a mistake [ours]
 
 
 class Mcts(Agent):

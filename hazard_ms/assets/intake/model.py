@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 Y_UP = (".glb", ".gltf", ".obj")  # glTF says so, OBJ files mostly are; the others are taken to be z up
-FRONT = {"y": "z", "z": "-y"}  # where a model faces unless it is said, for the axis that is up; glTF: +z
+FRONT = {"y": "z", "z": "-y"}  # where a model faces unless stated, for the axis that is up; glTF: +z
 # the identity, row by row
 UPRIGHT = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 

@@ -94,7 +94,7 @@ def main() -> int:
 
 
 def told() -> int:
-    """Run `main`; a disk that is full is told in the last line of the standard error, with an exit code of its own."""
+    """Run `main`; a full disk is reported in the last line of the standard error, with an exit code of its own."""
     try:
         return main()
     except OSError as error:

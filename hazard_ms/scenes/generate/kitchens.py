@@ -108,5 +108,5 @@ KITCHEN_B = Layout(  # long and narrow, with worktops on both sides
 )
 
 KITCHEN_B_NEW = replace(KITCHEN_B, name="kitchen_b_new", pool=NEW_OBJECTS)
-# Nobody acting, as large a share of the targets' value burns in its 900 frames as in the 1,500 of KITCHEN_B
+# If nobody acts, as large a share of the targets' value burns in its 900 frames as in the 1,500 of KITCHEN_B
 KITCHEN_B_HARD = replace(KITCHEN_B, name="kitchen_b_hard", targets=(12, 18), fires=(3, 4), inflows=2)

@@ -123,7 +123,7 @@ def _within(box: Box, edge: float) -> bool:
 
 
 def _turned(place: Vec2, turns: int) -> Vec2:
-    """`place` after so many quarter turns about the middle of the square."""
+    """`place` after this many quarter turns about the middle of the square."""
     x, y = place[0] - REGION_SIZE / 2, place[1] - REGION_SIZE / 2
     for _ in range(turns % 4):
         x, y = -y, x

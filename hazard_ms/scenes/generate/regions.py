@@ -39,7 +39,7 @@ class Some:
 
 @dataclass(frozen=True)
 class Line:
-    """Pieces of one category from `start` towards `end`, side by side, or one `every` so many metres.
+    """Pieces of one category from `start` towards `end`, side by side or one `every` few metres.
 
     An entrance, `open` metres wide, is left out somewhere.
     """

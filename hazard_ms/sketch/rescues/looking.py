@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.sensing.sighting import SEEN_PIXELS
-from hazard_ms.sketch.rescues.scene import STRIDE, Bools, Floats, Ints, Stack
+from hazard_ms.sketch.rescues.scene import Bools, Floats, Ints, Stack
 from hazard_ms.sketch.rescues.state import Rescues
+from hazard_ms.sketch.timeline import STRIDE
 
 HALF_VIEW = np.cos(np.pi / 3.0)  # cosine of half the angle of view of the head camera, 120 degrees
 # Cosine of how far from the middle of its best picture a thing is in a look around, which takes one every 30 degrees:

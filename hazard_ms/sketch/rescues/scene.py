@@ -17,7 +17,6 @@ from hazard_ms.skills.options.options import CART_SLOTS, TARGET_SLOTS
 
 SPOTS = 16  # places on the floor around a landmark, whose sight counts as the share explored there: bits of uint16
 LOOKS = 4  # looks on each way, Q: the robot looks once a metre, and ways are about so long [ours]
-STRIDE = 10  # frames between two samples of places and levels
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -26,7 +25,10 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class SketchScene:
-    """One scene with S sites, P stands, G = Y X cells, H hazards, and K samples over time. Raises ValueError."""
+    """One scene with S sites, P stands, G = Y X cells, H hazards, and K samples over time.
+
+    Raises ValueError for arrays that do not fit each other.
+    """
 
     name: str
     max_frames: int

@@ -16,7 +16,7 @@ VALUES = (1.0, 5.0)  # that a target can have (docs/benchmark.md 1)
 
 @dataclass(frozen=True)
 class Domain:
-    """The spread of rescues around what was measured, by default none. Raises ValueError for numbers that cannot be."""
+    """The spread of rescues around what was measured, by default none. Raises ValueError for impossible numbers."""
 
     pace: tuple[float, float] = (1.0, 1.0)  # least and greatest factor on all times, one for each episode
     ease: tuple[float, float] = (1.0, 1.0)  # least and greatest factor on the share of attempts that work

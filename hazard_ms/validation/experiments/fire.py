@@ -36,7 +36,7 @@ def equilibrium(preset: Fire, distance: float) -> float:
 
 @functools.cache
 def cooling() -> dict[int, float]:
-    """Temperature [C] of a thing of 200 C in an empty room after so many updates."""
+    """Temperature [C] of a thing of 200 C in an empty room after this many updates."""
     world = room_world([("pan", (10.0, 10.0, 0.0))])
     state = begin(PAPER, world)
     state.temperature[:] = 200.0

@@ -96,7 +96,7 @@ def updates(fire: Fire, state: FireState, world: World, count: int) -> None:
 
 
 def run(fire: Fire, state: FireState, world: World, frames: int) -> None:
-    """Advance the fire by so many frames, one by one."""
+    """Advance the fire by this many frames, one by one."""
     for _ in range(frames):
         world.chance.tick()
         fire.advance(state, world, 0.01)

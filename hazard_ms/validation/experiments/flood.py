@@ -138,7 +138,7 @@ def turning(degrees: float) -> float:
 
 
 def depth_after(count: int) -> float:
-    """Water [m] 2 m from the source after so many frames, as the original shows it."""
+    """Water [m] 2 m from the source after this many frames, as the original shows it."""
     world = room([Thing((0.2,) * 3)])
     state = begin(SHIPPED, world)
     world.chance.frame[:] = count
@@ -161,7 +161,7 @@ def first_wet() -> dict[float, int]:
 
 
 def slope_after(updates: int) -> float:
-    """Angle of the surface [degrees] so many updates after the cap."""
+    """Angle of the surface [degrees] this many updates after the cap."""
     world = room([Thing((0.2,) * 3)])
     state = begin(SHIPPED, world)
     world.chance.frame[:] = 1490 + 10 * updates

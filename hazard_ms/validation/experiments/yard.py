@@ -81,7 +81,7 @@ def push(wind: Wind, world: World, dt: float = 0.01) -> Push:
 
 
 def run(wind: Wind, state: WindState, world: World, frames: int, dt: float = 1 / 30) -> None:
-    """Advance the wind by so many frames of `dt` [s] in a world in which nothing moves."""
+    """Advance the wind by this many frames of `dt` [s] in a world in which nothing moves."""
     for _ in range(frames):
         world.chance.tick()
         wind.advance(state, world, dt)

@@ -22,7 +22,7 @@ from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STE
 WALKING = 1.0 / 62.0  # [m/frame] (docs/benchmark.md 1)
 HANDLING = 1.0  # what picking up costs, as a distance: about 60 frames [m]
 NEAR = 0.7  # from here it reaches for a target without walking: arrival is at 0.5 m, and a position has some error [m]
-PROGRESS = 0.2  # a walk that brought it this far was no failure, even if it did not arrive [m]
+PROGRESS = 0.2  # a walk that got it this far is not a failure, even if it did not arrive [m]
 LEGS = 8  # walks without arrival to one target that together count as a failure: 13 m, longer than any way in a room
 GIVE_UP = 4  # failures with one target
 AROUND = 2.0  # radius of floor that counts as around a landmark [m]
@@ -120,7 +120,7 @@ class Greedy(Agent):
         way = distance(decision, sighting) + HANDLING
         target = decision.target(name)
         levels, height = _predicted(sighting, decision.frame + way / WALKING), float(sighting.position[2])
-        threats = zip(self._hazards, levels, strict=False)  # a level is missing where no hazard image was
+        threats = zip(self._hazards, levels, strict=False)  # a level is missing where there was no hazard image
         lost = target.damaged or any(hazard.threatens(target, level, height) for hazard, level in threats)
         value = target.value * (self._damaged_share if lost else 1.0)
         loyalty = LOYALTY if decision.last_action == Action(WALK_TO, name) else 1.0

@@ -19,7 +19,7 @@ from hazard_ms.planning.tree import SIMULATIONS, search
 from hazard_ms.skills.brief import Brief
 from hazard_ms.spec.checks import whole
 
-MOST_SIMULATIONS = 10**6  # of a decision: any larger number is a slip of the pen [ours]
+MOST_SIMULATIONS = 10**6  # of a decision: any larger number must be a mistake [ours]
 
 
 class Moment(NamedTuple):
@@ -95,7 +95,7 @@ class Rescue:
 
 
 class Mcts(Searcher):
-    """Searches the believed rest of the rescue at each decision, and does the goal that the simulations rate best."""
+    """Searches the believed rest of the rescue at each decision, and pursues the goal that simulations rate best."""
 
     def __init__(self, simulations: int = SIMULATIONS, search: float = 1.0, give_up: int = GIVE_UP) -> None:
         """Choose how long it searches.

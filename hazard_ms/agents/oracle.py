@@ -1,9 +1,10 @@
-"""The oracle: the upper line of what any agent could reach with the skills that all share.
+"""The oracle: a reference for what an agent could reach with the skills that all share.
 
 It alone sees what is hidden: where everything is, what is damaged, and what will happen (hazard_ms.sketch.recording).
-At each decision it plans by the exact programme of hazard_ms.planning, tells its map where things really are, and goes
-on by ordinary skills, so that what fails in their execution fails for the oracle, too. With `known=true` it plans only
-with what its map holds, and searches when that is all done: the difference to the oracle is what it costs not to know.
+At each decision it plans by the exact search of hazard_ms.planning, enters into its map where things really are, and
+acts by ordinary skills, so that what fails in their execution fails for the oracle, too. With `known=true` it plans
+only with what its map holds, and searches when that is all done: the difference between the two is what it costs not
+to know.
 """
 
 from __future__ import annotations
@@ -27,13 +28,13 @@ from hazard_ms.skills.options.options import LANDMARK, LOOK, Option
 
 MOST_REACH = 2.0  # distance up to which it reaches for a thing after a walk has arrived [m] [ours]
 NEAR = 0.2  # beyond where a walk arrives, from which it reaches for a thing without walking [m] [ours]
-PROGRESS = 0.2  # a walk that brought it this far was no failure [m]
+PROGRESS = 0.2  # a walk that got it this far is not a failure [m]
 GIVE_UP = 1  # failures after which a target is left for the end [ours]
 CART_FAILURES = 3  # after which a cart is no longer used [ours]
 FADING = 2e-4  # share of a target's value that is at risk in each frame until it is safe: skills fail [ours]
-MOVED = 0.2  # a thing that is met farther away than this moves [m] [ours]
+MOVED = 0.2  # a thing that will be met farther than this from where it is now is moving [m] [ours]
 LOYALTY = 20.0  # frames that it deducts for the target that it is on its way to, so that it does not waver [ours]
-ROUNDS = 2  # times that it tries again what it had given up [ours]
+ROUNDS = 2  # number of times that it tries again what it had given up [ours]
 MOST_LABELS = 20_000  # of the exact search: rarely needed [ours]
 BEAM = 2_000  # labels of a layer beyond that [ours]
 
@@ -49,10 +50,10 @@ class Attempts:
 
 
 class Oracle(PrivilegedAgent):
-    """Plans with the true future and goes on by ordinary skills."""
+    """Plans with the true future and acts by ordinary skills."""
 
     def __init__(self, known: bool = False) -> None:
-        """`known`: whether it plans with the targets and carts alone that its map holds."""
+        """`known`: whether it plans only with the targets and carts that its map holds."""
         self._only_known = known
         self._truth: Truth | None = None
 
@@ -152,7 +153,7 @@ class Oracle(PrivilegedAgent):
         return planned
 
     def _came_to(self, decision: Decision) -> str | None:
-        """What it has just walked up to."""
+        """The thing that it has just walked up to."""
         last, result = decision.last_action, decision.last_result
         return last.target if last is not None and last.verb == WALK_TO and result is not None and result.ok else None
 

@@ -10,18 +10,42 @@ from hazard_ms.sketch.recording import ahead
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.skills.executor import SkillEnv
 
-SURPRISE = 0.25  # how far a target may be from where it was expected before the future is told anew [m] [ours]
+SURPRISE = 0.25  # how far a target may be from where it was expected before the future is predicted again [m] [ours]
+
+
+class Future:
+    """The future of a running episode if nobody acts, predicted when it is asked for and kept while it holds."""
+
+    def __init__(self, env: SkillEnv) -> None:
+        self._env = env
+        self._told: Timeline | None = None
+        self._free: NDArray[np.bool_] = np.zeros(0, bool)  # the things that were free when the future was predicted
+
+    def timeline(self) -> Timeline:
+        """The timeline from here on if nobody acts, predicted again when a target is not as predicted."""
+        base = self._env.base
+        world, now = base.world, int(base.world.frame[0])
+        free = (~(world.safe | world.held | world.away)[0]).cpu().numpy()
+        if self._told is not None and np.array_equal(free, self._free):
+            things = slice(len(self._told.names))
+            off = world.position[0, things].cpu().numpy() - self._told.position_at(now)
+            damaged = base.episode.damage.damaged[0, things].cpu().numpy()
+            expected = (self._told.damaged_at >= 0) & (self._told.damaged_at <= now)
+            as_told = (np.linalg.norm(off, axis=-1) <= SURPRISE) & (damaged == expected)
+            if as_told[(free & world.target[0].cpu().numpy())[things]].all():
+                return self._told
+        self._told, self._free = ahead(base), free
+        return self._told
 
 
 class Truth:
-    """The true state and future of a running episode, and the way in which the map is told of it."""
+    """The true state and future of a running episode, and how it gets into the map."""
 
     def __init__(self, env: SkillEnv, only_known: bool) -> None:
-        """Tell the map of `env` the truth from now on, after every look; `only_known`: about what it holds alone."""
+        """Enter the truth into the map of `env` after every look; `only_known`: only about what the map knows."""
         self.env, self._only_known = env, only_known
-        self.aim: dict[int, NDArray[np.float32]] = {}  # where else the map shall hold some things [m], by index
-        self._future: Timeline | None = None
-        self._free: NDArray[np.bool_] = np.zeros(0, bool)  # the things that were free when the future was told
+        self.aim: dict[int, NDArray[np.float32]] = {}  # where the map is to place some things instead [m], by index
+        self._future = Future(env)
         look = env.stage.look
 
         def looked() -> None:
@@ -40,20 +64,8 @@ class Truth:
         return self.env.base.world.position[0, index].cpu().numpy()
 
     def future(self) -> Timeline:
-        """The timeline from here on if nobody acts, foretold anew when a target is not as it was foretold."""
-        base = self.env.base
-        world, now = base.world, int(base.world.frame[0])
-        free = (~(world.safe | world.held | world.away)[0]).cpu().numpy()
-        if self._future is not None and np.array_equal(free, self._free):
-            things = slice(len(self._future.names))
-            off = world.position[0, things].cpu().numpy() - self._future.position_at(now)
-            damaged = base.episode.damage.damaged[0, things].cpu().numpy()
-            expected = (self._future.damaged_at >= 0) & (self._future.damaged_at <= now)
-            as_told = (np.linalg.norm(off, axis=-1) <= SURPRISE) & (damaged == expected)
-            if as_told[(free & world.target[0].cpu().numpy())[things]].all():
-                return self._future
-        self._future, self._free = ahead(base), free
-        return self._future
+        """The timeline from here on if nobody acts, predicted again when a target is not as predicted."""
+        return self._future.timeline()
 
     def reveal(self) -> None:
         """Enter into the map where targets and containers really are, or where `aim` says."""

@@ -36,6 +36,7 @@ class Brief:
     max_frames: int
     frame_seconds: float  # duration of a frame [s]
     robot: str  # name of the robot
+    radius: float  # of the robot's base [m]
     random_seed: int  # seed of the agent's own randomness, derived one-way from that of the episode
     damaged_share: float = DAMAGED_SHARE  # of its value that a target counts when it is rescued damaged
 

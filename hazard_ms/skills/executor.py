@@ -109,6 +109,7 @@ class SkillEnv:
             max_frames=self.max_frames,
             frame_seconds=float(base.control_timestep),
             robot=robot_name(base.agent.uid),
+            radius=base.agent.build.radius,
             random_seed=random_seed(int(base.world.chance.seed[0])),
         )
 

@@ -21,7 +21,7 @@ def brief(env_id: str = "HazardFire-v1", seed: int = 0) -> Brief:
     """The brief of an agent for a task in a playground."""
     task = task_of(env_id, "paper")
     hazards = tuple(HazardBrief(h.name, h.level.title, h.level.unit, h.threatens) for h in task.hazards)
-    return Brief(env_id, task.text, (), (), task.safe_place.name, hazards, task.max_frames, 1 / 30, "fetch", seed)
+    return Brief(env_id, task.text, (), (), task.safe_place.name, hazards, task.max_frames, 1 / 30, "fetch", 0.29, seed)
 
 
 @dataclass

@@ -19,7 +19,9 @@ MOST = 5  # places to search that are weighed at a time [ours]
 SIGHT = 3.0  # distance up to which a look surely shows what is on the floor and on furniture [m] [ours]
 DEPTH = 2.0  # how far unseen floor is believed to reach beyond the border of the floor that was seen [m] [ours]
 HIDDEN = 0.3  # share of the targets not seen yet that a look at all this floor would miss [ours]
-LITTLE = 0.05  # share of it that a place must show at least to be worth a search [ours]
+AGAIN = 0.3  # what a look shows from beside where one was, as a share of what it would have shown first [ours]
+BARRED = 0.5  # share of the targets out of sight from a look nearby that were not there either [ours]
+LITTLE = 0.05  # least share of it that a place must show to be worth a search [ours]
 ANEW = 1.5  # distance between places from which things are seen from different sides [m] [ours]
 
 
@@ -32,30 +34,47 @@ class Lookout:
     share: float
 
 
-def lookouts(decision: Decision, visits: Mapping[str, int], avoided: Sequence[str]) -> tuple[Lookout, ...]:
-    """The best places to search: those that show most of the unseen floor for their distance, each what is left.
+def lookouts(
+    decision: Decision, visits: Mapping[str, int], looks: Sequence[Place], avoided: Sequence[str]
+) -> tuple[Lookout, ...]:
+    """The best places to search: those where most may be found for their distance, each counting what others leave.
 
-    `visits`: how often each thing was walked to in search; those in `avoided` are left out. Where no floor is left to
-    see, they are the nearest things that were not visited.
+    `visits`: how often each thing was walked to in search; `looks`: where the agent has looked around [m]; things in
+    `avoided` are left out. Where no place promises anything, they are the nearest things that were not visited.
     """
-    unseen = _middles(decision.map, unseen_floor(decision.map))
+    floor, weight = _searchable(decision.map, looks)
     things = _things(decision, [*avoided, *(name for name, count in visits.items() if count >= MOST_VISITS)])
-    if not len(unseen) or not things:
+    if not len(floor) or not things:
         return _unvisited(things, visits)
     names, places = [name for name, _ in things], np.array([place for _, place in things])
-    shows = np.hypot(*np.moveaxis(places[:, None] - unseen, -1, 0)) < SIGHT
+    shows = (np.hypot(*np.moveaxis(places[:, None] - floor, -1, 0)) < SIGHT) * (weight / weight.sum())
+    again = np.array([sum(np.hypot(*(place - look)) < ANEW for look in looks) for place in places])
+    shows *= (AGAIN**again)[:, None]
     ease = 1.0 / (1.0 + np.hypot(*(places - decision.agent_position).T))
-    ease /= 1.0 + np.array([visits.get(name, 0) for name in names])
     chosen: list[Lookout] = []
     for _ in range(MOST):
-        share = shows.mean(axis=1)
+        share = shows.sum(axis=1)
         best = int(np.argmax(share * ease))
         if share[best] < LITTLE:
             break
-        found = (1 - HIDDEN) * float(share[best]) / (1 + visits.get(names[best], 0))
-        chosen.append(Lookout(names[best], (float(places[best, 0]), float(places[best, 1])), found))
-        shows &= ~shows[best]
+        place = float(places[best, 0]), float(places[best, 1])
+        chosen.append(Lookout(names[best], place, (1 - HIDDEN) * float(share[best])))
+        shows[:, shows[best] > 0] = 0.0
     return tuple(chosen) or _unvisited(things, visits)
+
+
+def _searchable(seen: SemanticMap, looks: Sequence[Place]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The middles of floor [m], [P, 2], and how likely a target that was not seen is there, relative to each other [P].
+
+    Floor that was seen counts HIDDEN of that which was not. Each further look from within SIGHT multiplies it by that.
+    """
+    unseen = unseen_floor(seen)
+    cells = unseen | (seen.explored & (seen.height < WALKABLE))
+    points, new = _middles(seen, cells), unseen[cells]
+    near = np.zeros(len(points), int)
+    for place in looks:
+        near += np.hypot(*(points - place).T) < SIGHT
+    return points, np.where(new, BARRED**near, HIDDEN ** np.maximum(near, 1))
 
 
 def unseen_floor(seen: SemanticMap) -> Mask:

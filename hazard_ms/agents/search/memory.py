@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.agents.search.fire_watch import FireWatch
-from hazard_ms.skills.decision import PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
+from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import TOO_FAR
 
-PROGRESS = 0.2  # a walk that brought it this far was no failure, even if it did not arrive [m]
+PROGRESS = 0.2  # a walk that got it this far is not a failure, even if it did not arrive [m]
 LEGS = 12  # walks without arrival to one thing that together count as a failure: 19 m, longer than any way [ours]
-ELSEWHERE = 1.0  # distance from where a pick-up failed at which one is worth a new try [m] [ours]
+ELSEWHERE = 1.0  # distance from where a pick-up failed at which another try is worthwhile [m] [ours]
 SAME_AGAIN = 0.05  # chance of a pick-up where one has just failed, as a share of that elsewhere [ours]
 
 Place = tuple[float, float]  # [m], world frame
@@ -21,11 +21,12 @@ class Memory:
     """The memory of one episode; `note` enters each decision, `chose` the action that was taken."""
 
     def __init__(self, seed: int) -> None:
-        """Begin an episode; `seed` fixes all chance in it."""
+        """Begin an episode; `seed` fixes all randomness in it."""
         self.fire = FireWatch(seed)
         self.failures: dict[str, int] = {}  # of walks to a thing, and of picking it up
         self.missed: dict[str, list[Place]] = {}  # where it stood when the hand did not get to a thing
         self.visits: dict[str, int] = {}  # to things in search
+        self.looks: list[Place] = []  # where it looked around
         self.tracks: dict[str, list[Seen]] = {}  # frame and place of the sightings of each target
         self._legs: dict[str, int] = {}
         self._before: tuple[Action, Place] | None = None  # the last action, and where it began
@@ -37,6 +38,8 @@ class Memory:
             track = self.tracks.setdefault(target.name, [])
             if sighting is not None and (not track or sighting.frame > track[-1][0]):
                 track.append((sighting.frame, (float(sighting.position[0]), float(sighting.position[1]))))
+        if self._before is not None and self._before[0].verb == EXPLORE:
+            self.looks.append(self._before[1])
         if self._before is not None and decision.last_result is not None and not decision.last_result.ok:
             self._judge(*self._before, decision)
 
@@ -66,7 +69,7 @@ class Memory:
             self.missed.setdefault(name, []).append(decision.agent_position)
 
     def chance(self, decision: Decision, name: str) -> float:
-        """The chance that a pick-up works that is begun by what `decision` knows, as a share of that of a first one."""
+        """The chance that a pick-up begun at `decision` works, as a share of the chance of a first attempt."""
         places = self.missed.get(name, ())
         again = any(np.hypot(*np.subtract(decision.agent_position, place)) < ELSEWHERE for place in places[-1:])
-        return (SAME_AGAIN if again else 1.0) / (1 + len(places)) ** 2
+        return (SAME_AGAIN if again else 1.0) / (1 + len(places))

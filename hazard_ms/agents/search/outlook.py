@@ -23,13 +23,13 @@ from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.sketch import skill_times
-from hazard_ms.sketch.ways import RADIUS, WALK
+from hazard_ms.sketch.ways import WALK
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import WALK_TO, Action, Decision
 from hazard_ms.skills.motor.walking import ARRIVED
 
 FOUND_WAY = 1.5  # distance to fetch what is found in a search [m] [ours]
-MOST_FOUND = 2.0  # targets that a single search is counted to find: what more there is, is planned when found [ours]
+MOST_FOUND = 2.0  # targets that a single search is counted on to find: any more are planned for when found [ours]
 FOUND_WHOLE = 0.8  # share of its value that a target counts when it has to be found first [ours]
 CART_WAY = 6.0  # distance to a cart while none is known [m] [ours]
 
@@ -48,7 +48,7 @@ class SkillFrames:
 
 @lru_cache
 def skill_frames(robot: str) -> SkillFrames:
-    """The skill frames of a robot as they were measured; those of Fetch for robots that were not."""
+    """The measured skill frames of a robot; those of Fetch for a robot that was not measured."""
     tables = skill_times.read(skill_times.SHIPPED)
     times = tables.get(robot, tables["fetch"])
     works, pick, failed = times.typical(skill_times.PICK_UP)
@@ -58,14 +58,14 @@ def skill_frames(robot: str) -> SkillFrames:
 
 @dataclass(frozen=True)
 class Weights:
-    """The choices of an agent on how it weighs things; all are shares from 0 to 1."""
+    """The weights by which an agent decides; all are shares from 0 to 1."""
 
-    loyalty: float = 0.1  # of the way to where it is going already that is not counted
+    loyalty: float = 0.1  # of the way to its present goal that is not counted
     fading: float = 0.3  # of its value that a target loses if it is saved at the last frame rather than the first
     search: float = 1.0  # of what may be found that is counted
 
     def __post_init__(self) -> None:
-        """Raises ValueError for what is no share."""
+        """Raises ValueError unless each is from 0 to 1."""
         for name, share in vars(self).items():
             if not 0.0 <= share <= 1.0:
                 raise ValueError(f"{name} must be a share from 0 to 1, got {share!r}")
@@ -104,9 +104,11 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
     given_up = [name for name, count in failures.items() if count >= give_up]
     carts = tuple(name for name in known(decision, decision.containers) if failures.get(name, 0) < give_up)
     wanted = unseen or (held and not carts)
-    places = lookouts(decision, memory.visits, [*given_up, *_failed_ways(failures, seen)]) if wanted else ()
+    places = (
+        lookouts(decision, memory.visits, memory.looks, [*given_up, *_failed_ways(failures, seen)]) if wanted else ()
+    )
     targets = [*held, *seen]
-    frames = _frames(decision, memory, targets, places, carts, weights.loyalty)
+    frames = _frames(decision, memory, targets, places, carts, weights.loyalty, brief.radius)
     works = [1.0 if t in held else times.works * memory.chance(decision, t.name) for t in targets]
     forecast = Forecast(brief, decision, memory.fire)
     whole = [forecast.whole_until(t, decision.map.objects[t.index]) if t in seen else np.inf for t in targets]
@@ -138,12 +140,12 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
 
 
 def _pick(times: SkillFrames, works: float) -> float:
-    """The frames that a pick-up is expected to take which works with the chance `works`."""
+    """The frames that a pick-up is expected to take if it works with probability `works`."""
     return works * times.pick + (1 - works) * times.failed_pick
 
 
 def _failed_ways(failures: Mapping[str, int], targets: Sequence[Target]) -> list[str]:
-    """Things that are no targets and to which a walk failed: there are others to search from."""
+    """Things, other than targets, to which a walk failed: there are others to search from."""
     names = {target.name for target in targets}
     return [name for name in failures if name not in names]
 
@@ -155,6 +157,7 @@ def _frames(
     places: Sequence[Lookout],
     carts: Sequence[str],
     loyalty: float,
+    radius: float,
 ) -> NDArray[np.float64]:
     """Frames between the targets, the places to search, the carts and, last, where the agent stands, [N, N]."""
     here = np.asarray(decision.agent_position, np.float64)
@@ -171,7 +174,7 @@ def _frames(
     if not names:
         return np.zeros((1, 1))
     start = decision.agent_position
-    frames = frames_between(decision.map, start, np.array(goals), np.array(near), RADIUS)
+    frames = frames_between(decision.map, start, np.array(goals), np.array(near), radius)
     for number, name in enumerate(names):
         if decision.last_action == Action(WALK_TO, name):
             frames[-1, number] *= 1.0 - loyalty

@@ -1,4 +1,4 @@
-"""The rules that `planner` and `mcts` share: when to look, walk, pick up and put away. What comes first is theirs."""
+"""The rules that `planner` and `mcts` share: when to look, walk, pick up and put away. They differ in what is first."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from hazard_ms.spec.checks import whole
 FARTHEST = 2.2  # distance from the base at which a pick-up surely may begin: 2.5 m from the shoulder [m]
 REACH = 0.2  # way to a target from which it is picked up without walking up to it first [m]
 GIVE_UP = 4  # failures with one thing, after which it is given up [ours]
-MOST_FAILURES = 100  # any larger number to give up at is a slip of the pen [ours]
+MOST_FAILURES = 100  # any larger number to give up at must be a mistake [ours]
 
 
 class First(NamedTuple):
@@ -28,7 +28,7 @@ class First(NamedTuple):
 
 
 class Searcher(Agent):
-    """An agent that believes, plans the rest of the rescue anew at each decision, and does what comes first."""
+    """An agent that forms beliefs, plans the rest of the rescue at each decision, and does what comes first."""
 
     def __init__(self, weights: Weights, reach: float, give_up: int) -> None:
         """Choose how it weighs things.
@@ -90,13 +90,13 @@ class Searcher(Agent):
         return self._say(begin.why, Action(PICK_UP if near else WALK_TO, name))
 
     def _search(self, decision: Decision, name: str, why: str) -> Action:
-        """Begin to walk to a place from where to look around."""
+        """Begin to walk to a place from which to look around."""
         self._memory.visits[name] = self._memory.visits.get(name, 0) + 1
         self._goal = name, frozenset(known(decision, open_targets(decision)))
         return self._say(why, Action(WALK_TO, name))
 
     def _still_searching(self, decision: Decision, arrived: str | None) -> Action | None:
-        """Go on with a search until it has looked around, unless a new target came into view or the way is barred."""
+        """Go on with a search until it has looked around, unless a new target came into view or the way is blocked."""
         if self._goal is None:
             return None
         name, targets = self._goal
@@ -109,7 +109,7 @@ class Searcher(Agent):
         return self._say(f"on the way to {name}, to search there", Action(WALK_TO, name))
 
     def _without_plan(self, decision: Decision, ahead: Outlook) -> Action:
-        """Try what is nearest, although it will hardly be safe in time; stop where nothing is left to try."""
+        """Try what is nearest, although it is unlikely to be safe in time; stop where nothing is left to try."""
         holding = decision.held is not None
         names = [n for n in (ahead.carts if holding else ahead.targets) if n != decision.held]
         if not names or (holding and not ahead.carts):

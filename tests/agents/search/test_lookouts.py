@@ -11,6 +11,8 @@ from hazard_ms.agents.search.lookouts import HIDDEN, SIGHT, lookouts, unseen_flo
 from hazard_ms.skills.decision import Decision
 from tests.worlds.playground import Playground
 
+HERE = (0.0, 0.0)  # where it has looked around [m]
+
 
 def looked(places: dict[str, tuple[float, float]], sight: float = 3.0) -> Decision:
     """What is known after a look around from the origin, by which all of `places` are known."""
@@ -43,16 +45,16 @@ def test_nothing_is_unseen_behind_walls() -> None:
 
 
 def test_the_farther_out_the_more_a_place_shows() -> None:
-    """Beside where it stands, a thing shows nothing new; at the border it shows most."""
-    found = {mark.name: mark.share for mark in lookouts(looked({"here": (0.2, 0.0), "border": (2.9, 0.0)}), {}, [])}
-    assert set(found) == {"border"}
-    assert 0.1 < found["border"] < 0.5
+    """Beside where it stands, a thing shows hardly anything new; at the border it shows most."""
+    decision = looked({"here": (0.2, 0.0), "border": (2.9, 0.0)})
+    found = {mark.name: mark.share for mark in lookouts(decision, {}, [HERE], [])}
+    assert 0.1 < found["border"] < 0.5 and found.get("here", 0.0) < 0.5 * found["border"]
 
 
 def test_places_beside_each_other_count_once() -> None:
     """A second thing 0.3 m away shows little that the first did not; one on the other side shows as much."""
     names = {"first": (2.9, 0.0), "beside": (2.9, 0.3), "opposite": (-2.9, 0.0)}
-    found = {mark.name: mark.share for mark in lookouts(looked(names), {}, [])}
+    found = {mark.name: mark.share for mark in lookouts(looked(names), {}, [HERE], [])}
     sides = {"first", "beside"} & set(found)
     assert max(found[name] for name in sides) == pytest.approx(found["opposite"], rel=0.1)
     assert sum(found[name] for name in sides) < 1.35 * found["opposite"]
@@ -60,29 +62,32 @@ def test_places_beside_each_other_count_once() -> None:
 
 def test_no_more_is_found_than_there_is() -> None:
     around = {f"t{n}": (2.9 * np.cos(n), 2.9 * np.sin(n)) for n in range(7)}
-    assert sum(mark.share for mark in lookouts(looked(around), {}, [])) <= 1 - HIDDEN + 1e-9
+    assert sum(mark.share for mark in lookouts(looked(around), {}, [HERE], [])) <= 1 - HIDDEN + 1e-9
 
 
-def test_visited_places_promise_less_and_in_the_end_nothing() -> None:
+def test_a_look_from_beside_leaves_little_to_find_and_two_visits_exhaust_a_place() -> None:
     decision = looked({"border": (2.9, 0.0)})
-    fresh, once = lookouts(decision, {}, [])[0].share, lookouts(decision, {"border": 1}, [])[0].share
-    assert once == pytest.approx(fresh / 2)
-    assert lookouts(decision, {"border": 2}, []) == lookouts(decision, {}, ["border"]) == ()
+    first, elsewhere, beside = (
+        lookouts(decision, {}, [HERE, *more], [])[0].share for more in ([], [(0.0, 2.9)], [(2.9, 0.3)])
+    )
+    assert first / 2 < elsewhere < 1.2 * first
+    assert beside < first / 2
+    assert lookouts(decision, {"border": 2}, [HERE], []) == lookouts(decision, {}, [HERE], ["border"]) == ()
 
 
 def test_where_no_floor_is_left_it_goes_to_what_it_has_not_visited() -> None:
     decision = looked({"near": (1.0, 0.0), "beside": (1.2, 0.0), "far": (-3.0, 0.0)})
     seen = replace(decision, map=decision.map)
     seen.map._firm[:] = 1.0
-    assert [mark.name for mark in lookouts(seen, {}, [])] == ["near", "far"]
-    assert [mark.name for mark in lookouts(seen, {"near": 1}, [])] == ["beside", "far"]
+    assert [mark.name for mark in lookouts(seen, {}, [], [])] == ["near", "far"]
+    assert [mark.name for mark in lookouts(seen, {"near": 1}, [], [])] == ["beside", "far"]
 
 
-def test_what_is_out_of_sight_of_all_places_is_not_counted() -> None:
-    """A single place at the border shows the part of the ring within SIGHT of it."""
+def test_a_place_shows_its_share_of_all_that_may_be_hidden() -> None:
+    """Floor of the disc that was seen counts HIDDEN of the ring that was not; a look shows what is within SIGHT."""
     decision = looked({"border": (2.9, 0.0)})
-    seen = decision.map
-    y, x = np.nonzero(unseen_floor(seen))
-    points = seen.origin + 0.1 * (np.stack([x, y], -1) + 0.5)
-    expected = (1 - HIDDEN) * float((np.hypot(*(points - (2.9, 0.0)).T) < SIGHT).mean())
-    assert lookouts(decision, {}, [])[0].share == pytest.approx(expected, abs=0.01)
+    y, x = np.mgrid[-60:60, -60:60] * 0.1 + 0.05
+    away = np.hypot(x, y)
+    weight = np.where(away < 3.0, HIDDEN, 1.0) * (away < 5.0)
+    expected = (1 - HIDDEN) * (weight * (np.hypot(x - 2.9, y) < SIGHT)).sum() / weight.sum()
+    assert lookouts(decision, {}, [HERE], [])[0].share == pytest.approx(expected, rel=0.1)

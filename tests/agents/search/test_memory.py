@@ -42,12 +42,21 @@ def test_what_works_is_no_failure() -> None:
     assert memory.failures == {} and memory.chance(ground.decision(), "a") == 1.0
 
 
-def test_a_second_try_is_worth_a_quarter_from_elsewhere_and_hardly_any_from_there() -> None:
+def test_it_knows_from_where_it_looked_around() -> None:
+    ground, memory = looked(), Memory(0)
+    for action in (Action(EXPLORE), Action(WALK_TO, "a"), Action(EXPLORE)):
+        memory.chose(ground.decision(), action)
+        memory.note(after(ground, action, True))
+        ground.at = (1.0, 0.5)
+    assert memory.looks == [(0.0, 0.0), (1.0, 0.5)]
+
+
+def test_a_second_try_is_worth_half_from_elsewhere_and_hardly_any_from_there() -> None:
     ground, memory, pick = looked(), Memory(0), Action(PICK_UP, "a")
     memory.chose(ground.decision(), pick)
     memory.note(after(ground, pick, False))
-    assert memory.chance(ground.decision(), "a") == pytest.approx(SAME_AGAIN / 4)
-    assert memory.chance(replace(ground.decision(), agent_position=(3.0, 1.0)), "a") == pytest.approx(1 / 4)
+    assert memory.chance(ground.decision(), "a") == pytest.approx(SAME_AGAIN / 2)
+    assert memory.chance(replace(ground.decision(), agent_position=(3.0, 1.0)), "a") == pytest.approx(1 / 2)
     assert memory.chance(ground.decision(), "b") == 1.0
 
 

@@ -11,13 +11,12 @@ unexplored floor around it, then look around there.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hazard_ms.agents.base import Agent, distance, known, open_targets
-from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
+from hazard_ms.skills.options.landmarks import AROUND, frontier
 
 WALKING = 1.0 / 62.0  # [m/frame] (docs/benchmark.md 1)
 HANDLING = 1.0  # what picking up costs, as a distance: about 60 frames [m]
@@ -25,8 +24,6 @@ NEAR = 0.7  # from here it reaches for a target without walking: arrival is at 0
 PROGRESS = 0.2  # a walk that got it this far is not a failure, even if it did not arrive [m]
 LEGS = 8  # walks without arrival to one target that together count as a failure: 13 m, longer than any way in a room
 GIVE_UP = 4  # failures with one target
-AROUND = 2.0  # radius of floor that counts as around a landmark [m]
-LOW = 0.3  # floor below this height can be walked on [m]
 LOYALTY = 0.8  # factor on the cost of the target it is on its way to: another must be clearly better
 VISITS = 2  # of one landmark in search
 
@@ -92,17 +89,12 @@ class Greedy(Agent):
         }
         if not costs:
             return self._search(decision)
-        arrived = self._arrived(decision)
+        arrived = decision.walked_up_to
         best = arrived if arrived in costs else min(costs, key=lambda name: costs[name])
         self._landmark = None
         self.note = f"cost {costs[best]:.2f}, the lowest of {len(costs)}"
         near = distance(decision, decision.map.objects[decision.index(best)]) < NEAR and best not in self._failures
         return Action(PICK_UP if best == arrived or near else WALK_TO, best)
-
-    def _arrived(self, decision: Decision) -> str | None:
-        """What it has just walked up to."""
-        last, result = decision.last_action, decision.last_result
-        return last.target if last is not None and last.verb == WALK_TO and result is not None and result.ok else None
 
     def _put_away(self, decision: Decision) -> Action:
         if not decision.containers:
@@ -114,7 +106,7 @@ class Greedy(Agent):
             return self._search(decision)
         nearest = min(open_carts, key=lambda name: distance(decision, carts[name]) * (1 + self._failures.get(name, 0)))
         self.note = "to the nearest cart"
-        return Action(DROP if self._arrived(decision) == nearest else WALK_TO, nearest)
+        return Action(DROP if decision.walked_up_to == nearest else WALK_TO, nearest)
 
     def _cost(self, decision: Decision, name: str, sighting: Sighting) -> float:
         way = distance(decision, sighting) + HANDLING
@@ -129,7 +121,7 @@ class Greedy(Agent):
     def _search(self, decision: Decision) -> Action:
         """Walk to the most promising landmark and look around there; stop when nothing is left to try."""
         if self._landmark is not None:
-            if self._arrived(decision) == self._landmark:
+            if decision.walked_up_to == self._landmark:
                 self.note, self._landmark = "look around from here", None
                 return Action(EXPLORE)
             self.note = f"on the way to {self._landmark}, to search there"
@@ -149,13 +141,13 @@ class Greedy(Agent):
 
         It is the unexplored floor around them, over the distance and the visits paid.
         """
-        frontier = frontier_points(decision.map)
+        border = frontier(decision.map)
         scores = {}
         for index, sighting in decision.map.objects.items():
             visits = self._visits.get(index, 0)
-            if visits >= VISITS or (visits and not len(frontier)) or decision.names[index] == decision.held:
+            if visits >= VISITS or (visits and not len(border)) or decision.names[index] == decision.held:
                 continue
-            unexplored = int((np.hypot(*(frontier - sighting.position[:2]).T) < AROUND).sum())
+            unexplored = int((np.hypot(*(border - sighting.position[:2]).T) < AROUND).sum())
             scores[index] = (1 + unexplored) / (1.0 + distance(decision, sighting)) / (1 + visits) ** 2
         return scores
 
@@ -168,12 +160,3 @@ def _predicted(sighting: Sighting, frame: float) -> list[float]:
         return list(late)
     early_frame, early = earlier[-1]
     return [b + (b - a) / (late_frame - early_frame) * (frame - late_frame) for a, b in zip(early, late, strict=True)]
-
-
-def frontier_points(seen: SemanticMap) -> NDArray[np.float64]:
-    """The middles of explored, walkable cells next to unexplored ones [m], [P, 2], world frame."""
-    closed = seen.explored
-    inner = np.ones_like(closed)
-    inner[1:-1, 1:-1] = closed[:-2, 1:-1] & closed[2:, 1:-1] & closed[1:-1, :-2] & closed[1:-1, 2:]
-    y, x = np.nonzero(closed & ~inner & (seen.height < LOW))
-    return seen.origin + seen.cell * (np.stack([x, y], axis=-1) + 0.5)

@@ -96,7 +96,7 @@ class Oracle(PrivilegedAgent):
             return Action(DROP if holding else PICK_UP, name)
         met = truth.future().position_at(step.met)[index]
         moves = float(np.linalg.norm(met - truth.position(index))) > MOVED
-        truth.aim = {index: met} if moves and self._came_to(decision) != name else {}
+        truth.aim = {index: met} if moves and decision.walked_up_to != name else {}
         return Action(WALK_TO, name)
 
     def _next_rescue(self, decision: Decision, truth: Truth) -> PlannedRescue | None:
@@ -140,22 +140,17 @@ class Oracle(PrivilegedAgent):
         """Whether to reach for a thing from here: a walk has arrived, or would at once and nothing failed before."""
         away = float(np.hypot(*(truth.position(index)[:2] - decision.agent_position)))
         name = decision.names[index]
-        if self._came_to(decision) == name:
+        if decision.walked_up_to == name:
             return away <= MOST_REACH
         return not self._attempts.failures.get(name, 0) and away <= ARRIVED + self._scene.edges[index] + NEAR
 
     def _arrived_at(self, decision: Decision, truth: Truth, planned: int) -> int:
         """The target that it has just walked up to, since it is there now, else the planned one; indices along B."""
-        name = self._came_to(decision)
+        name = decision.walked_up_to
         for target in decision.targets:
             if target.name == name and not target.rescued and self._is_near(decision, truth, target.index):
                 return target.index
         return planned
-
-    def _came_to(self, decision: Decision) -> str | None:
-        """The thing that it has just walked up to."""
-        last, result = decision.last_action, decision.last_result
-        return last.target if last is not None and last.verb == WALK_TO and result is not None and result.ok else None
 
     def _judge(self, decision: Decision, truth: Truth) -> None:
         """Count a failure of the last action, unless it was a walk that came further."""
@@ -163,7 +158,7 @@ class Oracle(PrivilegedAgent):
             return
         action, start = self._before
         stuck = action.verb == WALK_TO and not decision.last_result.frames  # it came to where the thing no longer is
-        if decision.last_result.ok and not (stuck and self._came_to(decision) is not None and truth.aim):
+        if decision.last_result.ok and not (stuck and decision.walked_up_to is not None and truth.aim):
             return
         moved = float(np.hypot(*np.subtract(decision.agent_position, start)))
         if action.target is None or (action.verb == WALK_TO and moved > PROGRESS):

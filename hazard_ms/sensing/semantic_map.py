@@ -14,7 +14,7 @@ from functools import lru_cache
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from hazard_ms.sensing.camera import AGENT, NOTHING
 from hazard_ms.sensing.far_floor import floor_between
@@ -118,9 +118,9 @@ class SemanticMap:
         x, y = np.floor((np.asarray(position[:2]) - self.origin) / self.cell).astype(int)
         return int(y), int(x)
 
-    def centre_of(self, y: int, x: int) -> tuple[float, float]:
-        """Middle x, y of a cell [m], world frame."""
-        return float(self.origin[0] + (x + 0.5) * self.cell), float(self.origin[1] + (y + 0.5) * self.cell)
+    def centre_of(self, y: ArrayLike, x: ArrayLike) -> NDArray[np.float64]:
+        """Middles [m], [..., 2], world frame, of the cells `y`, `x`, [...] each."""
+        return np.asarray(self.origin + self.cell * (np.stack([x, y], axis=-1) + 0.5), np.float64)
 
     def update(
         self,

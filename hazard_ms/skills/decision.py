@@ -84,6 +84,12 @@ class Decision:
     last_action: Action | None = None
     last_result: Result | None = None
 
+    @property
+    def walked_up_to(self) -> str | None:
+        """The thing that the agent has just walked up to; None if the last action was something else, or failed."""
+        last, result = self.last_action, self.last_result
+        return last.target if last is not None and last.verb == WALK_TO and result is not None and result.ok else None
+
     def index(self, name: str) -> int:
         """Index of the thing called `name` in `map.objects`. Raises ValueError if nothing has that name."""
         if name not in self.names:

@@ -73,10 +73,5 @@ def _flames(seen: SemanticMap, levels: NDArray, warm: NDArray[np.bool_], things:
     hottest = np.argsort(-levels[y, x], kind="stable")
     some = hottest[:: max(1, -(-len(hottest) // MOST_POINTS))]
     y, x = y[some], x[some]
-    points = np.column_stack([_middles(seen, y, x), height[y, x]])
-    return found(points, levels[y, x].astype(np.float64), things, _middles(seen, *np.nonzero(height >= FURNITURE)))
-
-
-def _middles(seen: SemanticMap, y: NDArray[np.int64], x: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Middles of cells of the map [m], [P, 2]."""
-    return np.asarray(seen.origin + seen.cell * (np.stack([x, y], axis=-1) + 0.5), dtype=np.float64)
+    points = np.column_stack([seen.centre_of(y, x), height[y, x]])
+    return found(points, levels[y, x].astype(np.float64), things, seen.centre_of(*np.nonzero(height >= FURNITURE)))

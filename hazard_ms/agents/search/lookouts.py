@@ -70,7 +70,7 @@ def _searchable(seen: SemanticMap, looks: Sequence[Place]) -> tuple[NDArray[np.f
     """
     unseen = unseen_floor(seen)
     cells = unseen | (seen.explored & (seen.height < WALKABLE))
-    points, new = _middles(seen, cells), unseen[cells]
+    points, new = seen.centre_of(*np.nonzero(cells)), unseen[cells]
     near = np.zeros(len(points), int)
     for place in looks:
         near += np.hypot(*(points - place).T) < SIGHT
@@ -82,12 +82,6 @@ def unseen_floor(seen: SemanticMap) -> Mask:
     floor = seen.explored & (seen.height < WALKABLE)
     steps = round(DEPTH / seen.cell)
     return ndimage.binary_dilation(floor, iterations=steps, mask=~seen.explored | floor) & ~seen.explored
-
-
-def _middles(seen: SemanticMap, cells: Mask) -> NDArray[np.float64]:
-    """The middles of cells [m], [P, 2]."""
-    y, x = np.nonzero(cells)
-    return np.asarray(seen.origin + seen.cell * (np.stack([x, y], axis=-1) + 0.5), dtype=np.float64)
 
 
 def _things(decision: Decision, avoided: Sequence[str]) -> list[tuple[str, NDArray[np.float64]]]:

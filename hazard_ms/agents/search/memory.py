@@ -47,11 +47,6 @@ class Memory:
         """Enter the action taken at `decision`."""
         self._before = (action, decision.agent_position)
 
-    def arrived(self, decision: Decision) -> str | None:
-        """The thing that it has just walked up to."""
-        last, result = decision.last_action, decision.last_result
-        return last.target if last is not None and last.verb == WALK_TO and result is not None and result.ok else None
-
     def _judge(self, action: Action, start: Place, decision: Decision) -> None:
         """Count the last action's failure, unless it was a walk that came further."""
         name = action.target

@@ -66,7 +66,7 @@ class Searcher(Agent):
             return self._say("every target is rescued", Action(STOP))
         if decision.held is not None and not decision.containers:
             return self._say("into the bag", Action(DROP))
-        arrived = self._memory.arrived(decision)
+        arrived = decision.walked_up_to
         if decision.held is None and arrived in open_targets(decision):
             return self._say("it is here", Action(PICK_UP, arrived))
         if decision.held is not None and arrived in decision.containers:

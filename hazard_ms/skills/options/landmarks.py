@@ -34,7 +34,7 @@ def frontier(seen: SemanticMap) -> NDArray[np.float64]:
     inner = np.ones_like(known)
     inner[1:-1, 1:-1] = known[:-2, 1:-1] & known[2:, 1:-1] & known[1:-1, :-2] & known[1:-1, 2:]
     y, x = np.nonzero(known & ~inner & (seen.height < WALKABLE))
-    return np.asarray(seen.origin + seen.cell * (np.stack([x, y], axis=-1) + 0.5), dtype=np.float64)
+    return seen.centre_of(y, x)
 
 
 def landmarks(decision: Decision, visits: Mapping[str, int], most: int) -> tuple[Landmark, ...]:

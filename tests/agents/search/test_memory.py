@@ -75,11 +75,3 @@ def test_a_track_grows_with_every_sighting() -> None:
     ground.look()
     memory.note(ground.decision())
     assert memory.tracks["a"] == [(0, (2.0, 0.0)), (50, (2.0, 0.5))]
-
-
-def test_it_knows_where_it_has_arrived() -> None:
-    ground, memory = looked(), Memory(0)
-    assert memory.arrived(ground.decision()) is None
-    assert memory.arrived(after(ground, Action(WALK_TO, "a"), True)) == "a"
-    assert memory.arrived(after(ground, Action(WALK_TO, "a"), False)) is None
-    assert memory.arrived(after(ground, Action(PICK_UP, "a"), True)) is None

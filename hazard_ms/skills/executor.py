@@ -98,14 +98,13 @@ class SkillEnv:
     def brief(self) -> Brief:
         """Everything that an agent is told before the episode: nothing that shows which scene it is."""
         base = self.base
-        briefs = (HazardBrief(h.name, h.level.title, h.level.unit, h.threatens) for h in base.task.hazards)
         return Brief(
             task=base.task.name,
             text=base.task.text,
             targets=base.observer.table.rows(base.world),
             containers=self._containers(),
             safe_place=base.task.safe_place.name,
-            hazards=tuple(briefs),
+            hazards=tuple(HazardBrief(h.name, h.level.title, h.level.unit, h.threatens) for h in base.task.hazards),
             max_frames=self.max_frames,
             frame_seconds=float(base.control_timestep),
             robot=robot_name(base.agent.uid),

@@ -3,6 +3,12 @@
 Each target of the scenes is picked up once at the start of an episode, before its hazard moves anything much. The
 robot is put where a walk to the target ends, and looks at it. What it got is then put away: into the bag, or over the
 nearest cart. Frames do not depend on the machine.
+
+A target counts as reachable if the arm's kinematics give a posture that brings the hand to it, with no part of the arm
+in anything on the robot's map, from one of some places of the free floor within the arm's span. How the arm would get
+into that posture is not asked. What moves must in addition be in reach of where the base can get to, driving straight
+at full speed, in the time that an arm needs that moves straight: wind may have taken it away by then. What worked is
+reachable, too.
 """
 
 from __future__ import annotations
@@ -10,8 +16,9 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 
 import numpy as np
 import torch
@@ -19,15 +26,17 @@ from numpy.typing import NDArray
 
 from hazard_ms.evaluation.options import EnvOptions
 from hazard_ms.scenes.floor import FLOOR_CELL, connected, free_floor
-from hazard_ms.skills.decision import DROP, PICK_UP, Action
+from hazard_ms.skills.context import Skill
+from hazard_ms.skills.decision import DROP, PICK_UP, Action, Result
 from hazard_ms.skills.executor import SkillEnv
-from hazard_ms.skills.motor.grasping import can_reach
-from hazard_ms.skills.motor.walking import ARRIVED
+from hazard_ms.skills.motor.grasping import free_postures, reaching
+from hazard_ms.skills.motor.walking import ARRIVED, known
 from hazard_ms.spec.checks import whole
 
 MOST = 10**5  # pick-ups [-] [ours]
 MARGIN = 0.05  # room that walks keep besides the robot's radius, from the cells of their map [m] [ours]
 LOOKS = 4  # looks that show everything around, with a field of view of 120 degrees [-]
+MOVED = 0.1  # movement by which a thing does not lie still [m] [ours]
 PLACES = 8  # places around a target from which reach is judged [-] [ours]
 
 
@@ -46,11 +55,11 @@ class Handling:
     frames: int
     ok: bool
     reason: str
-    reachable: bool  # whether the arm gets there from any place that the robot can stand on
+    reachable: bool  # see the module
 
 
 def handlings(env_id: str, robot: str, count: int, seed: int) -> Iterator[Handling]:
-    """Pick up `count` targets of training scenes with `robot`, put them away, and tell of each.
+    """Pick up `count` targets of training scenes with `robot`, put them away, and yield how each went.
 
     Raises ValueError for an unknown task or robot and for a `count` that is not positive.
     """
@@ -73,13 +82,18 @@ def handlings(env_id: str, robot: str, count: int, seed: int) -> Iterator[Handli
                 if number:
                     env.reset(seed=drawn)
                 tried += 1
-                yield from _handled(env, robot, body.name, floor)
+                yield from _handled(env, robot, body.name, floor, partial(env.reset, seed=drawn))
     finally:
         env.close()
 
 
-def _handled(env: SkillEnv, robot: str, target: str, floor: NDArray[np.float64]) -> Iterator[Handling]:
-    """Pick `target` up, from where a walk over `floor` [m], [C, 2], ends, and put it away if that worked."""
+def _handled(
+    env: SkillEnv, robot: str, target: str, floor: NDArray[np.float64], again: Callable[[], object]
+) -> Iterator[Handling]:
+    """Pick `target` up, from where a walk over `floor` [m], [C, 2], ends, and put it away if that worked.
+
+    `again` starts the episode once more.
+    """
     index = env.base.world.index(0, target)
     place, clearance = env.stage.position(index), 0.0
 
@@ -93,10 +107,12 @@ def _handled(env: SkillEnv, robot: str, target: str, floor: NDArray[np.float64])
     if spot is None:
         yield told(PICK_UP, clearance, 0, False, "no_place", False)
         return
-    _stand(env, spot, place)
+    for elsewhere in [*_around(env, index, floor), spot]:
+        if elsewhere is spot or not known(env.stage, index):  # who walks to a thing has seen it from somewhere
+            _stand(env, elsewhere, place)
     distance = float(np.hypot(*(env.stage.position(index)[:2] - spot)))
     result = env.step(Action(PICK_UP, target))[-1]["result"]
-    reachable = result.ok or _in_reach(env, index, floor)
+    reachable = result.ok or _reachable(env, index, floor, spot, again)
     yield told(PICK_UP, distance, result.frames, result.ok, result.reason, reachable)
     if not result.ok:
         return
@@ -144,31 +160,60 @@ def _end_of_walk(env: SkillEnv, index: int, floor: NDArray[np.float64]) -> NDArr
     return np.asarray(floor[near][np.argmin(np.hypot(*(floor[near] - start).T))])
 
 
-def _stand(env: SkillEnv, spot: NDArray[np.float64], facing: NDArray[np.float64]) -> None:
-    """Put the robot at `spot` [m], [2], facing the point `facing` [m], [3], after LOOKS looks around from there."""
+def _stand(env: SkillEnv, spot: NDArray[np.float64], facing: NDArray[np.float64], looks: int = LOOKS) -> None:
+    """Put the robot at `spot` [m], [2], facing the point `facing` [m], [3], after `looks` looks around from there."""
     heading = math.atan2(facing[1] - spot[1], facing[0] - spot[0])
     base = env.base
-    for look in reversed(range(LOOKS)):
+    for look in reversed(range(looks)):
         turned = torch.tensor([heading + look * 2.0 * math.pi / LOOKS])
         base.agent.place(torch.tensor([0]), torch.tensor(np.float32(spot))[None], turned)
+        base.episode.freeze(base.agent.gripper_pose())  # what it holds comes along
         base.world.read()
         base.episode.see(base.agent)
         env.look()
 
 
-def _in_reach(env: SkillEnv, index: int, floor: NDArray[np.float64]) -> bool:
-    """Whether the arm gets to the thing from one of PLACES around it, wherever nothing else is in its way."""
+def _around(env: SkillEnv, index: int, floor: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Places [m], [P, 2], of the `floor` [m], [C, 2], within the arm's span of the thing: PLACES of them at most."""
     thing = env.stage.position(index)
     nearest, farthest = env.stage.robot.build.span(float(thing[2]))
     far = np.hypot(*(floor - thing[:2]).T)
-    around = floor[(far >= nearest) & (far <= farthest)]
-    for spot in around[np.linspace(0, len(around) - 1, min(PLACES, len(around))).astype(int)]:
-        heading = torch.tensor([math.atan2(thing[1] - spot[1], thing[0] - spot[0])])
-        env.base.agent.place(torch.tensor([0]), torch.tensor(np.float32(spot))[None], heading)
-        env.stage.robot.use_hand(thing)
-        if can_reach(env.stage, index):
+    able = floor[(far >= nearest) & (far <= farthest)]
+    return able[np.linspace(0, len(able) - 1, min(PLACES, len(able))).astype(int)]
+
+
+def _reachable(
+    env: SkillEnv, index: int, floor: NDArray[np.float64], spot: NDArray[np.float64], again: Callable[[], object]
+) -> bool:
+    """Whether the thing is reachable for a robot that starts at `spot` [m], [2]: see the module."""
+    again()
+    start = env.stage.position(index)
+    _stand(env, spot, start)
+    frames = _quickest(env, index)
+    for _ in range(math.ceil(frames)):
+        env.run(_wait(env))
+    if float(np.linalg.norm(env.stage.position(index) - start)) > MOVED:
+        able = np.hypot(*(floor - spot).T) <= frames * env.stage.robot.build.forward_step + FLOOR_CELL
+        floor = floor[able]
+    for place in [spot, *_around(env, index, floor)]:
+        _stand(env, place, env.stage.position(index), looks=1)
+        env.stage.robot.use_hand(env.stage.position(index))
+        if free_postures(env.stage, index):
             return True
     return False
+
+
+def _quickest(env: SkillEnv, index: int) -> float:
+    """The least frames that the arm needs to the thing from where the base stands; 0 if it is too short."""
+    stage = env.stage
+    stage.robot.use_hand(stage.position(index))
+    gaps = [stage.arm_gap(p.arm) for p in reaching(stage, index)]
+    return min(gaps, default=0.0) / stage.robot.build.arm_step
+
+
+def _wait(env: SkillEnv) -> Skill:
+    yield env.stage.act()
+    return Result(True, frames=1)
 
 
 def report(made: Sequence[Handling]) -> str:

@@ -25,6 +25,13 @@ def explore(stage: Stage) -> Skill:
     return Result(True, frames=used)
 
 
+def wait(stage: Stage, frames: int) -> Skill:
+    """Stand still for a number of frames."""
+    for _ in range(frames):
+        yield stage.act()
+    return Result(True, frames=frames)
+
+
 def stop(stage: Stage) -> Skill:
     """Do nothing; the episode ends with it."""
     return Result(True)

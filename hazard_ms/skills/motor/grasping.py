@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +12,12 @@ from hazard_ms.episode.grasp import GRASP_REACH
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
-from hazard_ms.skills.motor.arm import HOVER, REACH_FRAMES, fold, follow, go, lacking, posture_for, postures
-from hazard_ms.skills.motor.kinematics import lifted
+from hazard_ms.skills.motor.arm import HOVER, fold, follow, go, lacking, posture_for, postures
+from hazard_ms.skills.motor.drift import DRIFT_FRAMES, Drift
+from hazard_ms.skills.motor.kinematics import Posture, lifted
 from hazard_ms.skills.motor.motion import drive, turn_to
 from hazard_ms.skills.motor.navigation import LOW
-from hazard_ms.skills.motor.routes import NEARLY, Leg, Route, Surface, place_of, quickest
+from hazard_ms.skills.motor.routes import HIT_COST, NEARLY, Leg, Route, Surface, place_of, quickest
 from hazard_ms.skills.motor.walking import known, way_to
 
 LIMIT = 2.5  # greatest distance from the shoulder to the thing at which a pick-up begins (docs/benchmark.md 3) [m]
@@ -28,8 +30,24 @@ SHUT_FRAMES = 4  # frames that the hand needs to shut or to open
 OVER = 0.25  # the hand comes down from above on things higher than this [m]
 FEW_HITS = 30  # points of a route that may lie in something: the map is coarse, and makes things wider [ours]
 ASTRAY = 0.4  # the hand is led to a thing that moved if it is this close [m] [ours]
+NEAR = 0.25  # and if it is this close where the arm was stopped [m] [ours]
+AGAIN_FRAMES = 20  # budget of each movement by which the hand is led to a thing anew [frames] [ours]
 TRIES = 2  # number of postures that are tried
 GIVE_UP = 20  # frames after which no other posture is tried [ours]
+CHASES = 5  # number of times that the arm is led to where a moving thing will be [ours]
+GIVE_UP_CHASE = 45  # frames after which neither that nor another way is tried [ours]
+CHASE_FRAMES = 15  # first guess of how long the hand takes to a moving thing [frames] [ours]
+HURRY = 3.0  # what a point that lies in something counts as much as, while a thing moves away [frames] [ours]
+MISSED = 0.2  # distance between where a thing will be and where the hand goes at which the hand is led anew [m] [ours]
+
+
+@dataclass(frozen=True)
+class Way:
+    """A way to a thing: the number of its posture, its route, and the thing's middle when the hand gets there."""
+
+    number: int
+    route: Route
+    meets: NDArray[np.float64]  # [3] [m], world frame
 
 
 def pick_up(stage: Stage, index: int) -> Skill:
@@ -78,9 +96,11 @@ def come_near(stage: Stage, thing: NDArray[np.float64]) -> Skill:
     return (yield from drive(stage, path.points, APPROACH_FRAMES))
 
 
-def aims(stage: Stage, index: int) -> list[NDArray[np.float64]]:
-    """Points, [3] [m], for the hand: above the thing, and before it as seen from the shoulder; a little off its box."""
-    middle = stage.position(index)
+def aims(stage: Stage, middle: NDArray[np.float64], index: int) -> list[NDArray[np.float64]]:
+    """Points, [3] [m], for the hand if the middle of the thing `index` were at `middle` [m], [3], world frame.
+
+    Above the thing, and before it as seen from the shoulder; a little off its box.
+    """
     half = stage.world.extent[0, index].cpu().numpy().astype(np.float64) / 2
     towards = stage.robot.shoulder() - middle
     towards = towards / max(float(np.linalg.norm(towards)), 1e-6)
@@ -91,65 +111,95 @@ def aims(stage: Stage, index: int) -> list[NDArray[np.float64]]:
 
 def _take(stage: Stage, index: int) -> Skill:
     """Reach for the thing from where the base stands; the arm is folded at the end, with or without the thing."""
-    place = place_of(stage, index)
-    used, tried = 0, set[int]()
-    while len(tried) < TRIES and used <= GIVE_UP:
-        stage.robot.use_hand(stage.position(index), len(tried))
-        way = _way(stage, index, tried)
+    place, drift = place_of(stage, index), Drift(stage, index)
+    used, chases, tried = 0, 0, set[int]()
+    stage.robot.use_hand(stage.position(index))
+    while len(tried) < TRIES and used <= (GIVE_UP if chases == 0 else GIVE_UP_CHASE):
+        way = _way_to_where_it_will_be(stage, index, tried, drift)
         if way is None:
             break
-        number, route = way
-        tried.add(number)
-        used += (yield from _grasp(stage, index, route)).frames
+        used += (yield from _grasp(stage, index, way, drift)).frames
         if stage.held == index:
             break
+        if chases < CHASES and float(np.linalg.norm(drift.ahead(1.0))) > 0.0:
+            chases += 1
+        else:
+            tried.add(way.number)
+            stage.robot.use_hand(stage.position(index), len(tried))
     if used:
         used += (yield from fold(stage, place)).frames
     return Result(stage.held == index, "" if stage.held == index else failures.UNREACHABLE, used)
 
 
-def _grasp(stage: Stage, index: int, route: Route) -> Skill:
-    """Follow `route`, go on to the thing's middle if another target is nearer, and shut the hand on it."""
+def _grasp(stage: Stage, index: int, way: Way, drift: Drift) -> Skill:
+    """Follow the `way`, go on to the thing's middle if another target is nearer, and shut the hand on it.
+
+    It ends early if the thing will not be where the way leads.
+    """
+    arm, began = way.route.legs[-1].arm, stage.frame
+
+    def astray() -> bool:
+        if stage.frame - began < DRIFT_FRAMES:
+            return False
+        left = stage.arm_gap(arm) / stage.robot.build.arm_step
+        meets = stage.position(index) + drift.ahead(left) - way.meets
+        return bool(np.linalg.norm(meets[:2]) > MISSED)
 
     def close() -> bool:
         return stage.gap(index) < GRASP and stage.would_take() == index
 
-    moved = yield from follow(stage, route, close)
-    used, arm = moved.frames, route.legs[-1].arm
-    if stage.would_take() != index and stage.gap(index) < ASTRAY:
-        goal = stage.position(index) if moved.ok else aims(stage, index)[0]
+    def done() -> bool:
+        drift.note()
+        return close() or astray()
+
+    moved = yield from follow(stage, way.route, done)
+    used = moved.frames
+    if not close() and stage.gap(index) < (ASTRAY if moved.ok else NEAR) and (moved.ok or used <= GIVE_UP_CHASE):
+        goal = stage.position(index) if moved.ok else aims(stage, stage.position(index), index)[0]
         arm = posture_for(stage, goal).arm
         if not moved.ok:  # it touched something, or the thing moved: once more from above
-            used += (yield from go(stage, lifted(stage.robot, arm, HOVER), REACH_FRAMES, close, NEARLY)).frames
-        used += (yield from go(stage, arm, REACH_FRAMES, close)).frames
+            used += (yield from go(stage, lifted(stage.robot, arm, HOVER), AGAIN_FRAMES, close, NEARLY)).frames
+        used += (yield from go(stage, arm, AGAIN_FRAMES, close)).frames
     if stage.would_take() == index:
         used += (yield from _shut(stage, index, arm)).frames
     return Result(stage.held == index, frames=used)
 
 
-def _way(stage: Stage, index: int, tried: set[int]) -> tuple[int, Route] | None:
-    """The quickest route to the thing, by its frames and what it touches, and the number of its goal.
+def _way_to_where_it_will_be(stage: Stage, index: int, tried: set[int], drift: Drift) -> Way | None:
+    """The quickest way to the thing, or to where a thing that moves will be when the hand gets there."""
+    if not drift.ahead(1.0).any():
+        return _way(stage, index, tried, stage.position(index))
+    way = _way(stage, index, tried, stage.position(index) + drift.ahead(CHASE_FRAMES), HURRY)
+    if way is None:
+        return None
+    return _way(stage, index, tried, stage.position(index) + drift.ahead(way.route.frames), HURRY)
+
+
+def _way(
+    stage: Stage, index: int, tried: set[int], middle: NDArray[np.float64], hit_cost: float = HIT_COST
+) -> Way | None:
+    """The quickest way to the thing at `middle` [m], [3], by its frames and what it touches.
 
     Goals in `tried` are left out; None if the arm is too short for all others, or too much is in its way. Aims and
     places of the base are tried in turn, until there is a route that touches nothing.
     """
-    surface, back = Surface(stage, place_of(stage, index)), lacking(stage)
-    heading, high = stage.robot.base()[2], stage.position(index)[2] > OVER
-    best: tuple[int, Route] | None = None
+    surface, back = Surface(stage, replace(place_of(stage, index), middle=middle)), lacking(stage)
+    heading, high = stage.robot.base()[2], middle[2] > OVER
+    best: Way | None = None
     sides = len(stage.robot.pointing)
-    ends = itertools.product(standings(stage, stage.position(index)), aims(stage, index))
+    ends = itertools.product(standings(stage, middle), aims(stage, middle, index))
     for first, (ahead, aim) in enumerate(ends):
         moved = ahead * np.array([np.cos(heading), np.sin(heading), 0.0])
         for number, posture in enumerate(postures(stage, aim - moved), first * sides):
             if number in tried or posture.error > GETS_THERE:
                 continue
             above = lifted(stage.robot, posture.arm, HOVER) if high else None
-            route = quickest(stage, [Leg(posture.arm, ahead)], surface, back, above)
-            if best is None or route.cost < best[1].cost:
-                best = number, route
-        if best is not None and best[1].hits == 0:
+            route = quickest(stage, [Leg(posture.arm, ahead)], surface, back, above, hit_cost=hit_cost)
+            if best is None or route.cost < best.route.cost:
+                best = Way(number, route, middle)
+        if best is not None and best.route.hits == 0:
             break
-    return None if best is None or best[1].hits > FEW_HITS else best
+    return None if best is None or best.route.hits > FEW_HITS else best
 
 
 def standings(stage: Stage, thing: NDArray[np.float64]) -> list[float]:
@@ -162,9 +212,16 @@ def standings(stage: Stage, thing: NDArray[np.float64]) -> list[float]:
     return [0.0, ahead] if ahead > 0.0 else [0.0]
 
 
-def can_reach(stage: Stage, index: int) -> bool:
-    """Whether the arm is long enough for the thing `index` from where the base stands, were nothing in its way."""
-    return any(p.error < GETS_THERE for aim in aims(stage, index) for p in postures(stage, aim))
+def reaching(stage: Stage, index: int) -> list[Posture]:
+    """The postures that bring the hand to the thing `index` from where the base stands, were nothing in its way."""
+    found = (p for aim in aims(stage, stage.position(index), index) for p in postures(stage, aim))
+    return [posture for posture in found if posture.error < GETS_THERE]
+
+
+def free_postures(stage: Stage, index: int) -> list[Posture]:
+    """The postures of `reaching` in which no part of the arm lies in anything on the map."""
+    surface = Surface(stage, place_of(stage, index))
+    return [p for p in reaching(stage, index) if surface.hits([Leg(p.arm, 0.0), Leg(p.arm, 0.0)]) == 0]
 
 
 def _shut(stage: Stage, index: int, arm: NDArray[np.float64]) -> Skill:

@@ -5,8 +5,8 @@
 A book on the floor is therefore worth a small detour, a chair a long one, and a table is never driven into. A robot
 that already stands too close to something (it was pushed, or the map is coarse) still finds a path away from it.
 
-An obstacle may end anywhere in its cell. Where half a cell decides whether the robot fits, a path is dear, but it is
-one: otherwise no robot would try the gaps of furnished rooms, of which many are only 0.1 m wider than it.
+An obstacle may end anywhere in its cell. Where half a cell decides whether the robot fits, a path is expensive, but
+allowed: otherwise no robot would try the gaps of furnished rooms, of which many are only 0.1 m wider than it.
 """
 
 from __future__ import annotations

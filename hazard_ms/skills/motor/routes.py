@@ -44,10 +44,12 @@ class Route:
     frames: float
     hits: int
 
+    hit_cost: float = HIT_COST  # [frames]
+
     @property
     def cost(self) -> float:
         """The frames that the route takes, and what touching things is likely to cost [frames]."""
-        return self.frames + HIT_COST * self.hits
+        return self.frames + self.hit_cost * self.hits
 
 
 @dataclass(frozen=True)
@@ -148,11 +150,13 @@ def quickest(
     back: float,
     above: NDArray[np.float64] | None = None,
     leaving: bool = False,
+    hit_cost: float = HIT_COST,
 ) -> Route:
     """The quickest route from where the arm is to one of `goals` by its frames and what it touches.
 
     `back`: how far the base may draw back on the way [m]; `above`: joints [rad], [..., J], with the hand above the
-    thing, which are passed last, or, where they help, first when `leaving` it.
+    thing, which are passed last, or, where they help, first when `leaving` it; `hit_cost`: what a
+    checked point that lies in something counts as much as [frames].
     """
     now = Leg(stage.robot.arm(), 0.0)
     made = [route for goal in goals for route in _routes(stage, now, goal, back, above, leaving)]
@@ -160,8 +164,8 @@ def quickest(
     for route in sorted(made, key=lambda r: r.frames):
         if best is not None and best.cost <= route.frames:
             break
-        hits = surface.hits([now, *route.legs], np.inf if best is None else (best.cost - route.frames) / HIT_COST)
-        found = Route(route.legs, route.frames, hits)
+        hits = surface.hits([now, *route.legs], np.inf if best is None else (best.cost - route.frames) / hit_cost)
+        found = Route(route.legs, route.frames, hits, hit_cost)
         best = found if best is None or found.cost < best.cost else best
     assert best is not None
     return best

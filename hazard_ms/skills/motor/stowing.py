@@ -1,32 +1,68 @@
-"""The skill `drop`: let go of what the hand holds, into the bag or over the basket of a cart."""
+"""The skill `drop`: let go of what the hand holds, into the bag, or in the basket of a cart.
+
+A thing is put into the basket, not dropped over it: wind would take it, and it may stick to the fingers.
+"""
 
 from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.episode.grasp import GRASP_REACH, conjugate
+from hazard_ms.episode.grasp import conjugate
 from hazard_ms.episode.safe_places import BAG_REACH
 from hazard_ms.simulation.containers import BASKET_HIGH, BASKET_LOW
 from hazard_ms.simulation.world import rotate
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
-from hazard_ms.skills.motor.arm import REACH_FRAMES, THERE, fold, follow, go, lacking, posture_for
-from hazard_ms.skills.motor.grasping import CLEAR, LIMIT, SHUT_FRAMES, come_near, standings
+from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, follow, go, lacking
+from hazard_ms.skills.motor.grasping import LIMIT, SHUT_FRAMES, come_near, standings
+from hazard_ms.skills.motor.kinematics import Posture, lifted, solve
 from hazard_ms.skills.motor.motion import turn_to
-from hazard_ms.skills.motor.routes import NEARLY, Leg, Place, Surface, quickest
+from hazard_ms.skills.motor.routes import NEARLY, Leg, Place, Route, Surface, quickest
 from hazard_ms.skills.motor.walking import known
 
 OVER_BAG = 0.8 * BAG_REACH  # the hand opens this close to the mouth of the bag [m]
-OFF_CENTRE = 0.04  # distance [m] between the thing and its place over the basket that the arm corrects [ours]
-INSET = 0.14  # least distance from the walls of a basket to where a thing is let go [m] [ours]
+INSETS = (0.16, 0.09)  # least distances from the walls of a basket to where a thing is put, in turn [m] [ours]
+SUNK = 0.03  # depth below the rim to which the middle of a thing, or its base, is lowered [m] [ours]
+OFF = 0.06  # most that a posture may bring a thing off its place in the basket [m] [ours]
+RAISED = 0.2  # height above its place in the basket to which a thing is brought first [m] [ours]
+ABOVE = 0.15  # that posture is reached when every joint is this close [rad] [ours]
+DRAW_BACK = 0.3  # how much farther than for a table the base may draw back [m] [ours]
+FALL = 0.3  # most that a thing may fall into a basket [m] [ours]
+MARGIN = 0.06  # least distance from the walls of the basket to what falls into it [m] [ours]
+FALL_FRAMES = 10  # frames in which it falls in [ours]
+HIT_COST = 20.0  # what a point of the arm in a cart counts as much as: carts do not give way [frames] [ours]
+TRIES = 2  # number of postures that are tried
+SIDES = tuple(np.deg2rad([75.0, 45.0, 15.0, -15.0]).tolist())  # how far down the fingers point [rad] [ours]
+
+
+@dataclass(frozen=True)
+class Basket:
+    """The basket of a cart as the robot stands before it."""
+
+    cart: int
+    spots: tuple[NDArray[np.float64], ...]  # where the held thing may go, near the robot [m], each [3], world frame
+    place: Place  # keeps the hand above the rim
+
+
+@dataclass(frozen=True)
+class Way:
+    """A way into a basket: a route to above it, and from there to the joints `arm` [rad], [J]."""
+
+    number: int  # of the posture
+    route: Route
+    arm: NDArray[np.float64]
 
 
 def drop(stage: Stage, cart: int | None = None) -> Skill:
-    """Let go of what the hand holds: into the bag, or over the thing `cart`.
+    """Let go of what the hand holds: into the bag, or in the basket of the thing `cart`.
 
-    It fails as CART_UNREACHABLE if the cart is out of reach.
+    It fails as CART_UNREACHABLE, with the thing still in the hand, if it cannot be brought over the basket.
     """
     held = stage.held
     if held < 0:
@@ -47,82 +83,147 @@ def _into_bag(stage: Stage) -> Skill:
 
 
 def _into_cart(stage: Stage, cart: int, held: int) -> Skill:
-    """Come near, hold the thing over the basket, open the hand, fold the arm back."""
+    """Come near, lower the thing into the basket, open the hand, fold the arm back."""
     if not known(stage, cart):
         return Result(False, failures.UNKNOWN)
     if float(np.linalg.norm(stage.position(cart) - stage.robot.shoulder())) > LIMIT:
         return Result(False, failures.CART_UNREACHABLE)
     used = 0
-    over = _over_basket(stage, cart, held)
-    if float(np.hypot(*(over[:2] - stage.robot.base()[:2]))) > stage.robot.build.span(float(over[2]))[1]:
+    spot = _basket(stage, cart).spots[-1]
+    if float(np.hypot(*(spot[:2] - stage.robot.base()[:2]))) > stage.robot.build.span(float(spot[2]))[1]:
         used += (yield from come_near(stage, stage.position(cart))).frames
-    over = _over_basket(stage, cart, held)
-    used += (yield from turn_to(stage, over[:2])).frames
-    goals = _goals(stage, over)
-    if not goals:
-        return Result(False, failures.CART_UNREACHABLE, used)
-    place = _basket(stage, cart, over)
-    route = quickest(stage, goals, Surface(stage, place), lacking(stage))
-    used += (yield from follow(stage, route, close=THERE)).frames
-    arm = route.legs[-1].arm
-    beside = over - stage.position(held)  # the hand holds the thing by its edge
-    beside[2] = 0.0
-    if float(np.linalg.norm(beside)) > OFF_CENTRE:
-        posture = posture_for(stage, over + beside)
-        if posture.error < GRASP_REACH:
-            arm = posture.arm
-            used += (yield from go(stage, arm, REACH_FRAMES, close=THERE)).frames
-    used += (yield from _open(stage, arm)).frames
-    used += (yield from fold(stage, place)).frames
-    return Result(True, frames=used)
-
-
-def _goals(stage: Stage, over: NDArray[np.float64]) -> list[Leg]:
-    """The posture for a hand at `over` [m], [3], from where the base stands, or from nearer if that is closer.
-
-    Empty if the arm is too short.
-    """
-    heading = stage.robot.base()[2]
-    found: list[tuple[float, Leg]] = []
-    for ahead in standings(stage, over):
-        posture = posture_for(stage, over - ahead * np.array([np.cos(heading), np.sin(heading), 0.0]))
-        if posture.error < GRASP_REACH:
-            found.append((posture.error, Leg(posture.arm, ahead)))
-        if posture.error < OFF_CENTRE:
+    basket = _basket(stage, cart)
+    used += (yield from turn_to(stage, basket.spots[0][:2])).frames
+    tried = set[int]()
+    while len(tried) < TRIES:
+        way = _way(stage, basket, held, tried)
+        if way is None:
             break
-    return [min(found, key=lambda each: each[0])[1]] if found else []
+        tried.add(way.number)
+        lowered = yield from _lower_into(stage, cart, held, way)
+        used += lowered.frames
+        used += (yield from fold(stage, basket.place)).frames
+        if lowered.ok:
+            return Result(True, frames=used)
+    return Result(False, failures.CART_UNREACHABLE, used)
 
 
-def _basket(stage: Stage, cart: int, over: NDArray[np.float64]) -> Place:
-    """The basket of the `cart` for a hand at `over` [m], [3], which may come down to its rim."""
-    extent = stage.world.extent[0, cart].cpu().numpy().astype(np.float64)
-    size = (np.array(BASKET_HIGH) - np.array(BASKET_LOW)) * extent
-    rim = float(stage.position(cart)[2] + BASKET_HIGH[2] * extent[2])
-    return Place(over, float(size[:2].min()) / 2, rim, rim)
+def _lower_into(stage: Stage, cart: int, held: int, way: Way) -> Skill:
+    """Bring the `held` thing above the basket, lower it, open the hand if it is in, and raise the hand again."""
+
+    def inside() -> bool:
+        return _inside(stage, cart, held)
+
+    used = (yield from follow(stage, way.route, close=ABOVE)).frames
+    used += (yield from go(stage, way.arm, REACH_FRAMES, inside)).frames
+    placed = inside() or _inside(stage, cart, held, falling=True)
+    if placed:
+        used += (yield from _open(stage, stage.robot.arm(), held)).frames
+    used += (yield from go(stage, way.route.legs[-1].arm, REACH_FRAMES, close=NEARLY)).frames
+    return Result(placed, frames=used)
 
 
-def _over_basket(stage: Stage, cart: int, held: int) -> NDArray[np.float64]:
-    """The point [m], [3], world frame, at which the hand lets go.
+def _way(stage: Stage, basket: Basket, held: int, tried: set[int]) -> Way | None:
+    """The quickest way to bring the `held` thing into the `basket`.
 
-    It is over the place in the basket that is nearest to the robot, high enough for the thing.
+    None if the arm is too short for all postures that are not in `tried`.
     """
+    surface, back, heading = Surface(stage, basket.place), lacking(stage) + DRAW_BACK, stage.robot.base()[2]
+    carried = _carried(stage, held)
+    best: Way | None = None
+    ends = ((spot, ahead) for spot in basket.spots for ahead in standings(stage, spot))
+    for number, ((spot, ahead), down) in enumerate(itertools.product(ends, SIDES)):
+        if best is not None and best.route.hits == 0:
+            break
+        if number in tried:
+            continue
+        moved = ahead * np.array([np.cos(heading), np.sin(heading), 0.0])
+        for posture in _postures(stage, spot - moved, carried, down):
+            above = lifted(stage.robot, posture.arm, RAISED)
+            route = quickest(stage, [Leg(above, ahead)], surface, back, hit_cost=HIT_COST)
+            if best is None or route.cost < best.route.cost:
+                best = Way(number, route, posture.arm)
+    return best
+
+
+def _postures(stage: Stage, spot: NDArray[np.float64], carried: NDArray[np.float64], down: float) -> Iterator[Posture]:
+    """Postures that bring an end of what is `carried` to `spot` [m], [3], the fingers `down` [rad]; none if too far.
+
+    Where the hand must be depends on how it is turned, so the search goes on from what it finds.
+    """
+    shoulder = stage.robot.shoulder()
+    level = spot[:2] - shoulder[:2]
+    level = level / max(float(np.hypot(*level)), 1e-6)
+    pointing = np.array([*(np.cos(down) * level), -np.sin(down)])
+    for end in carried:
+        goal = spot
+        for _ in range(3):
+            posture = solve(stage.robot, goal, pointing)
+            hand, turn, _ = stage.robot.kinematics(posture.arm)
+            missed = float(np.linalg.norm(hand + turn @ end - spot))
+            if missed < OFF / 2:
+                break
+            goal = spot - turn @ end
+        if missed < OFF:
+            yield posture
+
+
+def _carried(stage: Stage, held: int) -> NDArray[np.float64]:
+    """Base and middle of the `held` thing in the hand's frame [m], [2, 3]."""
+    hand = stage.env.hand
+    up = hand.offset.new_tensor([0.0, 0.0, 0.5 * float(stage.world.extent[0, held, 2])])
+    base = hand.offset[0]
+    return np.stack([end.cpu().numpy().astype(np.float64) for end in (base, base + rotate(hand.turn[0], up))])
+
+
+def _ends(stage: Stage, held: int) -> NDArray[np.float64]:
+    """Middle and base of the `held` thing [m], [2, 3], world frame: in a cart is what has one of them there."""
     world = stage.world
+    base = world.base_of(world.position[:, held], world.rotation[:, held], world.extent[:, held])[0]
+    return np.stack([stage.position(held), base.cpu().numpy().astype(np.float64)])
+
+
+def _hollow(stage: Stage, cart: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The lowest and highest corner of the basket in the frame of the `cart` [m], each [3]."""
+    extent = stage.world.extent[0, cart].cpu().numpy().astype(np.float64)
+    return np.array(BASKET_LOW) * extent, np.array(BASKET_HIGH) * extent
+
+
+def _local(stage: Stage, cart: int, point: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The `point` [m], [3], world frame, in the frame of the `cart`."""
+    turn = conjugate(stage.world.rotation[0, cart])
+    return rotate(turn, turn.new_tensor(point - stage.position(cart))).cpu().numpy().astype(np.float64)
+
+
+def _inside(stage: Stage, cart: int, held: int, falling: bool = False) -> bool:
+    """Whether the `held` thing would lie in the basket of the `cart` if the hand opened now, or after `falling`."""
+    low, high = _hollow(stage, cart)
+    if falling:
+        low, high = low + [MARGIN, MARGIN, 0.0], high + [-MARGIN, -MARGIN, FALL]
+    points = np.stack([_local(stage, cart, end) for end in _ends(stage, held)])
+    return bool(((points > low) & (points < high)).all(axis=1).any())
+
+
+def _basket(stage: Stage, cart: int) -> Basket:
+    """The basket of the `cart`, and the places in it that are nearest to the robot."""
+    world = stage.world
+    low, high = _hollow(stage, cart)
     x, y, _ = stage.robot.base()
-    turn = world.rotation[0, cart]
-    extent = world.extent[0, cart].cpu().numpy().astype(np.float64)
-    offset = world.position.new_tensor([x, y, 0.0]) - world.position[0, cart]
-    local = rotate(conjugate(turn), offset).cpu().numpy().astype(np.float64)
-    low, high = np.array(BASKET_LOW) * extent, np.array(BASKET_HIGH) * extent
-    middle, half = (low + high) / 2, np.maximum((high - low) / 2 - INSET, 0.0)
-    place = np.clip(local, middle - half, middle + half)
-    place[2] = high[2] + float(world.extent[0, held].max()) / 2 + CLEAR
-    return np.asarray(
-        stage.position(cart) + rotate(turn, world.position.new_tensor(place)).cpu().numpy(), dtype=np.float64
-    )
+    here, spots = _local(stage, cart, np.array([x, y, 0.0])), []
+    for inset in INSETS:
+        half = np.maximum((high - low) / 2 - inset, 0.0)
+        place = np.clip(here, (low + high) / 2 - half, (low + high) / 2 + half)
+        place[2] = high[2] - SUNK
+        turned = rotate(world.rotation[0, cart], world.position.new_tensor(place)).cpu().numpy()
+        spots.append(np.asarray(stage.position(cart) + turned, dtype=np.float64))
+    rim = float(stage.position(cart)[2] + high[2])
+    return Basket(cart, tuple(spots), Place(spots[0], 0.0, np.inf, rim))
 
 
-def _open(stage: Stage, arm: NDArray[np.float64]) -> Skill:
-    """Open the hand."""
-    for _ in range(SHUT_FRAMES):
+def _open(stage: Stage, arm: NDArray[np.float64], falling: int = -1) -> Skill:
+    """Open the hand, and wait while the thing of index `falling` falls into a basket."""
+    used = 0
+    while used < SHUT_FRAMES or (falling >= 0 and used < FALL_FRAMES and not bool(stage.world.safe[0, falling])):
         yield stage.act(arm=arm, shut=False)
-    return Result(True, frames=SHUT_FRAMES)
+        used += 1
+    return Result(True, frames=used)

@@ -40,7 +40,7 @@ _PLACE = (
 
 
 def target_columns(hazards: int) -> tuple[Column, ...]:
-    """The columns of a target's row in a task with so many `hazards`."""
+    """The columns of a target's row in a task with this many `hazards`."""
     levels = [
         column
         for k in range(hazards)
@@ -78,7 +78,7 @@ LANDMARK_COLUMNS = (
 
 
 def global_columns(hazards: int) -> tuple[Column, ...]:
-    """The columns of the row about the whole in a task with so many `hazards`."""
+    """The columns of the row about the whole in a task with this many `hazards`."""
     fronts = (
         Column(
             f"front_{k}", "m", 5.0, 0.0, 2.0, f"distance to where hazard {k} was seen in the upper half of its range"

@@ -1,0 +1,32 @@
+"""The movement of things that wind or water carries while the hand is on its way to them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.skills.context import Stage
+
+DRIFT_FRAMES = 5  # frames over which a thing's movement is measured [ours]
+STILL = 0.008  # movement within these frames below which a thing lies still [m] [ours]
+
+
+class Drift:
+    """The movement of a thing, measured from its last places."""
+
+    def __init__(self, stage: Stage, index: int) -> None:
+        """Begin with the thing `index` where it is."""
+        self._stage, self._index = stage, index
+        self._places = [stage.position(index)]
+
+    def note(self) -> None:
+        """Note the present place, once a frame."""
+        self._places = [*self._places[-DRIFT_FRAMES:], self._stage.position(self._index)]
+
+    def ahead(self, frames: float) -> NDArray[np.float64]:
+        """The way over the floor [m], [3], world frame, that the thing makes in `frames`; 0 for what lies still."""
+        moved = self._places[-1] - self._places[0]
+        moved[2] = 0.0
+        if np.abs(moved).max() <= STILL:
+            return np.zeros(3)
+        return np.asarray(moved * (frames / (len(self._places) - 1)))

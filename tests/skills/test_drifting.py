@@ -1,0 +1,71 @@
+"""Things that wind or water carries: the hand meets them where they will be, or gives them up soon."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import sapien
+
+from hazard_ms.skills import failures
+from hazard_ms.skills.motor.drift import Drift
+from hazard_ms.skills.motor.grasping import pick_up
+from tests.worlds.arena import Arena
+
+SPEED = 0.02  # a little faster than a robot drives [m per frame]: a hand that goes where it was comes too late
+FAST = 0.03  # twice as fast as a robot [m per frame]
+FAILED_FRAMES = 30  # most that giving it up may cost
+START = np.array([0.62, -0.35, 0.04])  # middle of the thing at first [m]
+
+
+def carried(arena: Arena, name: str, step: np.ndarray) -> Callable[[object], None]:
+    """A step of the arena in which the thing moves on by `step` [m], [3], until it is held."""
+    body, once, at = arena.base.actors[name], type(arena).step, START.copy()
+
+    def move(action: object) -> None:
+        once(arena, action)  # type: ignore[arg-type]
+        if arena.stage.held < 0:
+            at[:] += step
+            body.set_pose(sapien.Pose(at.tolist()))
+            body.set_linear_velocity([0, 0, 0])
+            arena.world.position[0, arena.index(name)] = arena.world.position.new_tensor(at)
+
+    return move
+
+
+def try_to_pick(arena: Arena, step: tuple[float, float, float]) -> tuple[bool, str, int]:
+    arena.restart()
+    index = arena.index("bowl")
+    arena.base.actors["bowl"].set_pose(sapien.Pose(START.tolist()))
+    arena.world.position[0, index] = arena.world.position.new_tensor(START)
+    arena.look()
+    arena.step = carried(arena, "bowl", np.array(step))  # type: ignore[method-assign]
+    try:
+        result = arena.run(pick_up(arena.stage, index))
+    finally:
+        del arena.step
+    return result.ok, result.reason, result.frames
+
+
+def test_a_thing_that_moves_is_met_where_it_will_be(arena: Arena) -> None:
+    assert try_to_pick(arena, (0.0, SPEED, 0.0))[0]
+
+
+def test_a_thing_that_is_faster_than_the_robot_is_given_up_soon(arena: Arena) -> None:
+    ok, reason, frames = try_to_pick(arena, (FAST, 0.0, 0.0))
+    assert not ok and reason == failures.UNREACHABLE and frames <= FAILED_FRAMES
+
+
+def test_movement_is_measured_over_the_floor_and_rest_is_none(arena: Arena) -> None:
+    arena.restart()
+    index = arena.index("bowl")
+    drift = Drift(arena.stage, index)
+    assert not drift.ahead(10.0).any()  # nothing is known of it yet
+    for _ in range(3):
+        arena.world.position[0, index] += arena.world.position.new_tensor([0.01, -0.02, 0.03])
+        drift.note()
+    assert drift.ahead(10.0) == pytest.approx([0.1, -0.2, 0.0], abs=1e-5)
+    for _ in range(8):
+        drift.note()
+    assert not drift.ahead(10.0).any()

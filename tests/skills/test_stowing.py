@@ -1,0 +1,83 @@
+"""What a robot brings to a cart is let go in its basket, in real physics; what it cannot bring there it keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+import torch
+
+from hazard_ms.registry import ROBOTS
+from hazard_ms.skills import failures
+from hazard_ms.skills.context import LowLevel
+from hazard_ms.skills.motor.grasping import pick_up
+from hazard_ms.skills.motor.stowing import drop
+from tests.worlds.arena import Arena, Box
+
+SIZE = (0.56, 0.94, 1.02)  # of a cart [m]
+X, RIM = 1.1, 0.885  # where the cart stands, and the height of its basket [m]
+SIDE, END, WALL = 0.266, 0.44, 0.035  # distances of the basket's walls from its middle, and their thickness [m]
+FLOOR = 0.51  # of the basket, which the arena takes for the cart's middle [m]
+LOW_FALL = 0.2  # most that a thing may fall to the rim [m]
+CART = (
+    Box("cart", (X, 0.0, FLOOR), (2 * SIDE, 2 * END, 0.04), target=False),
+    *(Box(f"side_{s}", (X + s * SIDE, 0.0, RIM - 0.2), (WALL, 2 * END, 0.4), target=False) for s in (-1, 1)),
+    *(Box(f"end_{s}", (X, s * END, RIM - 0.2), (2 * SIDE, WALL, 0.4), target=False) for s in (-1, 1)),
+    Box("can", (0.0, -0.65, 0.06), (0.07, 0.07, 0.12), 0.3),
+    Box("parcel", (0.0, 0.7, 0.1), (0.25, 0.2, 0.2), 1.0),
+)
+
+
+@pytest.fixture(scope="module", params=ROBOTS)
+def street(request: pytest.FixtureRequest) -> Iterator[Arena]:
+    made = Arena(CART, robot=request.param)
+    yield made
+    made.close()
+
+
+def begin(street: Arena) -> int:
+    """Start anew; the index of the cart, which the skills know by its whole size."""
+    street.restart()
+    cart = street.index("cart")
+    street.world.extent[0, cart] = torch.tensor(SIZE)
+    return cart
+
+
+def let_go_at(street: Arena, cart: int) -> np.ndarray:
+    """Drop what the hand holds into the `cart`; the place of its middle when the hand opened [m], [3]."""
+    held, once, places = street.stage.held, type(street).step, []
+
+    def step(action: LowLevel) -> None:
+        once(street, action)
+        if street.stage.held == held:
+            places.append(street.stage.position(held))
+
+    street.step = step  # type: ignore[method-assign]
+    try:
+        street.run(drop(street.stage, cart))
+    finally:
+        del street.step
+    assert street.stage.held == -1
+    return np.asarray(places[-1])
+
+
+@pytest.mark.parametrize("name", ["can", "parcel"])
+def test_a_thing_is_let_go_in_the_basket(street: Arena, name: str) -> None:
+    cart = begin(street)
+    index = street.index(name)
+    assert street.run(pick_up(street.stage, index)).ok
+    x, y, z = let_go_at(street, cart)
+    half = float(street.world.extent[0, index, 2]) / 2
+    assert abs(x - X) < SIDE and abs(y) < END
+    assert z - half < RIM + LOW_FALL  # wind has no time to carry it past the walls
+
+
+def test_a_thing_stays_in_the_hand_where_no_basket_is_within_reach(street: Arena) -> None:
+    cart = begin(street)
+    index = street.index("can")
+    assert street.run(pick_up(street.stage, index)).ok
+    street.world.position[0, cart, 2] += 1.5  # a basket at 2.4 m
+    result = street.run(drop(street.stage, cart))
+    assert not result.ok and result.reason == failures.CART_UNREACHABLE
+    assert street.stage.held == index and not np.isnan(street.stage.position(index)).any()

@@ -13,10 +13,10 @@ from hazard_ms.skills import failures
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.context import Skill
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action
-from hazard_ms.skills.motor.arm import CARRIED, reach_for
+from hazard_ms.skills.motor.arm import CARRIED, go, reach_for
 from hazard_ms.skills.motor.grasping import pick_up
 from hazard_ms.skills.motor.motion import move_by, turn_by, turn_to
-from hazard_ms.skills.motor.stowing import drop
+from hazard_ms.skills.motor.stowing import OVER_BAG, drop
 from tests.worlds.arena import Arena
 from tests.worlds.skill_room import horizontal, walk
 
@@ -45,6 +45,18 @@ def test_a_thing_is_fetched_and_put_into_the_bag(fresh: Arena, name: str) -> Non
     assert dropped.ok and bool(fresh.world.safe[0, index]) and dropped.frames < 15
     assert fresh.run(drop(fresh.stage)).reason == failures.NOT_HOLDING
     assert fresh.run(pick_up(fresh.stage, index)).reason == failures.ALREADY_RESCUED
+
+
+def test_the_hand_opens_only_over_the_bag(fresh: Arena) -> None:
+    """It begins as far from the bag as an arm can be that is nearly folded, with each joint up to 0.45 rad off."""
+    assert walk(fresh, "bowl") and fresh.run(pick_up(fresh.stage, fresh.index("bowl"))).ok
+    tucked, mouth = fresh.agent.tucked, fresh.agent.bag_position()[0].cpu().numpy()
+    off = tucked + 0.45 * np.random.default_rng(0).choice([-1.0, 0.0, 1.0], (200, len(tucked)))
+    off = np.clip(off, *fresh.agent.arm_limits.T)
+    far = [float(np.linalg.norm(fresh.agent.kinematics(arm)[0] - mouth)) for arm in off]
+    assert max(far) > OVER_BAG, "else it could open at once"
+    fresh.run(go(fresh.stage, off[int(np.argmax(far))], 60))
+    assert fresh.run(drop(fresh.stage)).ok and bool(fresh.world.safe[0, fresh.index("bowl")])
 
 
 def test_a_carried_thing_comes_along(fresh: Arena) -> None:

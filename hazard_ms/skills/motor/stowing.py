@@ -77,7 +77,7 @@ def _into_bag(stage: Stage) -> Skill:
         mouth = stage.robot.bag_position()[0].cpu().numpy()
         return bool(np.linalg.norm(stage.robot.hand() - mouth) < OVER_BAG)
 
-    moved = yield from go(stage, stage.robot.tucked, REACH_FRAMES, over, NEARLY)
+    moved = yield from go(stage, stage.robot.tucked, REACH_FRAMES, over)
     opened = yield from _open(stage, stage.robot.tucked)
     return Result(True, frames=moved.frames + opened.frames)
 

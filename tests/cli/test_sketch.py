@@ -50,7 +50,7 @@ def test_check_refuses_what_it_cannot_compare(tmp_path: Path, capsys: pytest.Cap
     assert "agent must be one of greedy, nearest, rule" in capsys.readouterr().err
 
 
-def test_speed_prints_what_is_demanded(capsys: pytest.CaptureFixture[str]) -> None:
+def test_speed_prints_what_is_required(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sketch", "speed", "--scenes", "1"]) == 0
     out = capsys.readouterr().out
-    assert "256 rescues at once" in out and "demanded: 20,000" in out
+    assert "256 rescues at once" in out and "required: 20,000" in out

@@ -48,6 +48,6 @@ def test_other_texts_are_refused(text: str) -> None:
         shard(text, {})
 
 
-def test_variables_that_are_no_numbers_are_refused() -> None:
+def test_variables_that_are_not_numbers_are_refused() -> None:
     with pytest.raises(ValueError, match="SLURM_ARRAY_TASK_ID"):
         shard(None, {"SLURM_ARRAY_TASK_ID": "two", "SLURM_ARRAY_TASK_COUNT": "3"})

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.sketch.test_ways import divided
 
 from hazard_ms.simulation.viewpoint import ABOVE, BEHIND, corner_view, following_view
+from tests.sketch.test_ways import divided
 
 
 @pytest.mark.parametrize("place", [(1.0, 2.0), (-3.0, 7.5)])

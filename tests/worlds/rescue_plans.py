@@ -128,7 +128,7 @@ def best_by_trial(plain: PlainProblem, waiting: bool = False) -> tuple[float, fl
 def random_problem(
     chance: np.random.Generator, moving: bool, most_targets: int, most_carts: int, stride: float = 6.0
 ) -> PlainProblem:
-    """A problem of up to so many targets and carts, with a recorded frame in every `stride` if they move."""
+    """A problem of up to these numbers of targets and carts, with a recorded frame in every `stride` if they move."""
     count = int(chance.integers(1, most_targets + 1))
     carts = int(chance.integers(1, most_carts + 1)) if most_carts else 0
     common = {

@@ -51,7 +51,7 @@ def seen(env: Any) -> dict[str, dict[str, np.ndarray]]:
 
 
 def watched(run: str, frames: int, every: int) -> dict[str, Any]:
-    """Hashes of an episode in which the robot drives: "pictures", at every so many frames, camera/modality -> hash.
+    """Hashes of an episode in which the robot drives: "pictures", at each `every`-th frame, camera/modality -> hash.
 
     "state" at its end.
     """

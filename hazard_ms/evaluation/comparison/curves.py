@@ -69,7 +69,7 @@ def _or_never(frame: int | None) -> float:
 
 
 def _damaged_at(fate: Fate, end: int) -> int | None:
-    """The frame of the first damage; where it was not recorded, the last at which it can have come."""
+    """The frame of the first damage; where it was not recorded, the last frame at which it can have come."""
     if not fate.damaged:
         return None
     return next(frame for frame in (fate.damaged_frame, fate.frame, end) if frame is not None)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from hazard_ms.evaluation.comparison.pairing import Episode
 from hazard_ms.evaluation.metrics import value
+from hazard_ms.evaluation.regret.causes import SUFFIX
 from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult
 
 
@@ -87,7 +88,8 @@ def _files(folders: Sequence[Path]) -> list[Path]:
     for folder in folders:
         if not folder.is_dir():
             raise ValueError(f"folder must be one that `hazard-ms evaluate -o FOLDER` wrote, got {folder}")
-    return sorted({path.resolve() for folder in folders for path in folder.rglob("*.json")})
+    found = {path.resolve() for folder in folders for path in folder.rglob("*.json")}
+    return sorted(path for path in found if not path.name.endswith(SUFFIX))
 
 
 def _title(result: EpisodeResult) -> str:

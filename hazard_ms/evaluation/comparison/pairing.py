@@ -3,7 +3,7 @@
     difference = mean over episodes of  Value of one agent - Value of the other
     regret     = 1 - sum over episodes of the Value of the agent / the same sum of the oracle
 
-An episode is drawn with the Values of both agents, so that how hard scenes are cancels out.
+An episode is drawn with the Values of both agents, so that the difficulty of scenes cancels out.
 """
 
 from __future__ import annotations

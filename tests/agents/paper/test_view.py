@@ -41,7 +41,7 @@ def test_a_walk_costs_half_of_its_metres_and_at_most_ten(metres: float, cost: fl
 
 
 def test_it_can_walk_to_each_known_target_or_look_around() -> None:
-    """The table is no target, and carts are for those who hold something. 2 m cost 1, 4 m cost 2, a look 2.5."""
+    """The table is not a target, and carts are for agents that hold something. 2 m cost 1, 4 m cost 2, a look 2.5."""
     assert offered(ground(("cart",))) == {"walk_to a": 1.0, "walk_to b": 2.0, "explore": 2.5}
 
 

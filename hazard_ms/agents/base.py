@@ -33,11 +33,13 @@ LONGEST_NOTE = 2000  # characters of a note that are kept [ours]
 class Agent(abc.ABC):
     """Chooses the next action from what has been seen.
 
-    `note`, a str or None, may say why; it is shown with the decision and changes nothing. Parameters of `__init__` that
-    are annotated as int, float, bool or str can be given with the agent's name.
+    `note`, a str or None, may say why; it is shown with the decision and changes nothing. Neither does `fallback`,
+    which `hazard-ms regret` reads. Parameters of `__init__` that are annotated as int, float, bool or str can be given
+    with the agent's name.
     """
 
     note: str | None = ""
+    fallback: bool = False  # whether its last action stands in for an answer that could not be read
     privileged: ClassVar[bool] = False  # whether it may see what is hidden: only subclasses of PrivilegedAgent do
 
     @abc.abstractmethod
@@ -50,7 +52,7 @@ class Agent(abc.ABC):
 
 
 class PrivilegedAgent(Agent):
-    """An agent that sees what is hidden from all others, for upper lines that honest agents are compared with."""
+    """An agent that sees what is hidden from all others: a reference that honest agents are compared with."""
 
     privileged: ClassVar[bool] = True
 
@@ -73,7 +75,7 @@ def note_of(player: Agent) -> str:
 
 @contextmanager
 def staying(what: str) -> Iterator[None]:
-    """Let `what`, code of an agent, not end the process. Raises RuntimeError where it calls sys.exit."""
+    """Keep `what`, an agent's code, from ending the process. Raises RuntimeError where it calls sys.exit."""
     try:
         yield
     except SystemExit as error:
@@ -81,7 +83,7 @@ def staying(what: str) -> Iterator[None]:
 
 
 def check_name(text: str) -> None:
-    """Raises ValueError where `text`, an agent as `agent` takes it, is neither registered nor of a module or file."""
+    """Raises ValueError unless `text`, an agent as `agent` takes it, is registered or names a module or a file."""
     name = text.partition(":")[0]
     if name == text or "=" in text.removeprefix(f"{name}:").partition(":")[0]:
         one_of(name, AGENTS, "agent")

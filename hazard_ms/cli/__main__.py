@@ -20,6 +20,7 @@ from hazard_ms.cli.bench import bench
 from hazard_ms.cli.describe import describe
 from hazard_ms.cli.episodes import evaluate, play, replay
 from hazard_ms.cli.pictures import gallery, render
+from hazard_ms.cli.regret import regret
 from hazard_ms.cli.report import report
 from hazard_ms.cli.scenes import SceneCommand
 from hazard_ms.cli.sketch import SketchCommand
@@ -59,7 +60,7 @@ def version() -> int:
 
 
 def scenes(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[SceneCommand]]) -> int:
-    """Scenes: list, make, show, check, import."""
+    """Scenes: list, make, show, check, reach, import."""
     return int(done)
 
 
@@ -81,6 +82,7 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "gallery": gallery,
     "evaluate": evaluate,
     "replay": replay,
+    "regret": regret,
     "report": report,
     "describe": describe,
     "bench": bench,
@@ -101,7 +103,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = _run(words)
         if sys.stdout is not None:  # it may be closed
             sys.stdout.flush()
-    except BrokenPipeError:  # who reads the output has read enough, as `head` does
+    except BrokenPipeError:  # whoever reads the output has read enough, as `head` does
         _silence()
         return 0
     except OSError as error:
@@ -124,7 +126,7 @@ def _run(words: list[str]) -> int:
         return 0
     try:
         done = tyro.extras.subcommand_cli_from_dict(COMMANDS, prog="hazard-ms", description=DESCRIPTION, args=words)
-    except ValueError as error:  # its text says all: no trace of where it was noticed
+    except ValueError as error:  # its text says everything: no traceback
         print("hazard-ms:", "\n".join(map(printable, str(error).split("\n"))), file=sys.stderr)
         return 2
     return int(done or 0)

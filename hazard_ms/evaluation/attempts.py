@@ -15,6 +15,7 @@ from hazard_ms.evaluation.runner import play, result_of
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.evaluation.workers import Job, Outcome, Say, Word
 from hazard_ms.registry import AGENTS, load
+from hazard_ms.skills.actions import wait
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import STOP, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
@@ -27,7 +28,7 @@ def attempt(job: Job, say: Say) -> Outcome:
     torch.set_num_threads(1)
     teller = Teller(job.options, say)
     try:
-        player = None if job.actions is None else Recorded(job.actions, job.options.agent)
+        player = None if job.actions is None else Recorded(job.actions, job.options.agent, job.waits)
         return Outcome(play(job.options, [teller], player))
     except KeyboardInterrupt:
         raise
@@ -58,20 +59,22 @@ class Teller(Watcher):
 
 
 class Recorded(PrivilegedAgent):
-    """Takes the actions that an agent took earlier, and stops after the last one.
+    """Takes the actions that an agent took earlier, after waiting as long as it did, and stops after the last one.
 
     Where that agent is privileged, it is asked, too, since it tells the map what it knows. Its answers do not matter.
     Nobody's code is loaded because a file names it: only registered agents are asked.
     """
 
-    def __init__(self, actions: tuple[tuple[str, str | None], ...], name: str) -> None:
+    def __init__(self, actions: tuple[tuple[str, str | None], ...], name: str, waits: tuple[int, ...] = ()) -> None:
         self._left = [Action(STOP), *(Action(verb, target) for verb, target in reversed(actions))]
+        self._waits = list(reversed(waits))
         entry = AGENTS.get(name.partition(":")[0])
         asked = entry is not None and issubclass(load(entry.agent), PrivilegedAgent)
         self._source = agent(name) if asked else None
 
     def attach(self, env: SkillEnv) -> None:
         """Let the agent of the record see what is hidden, if it is privileged."""
+        self._env = env
         if isinstance(self._source, PrivilegedAgent):
             self._source.attach(env)
 
@@ -84,6 +87,8 @@ class Recorded(PrivilegedAgent):
         """The next action of the record."""
         if self._source is not None:
             self._source.act(decision)
+        if self._waits and (frames := self._waits.pop()):
+            self._env.run(wait(self._env.stage, frames))
         return self._left.pop() if len(self._left) > 1 else self._left[0]
 
 

@@ -1,8 +1,8 @@
-"""The chain of hashes of an episode: two runs with the same chain were the same episode, and else it says until when.
+"""The chain of hashes of an episode: two runs with the same chain were the same episode; else it shows where they part.
 
 Each link is the SHA-256 of the link before it, the frame, and the state of everything: poses of all bodies and of the
-robot, and all records of the episode (hazards, damage, rescues, the hand). Numbers count in steps of `GRAIN`, so that
-the last bits, which other processors compute otherwise, rarely matter.
+robot, and all records of the episode (hazards, damage, rescues, the hand). Numbers are rounded to steps of `GRAIN`,
+so that the last bits, which differ between processors, rarely matter.
 """
 
 from __future__ import annotations

@@ -224,4 +224,3 @@ def _default(name: str) -> Any:
 
 def _flag(name: str) -> str:
     return "--" + name.replace("_", "-")
-

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
 
 from hazard_ms.evaluation.options import EpisodeOptions, ReplayOptions
+from hazard_ms.evaluation.regret.causes import SUFFIX
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.evaluation.spread import spread
 from hazard_ms.evaluation.workers import SILENCE, Job
@@ -17,9 +19,9 @@ def replay(options: ReplayOptions) -> int:
 
     Returns 1 if one of them is different, else 0. Raises ValueError for files that hold no result.
     """
-    files = [found for path in options.files for found in (sorted(path.glob("*.json")) if path.is_dir() else [path])]
+    files = [found for path in options.files for found in (_results(path) if path.is_dir() else [path])]
     if not files:
-        raise ValueError(f"files must hold the result of an episode at least, got {', '.join(map(str, options.files))}")
+        raise ValueError(f"files must hold at least one result of an episode, got {', '.join(map(str, options.files))}")
     records = [(path, EpisodeResult.read(path)) for path in files]
     jobs = [job_of(record, options.load) for _, record in records]
     left = {id(job): record for job, record in zip(jobs, records, strict=True)}
@@ -32,6 +34,11 @@ def replay(options: ReplayOptions) -> int:
             print(f"{path}: {verdict}{why}", flush=True)
     print(", ".join(f"{n} {verdict}" for verdict, n in found.most_common()))
     return int(found[DIFFERENT] > 0)
+
+
+def _results(folder: Path) -> list[Path]:
+    """The results in a folder, without what `hazard-ms regret` wrote beside them."""
+    return sorted(path for path in folder.glob("*.json") if not path.name.endswith(SUFFIX))
 
 
 def episode_of(record: EpisodeResult, load: tuple[str, ...] = ()) -> EpisodeOptions:
@@ -83,4 +90,4 @@ def _since(record: EpisodeResult, played: EpisodeResult) -> str:
 def job_of(record: EpisodeResult, load: tuple[str, ...] = ()) -> Job:
     """The job that plays the decisions of a result again; `load` as for `episode_of`, which says what it refuses."""
     actions = tuple((d.verb, d.target) for d in record.decisions)
-    return Job(episode_of(record, load), SILENCE, actions)
+    return Job(episode_of(record, load), SILENCE, actions, tuple(d.waited for d in record.decisions))

@@ -19,9 +19,9 @@ from hazard_ms.machine.files import write
 from hazard_ms.registry.version import __version__
 
 FORMAT = 2  # goes up when a field changes its meaning
-BROKEN = "simulation error"  # how an episode ends whose simulation broke
+BROKEN = "simulation error"  # how an episode ends if its simulation breaks
 ERROR, TOO_SLOW, DIED = "error", "too slow", "worker died"
-FAILED = (ERROR, TOO_SLOW, DIED)  # how an episode ends that its agent, or the process that played it, did not finish
+FAILED = (ERROR, TOO_SLOW, DIED)  # how an episode ends that its agent, or the process playing it, did not finish
 PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "warp-lang", "numpy")  # whose versions can change an episode
 
 # fields that hold more data
@@ -29,7 +29,7 @@ PLAIN = ("settings", "targets", "decisions", "links", "phase_seconds", "versions
 
 
 class DamagedResultError(ValueError):
-    """An error that says that a file holds no whole result of an episode."""
+    """Raised for a file that does not hold the whole result of an episode."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,8 @@ class DecisionRecord:
     note: str = ""  # the agent's own words
     held: str | None = None  # at the decision
     value: float = 0.0  # rescued by then, as a share of all
+    waited: int = 0  # frames that passed while the agent chose
+    fallback: bool = False  # whether it stands in for an answer that could not be read
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ class Played:
 
 @dataclass(frozen=True)
 class EpisodeResult:
-    """All about one episode that is worth keeping; it is written with the scores of the episode under "score".
+    """Everything about one episode that is worth keeping; it is written with the scores of the episode under "score".
 
     `ended` is one of: what the task's goal says when it is achieved ("all rescued"); "failed", when it never can be;
     "stopped", by the agent; "time", when the last frame has passed; "simulation error"; "too many decisions", for an

@@ -18,7 +18,7 @@ from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import STOP, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 
-FRAME_REACHED = "frame reached"  # how a run ends that was asked to end at a frame
+FRAME_REACHED = "frame reached"  # how a run ends if it was asked to end at a frame
 RUNNING = "running"  # of an episode that has not ended
 
 
@@ -40,7 +40,7 @@ class Runner:
 
     @contextmanager
     def _timed(self, phase: str) -> Iterator[None]:
-        """Count the wall time of the block as that of `phase`, but looks for themselves."""
+        """Count the wall time of the block as that of `phase`, except for looks, which count separately."""
         start, looked = time.perf_counter(), self.env.look_seconds
         yield
         looks = self.env.look_seconds - looked
@@ -82,6 +82,7 @@ class Runner:
             with self._timed("agent"), staying("act of the agent"):
                 action = self.agent.act(decision)
             note, value = note_of(self.agent), Tally.of(fates(self.env)).value
+            waited = self.env.frame - decision.frame
             for watcher in self.watchers:
                 watcher.decided(decision, action, note)
             with self._timed("physics"):
@@ -89,7 +90,7 @@ class Runner:
             result: Result = info["result"]
             for watcher in self.watchers:
                 watcher.ended(result)
-            self._records.append(self._record(decision, action, result, note, value))
+            self._records.append(self._record(decision, action, result, note, value, waited))
             if terminated or truncated:
                 extended(self._links, self.env)
                 return self._reason(action, info)
@@ -102,7 +103,9 @@ class Runner:
         for watcher in self.watchers:
             watcher.frame(action)
 
-    def _record(self, decision: Decision, action: Action, result: Result, note: str, value: float) -> DecisionRecord:
+    def _record(
+        self, decision: Decision, action: Action, result: Result, note: str, value: float, waited: int
+    ) -> DecisionRecord:
         return DecisionRecord(
             frame=decision.frame,
             verb=action.verb,
@@ -113,6 +116,8 @@ class Runner:
             note=note,
             held=decision.held,
             value=value,
+            waited=waited,
+            fallback=bool(self.agent.fallback),
         )
 
     def _reason(self, action: Action, info: dict[str, Any]) -> str:

@@ -1,7 +1,7 @@
 """Processes that play one episode after another: one that dies or hangs is replaced, and costs its episode alone.
 
 A worker tells before each decision what the episode has come to, and after it that the agent has answered. So it is
-known who keeps it waiting, and what to score if nothing more comes.
+known what takes so long, and what to score if nothing more comes.
 """
 
 from __future__ import annotations
@@ -30,11 +30,15 @@ GOODBYE = 10.0  # time that a process has to end by itself [s] [ours]
 
 @dataclass(frozen=True)
 class Job:
-    """An episode to play: by its agent, or again with the `actions` (verb, target) of an earlier run."""
+    """An episode to play: by its agent, or again with the `actions` (verb, target) of an earlier run.
+
+    `waits`: the frames that passed before each of these.
+    """
 
     options: EpisodeOptions
     decision_seconds: float  # wall time that the agent has for a decision
     actions: tuple[tuple[str, str | None], ...] | None = None
+    waits: tuple[int, ...] = ()
 
 
 class Outcome(NamedTuple):
@@ -93,7 +97,7 @@ class Worker:
 
     @property
     def patience(self) -> float:
-        """Time until the process is taken for one that hangs [s]."""
+        """Time until the process counts as hanging [s]."""
         return max(0.0, self._deadline - time.monotonic())
 
     def outcome(self) -> Outcome | None:
@@ -168,7 +172,7 @@ class Crew:
 
 @contextlib.contextmanager
 def _one_thread() -> Iterator[None]:
-    """Let processes that are started meanwhile compute with one thread each: several get into each other's way."""
+    """Let processes that are started meanwhile compute with one thread each: several would get in each other's way."""
     before = os.environ.get("OMP_NUM_THREADS")
     os.environ["OMP_NUM_THREADS"] = "1"
     try:

@@ -12,7 +12,7 @@ from urllib.parse import quote
 from markupsafe import Markup
 
 from hazard_ms.evaluation import page as episode_page
-from hazard_ms.evaluation.comparison import charts, curves
+from hazard_ms.evaluation.comparison import charts, curves, losses
 from hazard_ms.evaluation.comparison.folders import Group, Kept
 from hazard_ms.evaluation.comparison.summary import interval
 from hazard_ms.machine.files import make_folder, write
@@ -79,6 +79,7 @@ def _shown(group: Group, summary: dict[str, Any], pages: Mapping[Path, Path], ou
         agent: [(f"{p}: {s:.1f} s an episode", s, shades[p], 1.0) for p, s in row["seconds_per_episode"].items()]
         for agent, row in rows.items()
     }
+    lost = {agent: row["lost"] for agent, row in rows.items() if "lost" in row}
     return summary | {
         "env_id": group.results[0].env_id,
         "with_regret": any("regret" in row for row in rows.values()),
@@ -90,6 +91,10 @@ def _shown(group: Group, summary: dict[str, Any], pages: Mapping[Path, Path], ou
         "skill_chart": Markup(charts.bars({a: _pieces(row, colours) for a, row in rows.items()}, "frames")),
         "phases": shades,
         "wall_chart": Markup(charts.bars(seconds, "s")),
+        "lost": lost,
+        "loss_chart": Markup(charts.bars({a: losses.pieces(row) for a, row in lost.items()}, "%")) if lost else "",
+        "loss_parts": {part: (losses.named(part), fill) for part, fill in losses.COLOURS.items()},
+        "loss_links": {file.name: _link(where, output) for file, where in pages.items()},
         "rows": [_row(group, seed, scene, pages, output) for seed, scene in group.episodes],
     }
 

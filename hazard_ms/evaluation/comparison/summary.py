@@ -10,6 +10,8 @@ from typing import Any
 
 from hazard_ms.evaluation.comparison.curves import skill_frames
 from hazard_ms.evaluation.comparison.folders import Group
+from hazard_ms.evaluation.comparison.losses import losses
+from hazard_ms.evaluation.comparison.losses import table as loss_table
 from hazard_ms.evaluation.comparison.pairing import difference, regret
 from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.result import EpisodeResult
@@ -44,6 +46,9 @@ def _agent(group: Group, agent: str) -> dict[str, Any]:
     made: dict[str, Any] = {name: dataclasses.asdict(score) for name, score in scores(tallies).items()}
     if ORACLE in group.agents:
         made["regret"] = dataclasses.asdict(regret(group.values(agent), group.values(ORACLE)))
+    lost = losses(group.agents[agent].values())
+    if lost is not None:
+        made["lost"] = lost
     skills = {
         verb: {outcome: {"tries": tries, "frames": frames} for outcome, (tries, frames) in outcomes.items()}
         for verb, outcomes in skill_frames(results).items()
@@ -79,7 +84,7 @@ def table(group: dict[str, Any]) -> str:
     for agent, row in group["agents"].items():
         shown = " ".join(f"{interval(row[name], 1 if name == 'step' else 100):>22s}" for name in names)
         lines.append(f"{agent:16s} {shown}  {row['episodes']:8d}")
-    return "\n".join(lines)
+    return "\n".join([*lines, *loss_table(group["agents"])])
 
 
 def interval(score: dict[str, float | None], factor: float = 100.0, sign: str = "") -> str:

@@ -1,0 +1,218 @@
+"""The value that a rescue can still reach, and what a choice leaves of it, with the true state and the true future.
+
+It judges decisions afterwards; no agent but a privileged one may ask it. All values count what is rescued already, too.
+
+    best     by the best plan from a state on, with walks and skills that take as long as they usually do
+    choice   by the best course that begins with an action: either it is gone through with, so that the best plan counts
+             whose first rescue, or whose first cart, it is for; or it is planned anew where the action usually ends
+
+How long skills take is uncertain. What a state is worth is therefore the mean over PACES, at each of which all that is
+left to do takes so much less or more time: else a single frame could decide over a target, and who wasted the hundred
+frames before it would not be blamed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from hazard_ms.planning.committed import committed
+from hazard_ms.planning.orienteering import solve
+from hazard_ms.planning.problem import Problem
+from hazard_ms.sketch import skill_times
+from hazard_ms.sketch.rescue_problem import Outset, RescueScene
+from hazard_ms.sketch.skill_times import SkillTimes
+from hazard_ms.sketch.timeline import Timeline
+from hazard_ms.sketch.ways import WALK
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action
+from hazard_ms.skills.motor.walking import ARRIVED, MIDPOINT, WALK_FRAMES
+from hazard_ms.spec.catalogue import DAMAGED_SHARE
+
+MOST_REACH = 2.5  # distance from the base up to which a pick-up may work [m]
+CART_REACH = 1.5  # distance from the base up to which a thing can be let go over a cart [m] [ours]
+PACES = (0.85, 0.95, 1.05, 1.15)  # the time that is left, over that which it feels like [ours]
+EASE = 5  # frames by which a course that is planned anew may be late: walks of two pieces count starts twice [ours]
+ROUNDING = 1e-6  # of values
+MOST_LABELS = 4_000  # of an exact search [ours]
+BEAM = 500  # labels of a layer beyond that [ours]
+
+Place = tuple[float, float]  # x, y [m]
+Reach = tuple[float, ...]  # the value that is reached at each of PACES
+
+
+@dataclass(frozen=True)
+class State:
+    """The state of a rescue: where the robot is, what it holds, and what is left to rescue."""
+
+    place: Place  # of the robot [m]
+    heading: float | None  # of the robot [rad]; None: it faces its next way
+    frame: int
+    holding: int | None  # index along B of the target in the hand
+    left: tuple[int, ...]  # targets that are not safe, indices along B, the one in the hand among them
+    saved: float  # value rescued so far
+
+
+@dataclass(frozen=True)
+class Notion:
+    """The targets as somebody takes them to be: what is not in `values` is not known to exist."""
+
+    values: Mapping[int, float]  # by index along B
+    places: Mapping[int, Place] = field(default_factory=dict)  # of those that are not where they really are [m]
+
+
+class Courses:
+    """The courses that a rescue can take in one scene, whose future is known."""
+
+    def __init__(self, scene: RescueScene, carts: tuple[int, ...], times: SkillTimes) -> None:
+        """`carts`: indices along B of those of `scene`, none where the safe place is the bag; `times` of skills."""
+        self._scene, self._carts, self._times = scene, carts, times
+        self._explore, self._lost = (times.typical(s)[1] for s in (skill_times.EXPLORE, skill_times.NO_PATH))
+
+    def limits(self, frame: int) -> Reach:
+        """The last frame of the episode at each of PACES, as it looks at `frame`."""
+        return tuple(frame + pace * (self._scene.limit - frame) for pace in PACES)
+
+    def best(self, state: State, notion: Notion, future: Timeline, limits: Reach) -> Reach:
+        """The value that the best plan reaches from `state` by each of `limits`, with targets as `notion` says."""
+        problem = self._problem(state, notion, future)[0]
+        return tuple(state.saved + _solved(problem, limit) for limit in limits)
+
+    def choice(
+        self, state: State, action: Action, notion: Notion, future: Timeline, limits: Reach, best: Reach
+    ) -> Reach:
+        """The value that the best course that begins with `action` reaches by each of `limits`; `best`: any course."""
+        if action.verb == STOP:
+            return (state.saved,) * len(limits)
+        through = self._through(state, action, notion, future, limits)
+        if all(a >= b - ROUNDING for a, b in zip(through, best, strict=True)):
+            return best
+        after = self.after(state, action, notion, future)
+        after = replace(after, frame=max(state.frame, after.frame - EASE))
+        anew = [
+            value if after.frame <= limit else state.saved
+            for value, limit in zip(self.best(after, notion, future, limits), limits, strict=True)
+        ]
+        return tuple(min(b, max(a, c)) for a, b, c in zip(through, best, anew, strict=True))
+
+    def begins_with(self, state: State, notion: Notion, future: Timeline, limit: float) -> str:
+        """The first rescue of the best plan by `limit` in words; empty where it has none."""
+        problem, targets = self._problem(state, notion, future)
+        plan = solve(replace(problem, limit=limit), MOST_LABELS, BEAM) if problem else None
+        if problem is None or plan is None or not plan.rescues:
+            return ""
+        first = plan.rescues[0]
+        if first.target == problem.holding:
+            return "to put away what it held"
+        return f"to rescue {future.names[targets[first.target]]}"
+
+    def _through(self, state: State, action: Action, notion: Notion, future: Timeline, limits: Reach) -> Reach:
+        """The value of the best plan whose first rescue `action` begins, by each of `limits`; 0 if it begins none."""
+        problem, targets = self._problem(state, notion, future)
+        index = future.names.index(action.target) if action.target in future.names else -1
+        none = (0.0,) * len(limits)
+        if problem is None or action.verb == EXPLORE:
+            return none
+        if state.holding is None:
+            if index not in targets or action.verb == DROP:
+                return none
+            goal, cart = targets.index(index), None
+        else:
+            if action.verb == PICK_UP or (action.verb != DROP and index not in self._carts):
+                return none
+            goal, cart = targets.index(state.holding), self._carts.index(index) if index in self._carts else None
+            if self._carts and cart is None:  # on the ground
+                return none
+        rests = (replace(problem, limit=limit) for limit in limits)
+        return tuple(state.saved + committed(rest, goal, cart, MOST_LABELS, BEAM) for rest in rests)
+
+    def after(self, state: State, action: Action, notion: Notion, future: Timeline) -> State:
+        """The state in which `action` usually leaves a rescue; what cannot work takes no time."""
+        if action.verb == EXPLORE:
+            return self._later(state, self._explore)
+        index = future.names.index(action.target) if action.target in future.names else -1
+        if action.verb in (WALK_TO, WALK_ONE_STEP):
+            return self._walked(state, index, action.verb == WALK_ONE_STEP, future)
+        if action.verb == PICK_UP:
+            away = self._away(state, index, future)
+            if state.holding is not None or index not in state.left or away > MOST_REACH:
+                return state
+            nearer = WALK * max(0.0, away - ARRIVED - self._scene.edges[index])
+            return replace(self._later(state, self._pick(index, state.frame, future) + nearer), holding=index)
+        if action.verb != DROP or state.holding is None:
+            return state
+        if not self._carts:
+            return _stowed(self._later(state, self._scene.bag), notion, future)
+        if index not in self._carts:
+            return replace(state, holding=None)
+        if self._away(state, index, future) > CART_REACH:
+            return state
+        return _stowed(self._later(state, self._scene.cart), notion, future)
+
+    def _problem(self, state: State, notion: Notion, future: Timeline) -> tuple[Problem | None, list[int]]:
+        """The rest of the rescue, None where nothing can be rescued any more, and its targets, indices along B."""
+        targets = [t for t in state.left if t in notion.values or t == state.holding]
+        if not targets:
+            return None, targets
+        outset = Outset(state.place, state.heading, state.frame, state.holding)
+        values = np.array([notion.values.get(t, 0.0) for t in targets])
+        told, carts = _moved(future, notion.places, outset.frame), np.array(self._carts, np.int64)
+        delays = np.array([self._pick(t, state.frame, future) - self._scene.pick for t in targets])
+        return self._scene.problem(told, np.array(targets), values, carts, outset, delays), targets
+
+    def _pick(self, index: int, frame: int, future: Timeline) -> float:
+        """Frames that it usually takes to pick up the thing `index`, at its height at a frame."""
+        return self._times.usual(skill_times.PICK_UP, float(future.position_at(frame)[index, 2]))
+
+    def _walked(self, state: State, index: int, one_step: bool, future: Timeline) -> State:
+        """The state after a walk to the thing `index`, or the first part of a long one."""
+        goal, edge = future.position_at(state.frame)[index, :2].astype(np.float64), self._scene.edges[index]
+        place, ways = np.array(state.place), self._scene.ways
+        route = ways.route(place, goal, edge)
+        if not np.isfinite(route.metres):
+            return self._later(state, self._lost)
+        whole, metres = float(route.frames(state.heading)), float(route.metres)
+        most = min(whole, WALK_FRAMES, max(whole - (metres - MIDPOINT) * WALK, 0.0) if one_step else whole)
+        gone = max(0.0, metres - (whole - most) / WALK)
+        x, y = ways.along(place, goal, metres + 1.0 if most == whole else gone, edge)
+        heading = float(route.last) if most == whole else None
+        return replace(self._later(state, most), place=(float(x), float(y)), heading=heading)
+
+    def _later(self, state: State, frames: float) -> State:
+        return replace(state, frame=state.frame + round(frames))
+
+    def _away(self, state: State, index: int, future: Timeline) -> float:
+        """Horizontal distance from the robot to the thing `index` [m]."""
+        return float(np.hypot(*(future.position_at(state.frame)[index, :2] - state.place)))
+
+
+def mean(reach: Reach) -> float:
+    """The mean of values over PACES."""
+    return sum(reach) / len(reach)
+
+
+def _solved(problem: Problem | None, limit: float) -> float:
+    """The value of the best plan of what is left to do, if `limit` is the last frame."""
+    if problem is None or problem.frame >= limit:
+        return 0.0
+    return solve(replace(problem, limit=limit), MOST_LABELS, BEAM).value
+
+
+def _stowed(state: State, notion: Notion, future: Timeline) -> State:
+    """The state in which what was in the hand is safe."""
+    held = state.holding
+    assert held is not None
+    left = tuple(t for t in state.left if t != held)
+    share = 1.0 if state.frame <= future.whole_until()[held] else DAMAGED_SHARE
+    return replace(state, holding=None, left=left, saved=state.saved + share * notion.values.get(held, 0.0))
+
+
+def _moved(future: Timeline, places: Mapping[int, Place], frame: int) -> Timeline:
+    """The same future with some things elsewhere from `frame` on: they move as they would from where they are."""
+    if not places:
+        return future
+    start, now = future.start.copy(), future.position_at(frame)
+    for index, place in places.items():
+        start[index, :2] += np.asarray(place, np.float32) - now[index, :2]
+    return replace(future, start=start)

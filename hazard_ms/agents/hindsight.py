@@ -1,0 +1,75 @@
+"""The judge of a running episode, who sees what is hidden: the true state, and what will happen."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.agents.courses import Courses, Notion, Reach, State
+from hazard_ms.agents.truth import Future
+from hazard_ms.sketch import skill_times
+from hazard_ms.sketch.rescue_problem import OTHERS, RescueScene
+from hazard_ms.sketch.skill_times import SkillTimes
+from hazard_ms.skills.decision import Action, Result
+from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.failures import BLOCKED, NO_PATH, UNREACHABLE
+from hazard_ms.spec.catalogue import DAMAGED_SHARE
+
+FAILED = {UNREACHABLE: 2, NO_PATH: 1, BLOCKED: 1}  # how much each failure tells of a target's being out of reach [ours]
+OUT_OF_REACH = 2  # of that in a row, from which a target counts as out of reach [ours]
+
+
+class Hindsight:
+    """The judge of a running episode: its true state and future, and all courses from there."""
+
+    def __init__(self, env: SkillEnv, times: SkillTimes | None = None) -> None:
+        """Take an environment in which an episode has just begun; `times` of skills, as measured if None."""
+        base, brief = env.base, env.brief()
+        self._env, self._future = env, Future(env)
+        scene = RescueScene(base.specs[0], brief.robot, base.agent.build.radius, brief.max_frames)
+        carts = tuple(base.world.index(0, name) for name in brief.containers)
+        tables = skill_times.read(skill_times.SHIPPED)
+        self._courses = Courses(scene, carts, times or tables.get(brief.robot, tables[OTHERS]))
+        self.targets = {target.index: target for target in brief.targets}
+        self.truth = Notion({target.index: target.value for target in brief.targets})
+        self._failures: Counter[int] = Counter()
+
+    def state(self) -> State:
+        """The true state now. Targets that skills failed to get count as out of reach."""
+        base = self._env.base
+        world, rescue = base.world, base.episode.rescue
+        safe, gone, held = world.safe[0].cpu(), (world.away & ~world.safe)[0].cpu(), world.held[0].cpu()
+        damaged = rescue.damaged[0].cpu()
+        saved = sum(t.value * (DAMAGED_SHARE if damaged[b] else 1.0) for b, t in self.targets.items() if safe[b])
+        left = [b for b in self.targets if held[b] or not (safe[b] or gone[b] or self._failures[b] >= OUT_OF_REACH)]
+        holding = next((b for b in left if held[b]), None)
+        x, y, heading = base.agent.base()
+        return State((float(x), float(y)), float(heading), self._env.frame, holding, tuple(left), float(saved))
+
+    def note(self, action: Action, result: Result) -> None:
+        """Count a failure of `action` that can be due to where its target is; what works ends the count."""
+        for index, target in self.targets.items():
+            if target.name == action.target and (result.ok or result.reason in FAILED):
+                self._failures[index] = 0 if result.ok else self._failures[index] + FAILED[result.reason]
+
+    def place(self, index: int) -> NDArray[np.float32]:
+        """The true place of the thing `index`, x and y [m], [2]."""
+        return self._env.base.world.position[0, index, :2].cpu().numpy()
+
+    def limits(self, state: State) -> Reach:
+        """The last frame of the episode at each of PACES, as it looks from `state`."""
+        return self._courses.limits(state.frame)
+
+    def best(self, state: State, limits: Reach, notion: Notion | None = None) -> Reach:
+        """The value that the best plan reaches from `state` by each of `limits`; `notion`: by default the truth."""
+        return self._courses.best(state, notion or self.truth, self._future.timeline(), limits)
+
+    def choice(self, state: State, action: Action, limits: Reach, best: Reach, notion: Notion | None = None) -> Reach:
+        """The value that the best course that begins with `action` reaches by each of `limits`; `best`: any course."""
+        return self._courses.choice(state, action, notion or self.truth, self._future.timeline(), limits, best)
+
+    def begins_with(self, state: State, limit: float) -> str:
+        """The first rescue of the best plan from `state` by `limit` in words; empty where it has none."""
+        return self._courses.begins_with(state, self.truth, self._future.timeline(), limit)

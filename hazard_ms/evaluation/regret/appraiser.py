@@ -1,0 +1,182 @@
+"""A watcher that judges every decision of an episode, while it is played or simulated again, by what is hidden."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+from hazard_ms.agents.courses import Notion, State, mean
+from hazard_ms.agents.hindsight import Hindsight
+from hazard_ms.evaluation.metrics import Tally
+from hazard_ms.evaluation.regret.causes import LATENCY, LEAST, MEMORY, PERCEPTION, Appraisal, Without
+from hazard_ms.evaluation.result import Played
+from hazard_ms.evaluation.runner import fates
+from hazard_ms.evaluation.watchers import Watcher
+from hazard_ms.skills.decision import Action, Decision, Result
+from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.spec.catalogue import CATEGORIES
+
+CLEAR = 30  # pixels from which a target in view must be noticed
+OFF = 0.5  # from this distance to its true place on, a target's place in the map is wrong [m]
+NAMED = 3  # targets that evidence names [ours]
+
+
+class Known(NamedTuple):
+    """A target as the map of a decision holds it."""
+
+    category: str
+    place: tuple[float, float]  # x, y [m]
+
+
+class Appraiser(Watcher):
+    """Judges the first `count` decisions of an episode, all if None; it changes nothing.
+
+    appraisals   one for each decision
+    bests        value that the best plan reached when the agent was asked, each time, as a share of all
+    value        share that was rescued in the end
+    """
+
+    def __init__(self, count: int | None = None, mind: Callable[[SkillEnv], Hindsight] = Hindsight) -> None:
+        """`count`: see above; `mind` makes the judge."""
+        self._count, self._made = count, mind
+        self.appraisals: list[Appraisal] = []
+        self.bests: list[float] = []
+        self.value = 0.0
+
+    def begin(self, env: SkillEnv, decision: Decision) -> None:
+        """Take the environment, and notice from now on what each look shows."""
+        self._env, self._mind = env, self._made(env)
+        self._total = sum(self._mind.truth.values.values())
+        self._clear: dict[int, str] = {}  # targets that were clearly in view, and how
+        self._held_once: set[int] = set()  # targets that the map of a decision once held
+        look = env.stage.look
+
+        def looked() -> None:
+            look()
+            self._notice()
+
+        env.stage.look = looked
+
+    def _notice(self) -> None:
+        for index, seen in self._env.seen.objects.items():
+            if index in self._mind.targets and index not in self._clear and seen.pixels >= CLEAR:
+                self._clear[index] = f"was in view with {seen.pixels} pixels at frame {seen.frame}"
+
+    def asked(self, so_far: Played) -> None:
+        """Work out what the best plan reaches from here."""
+        self._notice()
+        self._state = self._mind.state()
+        self._best = mean(self._mind.best(self._state, self._mind.limits(self._state)))
+        self.bests.append(self._best / self._total)
+
+    def decided(self, decision: Decision, action: Action, note: str) -> None:
+        """Judge the choice; `note` is not looked at."""
+        self._action = action
+        if len(self.appraisals) == self._count:
+            return
+        now = self._state if self._env.frame == decision.frame else self._mind.state()
+        judged = _Judged(self._mind, self._state, now, action, self._total)
+        known = self._known(decision)
+        regret = judged.regret(self._mind.truth)
+        seen, without, instead = regret, {}, ""
+        if regret > LEAST:
+            seen = min(regret, judged.regret(judged.only({*known, *self._clear, *self._held_once})))
+        if seen > LEAST:
+            without, instead = self._without(judged, known), judged.instead()
+        self._held_once |= set(known)
+        self.appraisals.append(
+            Appraisal(
+                decision.frame, action.verb, action.target, self._best / self._total, regret, seen, without, instead
+            )
+        )
+
+    def _known(self, decision: Decision) -> dict[int, Known]:
+        """The targets that the agent knew of."""
+        objects = decision.map.objects
+        found = {t.index: (t, objects[t.index].position) for t in decision.targets if t.index in objects}
+        return {index: Known(t.category, (float(place[0]), float(place[1]))) for index, (t, place) in found.items()}
+
+    def _without(self, judged: _Judged, known: dict[int, Known]) -> dict[str, Without]:
+        """What the choice would have lost without each thing that went wrong before it."""
+        left = [index for index in judged.seen.left if index != judged.seen.holding]
+        unknown = [b for b in left if b in self._clear and b not in known and b not in self._held_once]
+        missed = {b: f"{self._clear[b]} and is not in the map" for b in unknown}
+        for index, target in self._mind.targets.items():
+            if index in left and index in known and known[index].category != target.category:
+                missed[index] = f"counts as a {known[index].category}"
+        gone = [b for b in left if b in self._held_once and b not in known]
+        off = {b: known[b].place for b in left if b in known and self._error(b, known[b]) > OFF}
+        told = {b: float(CATEGORIES[known[b].category].value) for b in left if b in known}
+        if judged.seen.holding is not None:
+            told[judged.seen.holding] = self._mind.truth.values[judged.seen.holding]
+        made = {}
+        if missed:
+            kept = {b: self._mind.truth.values[b] for b in gone}
+            words = [f"{self._name(b)} {how}" for b, how in missed.items()]
+            made[PERCEPTION] = Without(judged.regret(Notion(told | kept)), _list(words))
+        if gone or off:
+            words = [f"{self._name(b)} is no longer in the map" for b in gone]
+            words += [f"{self._name(b)} is {self._error(b, known[b]):.1f} m from where the map has it" for b in off]
+            made[MEMORY] = Without(judged.regret(Notion(told, off)), _list(words))
+        if judged.waited:
+            made[LATENCY] = Without(judged.at_once(), f"the agent took {judged.waited} frames to choose")
+        return made
+
+    def _name(self, index: int) -> str:
+        return self._mind.targets[index].name
+
+    def _error(self, index: int, known: Known) -> float:
+        """Distance between the place of a target in the map and the true one [m]."""
+        return math.dist(known.place, self._mind.place(index).tolist())
+
+    def ended(self, result: Result) -> None:
+        """Note how the action went."""
+        self._mind.note(self._action, result)
+
+    def finish(self, reason: str) -> None:
+        """Note what was rescued."""
+        self.value = Tally.of(fates(self._env)).value
+
+
+class _Judged:
+    """One choice between the state in which the agent saw the world, and that in which it had chosen."""
+
+    def __init__(self, mind: Hindsight, seen: State, now: State, action: Action, total: float) -> None:
+        self._mind, self.seen, self._now, self._action, self._total = mind, seen, now, action, total
+        self._limits = mind.limits(seen)
+
+    @property
+    def waited(self) -> int:
+        """Frames that the choice took."""
+        return self._now.frame - self.seen.frame
+
+    def only(self, targets: Iterable[int]) -> Notion:
+        """The truth about some targets, and nothing of the others."""
+        return Notion({index: self._mind.truth.values[index] for index in targets})
+
+    def regret(self, notion: Notion) -> float:
+        """How much less the choice reaches than the best plan when the agent was asked, as a share of all value."""
+        best = self._mind.best(self.seen, self._limits, notion)
+        later = self._mind.best(self._now, self._limits, notion) if self.waited else best
+        choice = self._mind.choice(self._now, self._action, self._limits, later, notion)
+        return max(0.0, mean(best) - mean(choice)) / self._total
+
+    def instead(self) -> str:
+        """What the best plan began with, at the pace at which the choice loses most, in words."""
+        best = self._mind.best(self.seen, self._limits)
+        choice = self._mind.choice(self._now, self._action, self._limits, best)
+        lost = [b - c for b, c in zip(best, choice, strict=True)]
+        return self._mind.begins_with(self.seen, self._limits[lost.index(max(lost))])
+
+    def at_once(self) -> float:
+        """The same if the agent had chosen at once."""
+        best = self._mind.best(self.seen, self._limits)
+        choice = self._mind.choice(self.seen, self._action, self._limits, best)
+        return (mean(best) - mean(choice)) / self._total
+
+
+def _list(words: list[str]) -> str:
+    """Sentences in one, the first few of them."""
+    more = [f"{len(words) - NAMED} more"] if len(words) > NAMED else []
+    return ", ".join([*words[:NAMED], *more])

@@ -1,0 +1,184 @@
+"""The cause of each decision's regret, by the definitions of docs/regret.md, and the record of a whole episode.
+
+All values are shares of that of all targets. They add up: what the best plan could have rescued from the start on, less
+what was rescued, is the sum of all parts of `EpisodeRegret.lost`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hazard_ms.machine.files import write
+
+FORMAT = 1  # goes up when a field changes its meaning
+SUFFIX = ".regret.json"  # of the file beside that of the result
+LEAST = 0.02  # share of the value of all targets, beyond which a decision's regret has a cause
+EXPLAINED = 0.5  # at most this share of a regret may be left without its cause [ours]
+
+PERCEPTION, MEMORY, BY_FORMAT, LATENCY, PLANNING = "perception", "memory", "format", "latency", "planning"
+UNSEEN, SMALL, EXECUTION, ENDED = "unseen", "small", "execution", "ended"
+CAUSES = (PERCEPTION, MEMORY, BY_FORMAT, LATENCY, PLANNING)  # of a decision, the first that fits
+PARTS = (*CAUSES, UNSEEN, SMALL, EXECUTION, ENDED)
+
+
+@dataclass(frozen=True)
+class Without:
+    """The regret that a choice would have without one thing that went wrong, and that thing in words."""
+
+    regret: float
+    what: str
+
+
+@dataclass(frozen=True)
+class Appraisal:
+    """One decision as it is seen afterwards."""
+
+    frame: int  # at which the agent saw what it decided on
+    verb: str
+    target: str | None
+    best: float  # value that the best plan reached from there
+    regret: float  # how much less the best course reaches that begins with the choice
+    seen: float  # the same among the targets that had been seen: no agent could have known of the others
+    without: Mapping[str, Without] = field(default_factory=dict)  # by cause
+    instead: str = ""  # what the best plan began with, in words
+
+
+@dataclass(frozen=True)
+class DecisionRegret:
+    """The regret of one decision, and what its skill lost afterwards.
+
+    `regret` is `best` less what the choice leaves; `unseen` is the part of it that no agent could have known of;
+    `execution` is negative where the skill went better than usual.
+    """
+
+    frame: int
+    verb: str
+    target: str | None
+    best: float
+    regret: float
+    unseen: float
+    execution: float
+    cause: str = ""  # one of CAUSES, or UNSEEN; empty where the regret is small
+    evidence: str = ""  # a sentence
+
+
+@dataclass(frozen=True)
+class EpisodeRegret:
+    """The regret of the decisions of one episode, and what was lost by each of PARTS."""
+
+    result: str  # SHA-256 of the result's file
+    agent: str
+    seed: int
+    scene: str
+    start: float  # value that the best plan reached from the start
+    value: float  # that was rescued
+    lost: dict[str, float]
+    decisions: tuple[DecisionRegret, ...]
+    format: int = FORMAT
+
+    def write(self, path: Path) -> None:
+        """Write it as JSON, whole or not at all. Raises ValueError where the file cannot be written."""
+        write(path, json.dumps(dataclasses.asdict(self), indent=1, allow_nan=False) + "\n")
+
+    @classmethod
+    def read(cls, path: Path) -> EpisodeRegret:
+        """The regret that `write` wrote. Raises ValueError that names the file for any other content."""
+        try:
+            row: dict[str, Any] = json.loads(path.read_bytes())
+            if row["format"] != FORMAT:
+                raise ValueError(f"format {row['format']!r:.100} instead of {FORMAT}")
+            decisions = tuple(DecisionRegret(**decision) for decision in row.pop("decisions"))
+            return cls(**row, decisions=decisions)
+        except (OSError, ValueError, LookupError, TypeError, RecursionError) as error:
+            raise ValueError(f"{path} must hold what `hazard-ms regret` wrote, got {error}; delete it") from None
+
+
+def place_of(result: Path) -> Path:
+    """The file for the regret of the episode whose result is in the file `result`."""
+    return result.with_suffix(SUFFIX)
+
+
+def digest(result: Path) -> str:
+    """The SHA-256 of a result's file. Raises ValueError where it cannot be read."""
+    try:
+        return hashlib.sha256(result.read_bytes()).hexdigest()
+    except OSError as error:
+        raise ValueError(f"{result} must hold the result of an episode, got {error}") from None
+
+
+def beside(result: Path) -> EpisodeRegret | None:
+    """The regret beside the result in a file, None where there is none, or one of another result.
+
+    Raises ValueError for a damaged file.
+    """
+    place = place_of(result)
+    found = EpisodeRegret.read(place) if place.exists() else None
+    return found if found is not None and found.result == digest(result) else None
+
+
+def cause_of(appraisal: Appraisal, fallback: bool) -> tuple[str, str]:
+    """The cause of a decision's regret, one of CAUSES or UNSEEN, and a sentence that says why; both empty if small.
+
+    `fallback`: whether the choice stood in for an answer that could not be read.
+    """
+    if appraisal.regret <= LEAST:
+        return "", ""
+    if appraisal.seen <= LEAST:
+        return UNSEEN, f"{_percent(appraisal.regret)} lies in targets that had not been seen yet"
+    for cause in (PERCEPTION, MEMORY):
+        found = _explained(appraisal, cause)
+        if found:
+            return cause, found
+    if fallback:
+        return BY_FORMAT, "the agent's answer could not be read, and something else was done in its place"
+    found = _explained(appraisal, LATENCY)
+    if found:
+        return LATENCY, found
+    return PLANNING, f"{appraisal.instead or 'another choice'} was worth {_percent(appraisal.seen)} more"
+
+
+def _explained(appraisal: Appraisal, cause: str) -> str:
+    """A sentence that says how `cause` explains the regret among the targets that were seen; empty if it does not."""
+    other = appraisal.without.get(cause)
+    if other is None or other.regret > EXPLAINED * appraisal.seen:
+        return ""
+    lost = f"{100.0 * other.regret:.1f} instead of {_percent(appraisal.seen)}"
+    return f"{other.what}; without that the choice loses {lost}"
+
+
+def decisions_of(
+    appraisals: Sequence[Appraisal], fallbacks: Sequence[bool], landings: Sequence[float]
+) -> tuple[DecisionRegret, ...]:
+    """The regrets of all decisions of an episode.
+
+    `landings`: the values that the best plan reached after each decision, or that was rescued if it was the last.
+    """
+    made = []
+    for one, fallback, landing in zip(appraisals, fallbacks, landings, strict=True):
+        cause, evidence = cause_of(one, fallback)
+        unseen = one.regret - min(one.seen, one.regret) if cause else 0.0
+        execution = one.best - one.regret - landing
+        row = DecisionRegret(one.frame, one.verb, one.target, one.best, one.regret, unseen, execution, cause, evidence)
+        made.append(row)
+    return tuple(made)
+
+
+def lost_by(decisions: Sequence[DecisionRegret], ended: float) -> dict[str, float]:
+    """The loss by each of PARTS; `ended`: what could still be rescued when an agent failed or died."""
+    lost = dict.fromkeys(PARTS, 0.0)
+    lost[ENDED] = ended
+    for row in decisions:
+        lost[UNSEEN] += row.unseen
+        lost[EXECUTION] += row.execution
+        lost[SMALL if row.cause in ("", UNSEEN) else row.cause] += row.regret - row.unseen
+    return lost
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.1f} % of the value"

@@ -1,0 +1,118 @@
+"""Plays the benchmark and writes its tables: `./run python results/make.py [TASK-ROBOT...]`; resumes where it stopped.
+
+Every agent plays the 25 scenes of each task's split `test`; raw results go to build/results, from where `hazard-ms
+report` and `hazard-ms regret` can read them. README.md and scores.csv beside this file are written anew from all that
+was played.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import platform
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.robots import robot_class
+from hazard_ms.sketch.bound import bound
+from hazard_ms.sketch.recording import recorded
+from hazard_ms.spec.checks import one_of
+from hazard_ms.tasks import task_of
+
+HERE = Path(__file__).parent
+RAW = HERE.parent / "build" / "results"
+MAIN = ("greedy", "mcts", "planner", "oracle")
+ALL = (*MAIN, "random", "rule", "oracle:known=true", "paper/greedy", "paper/rule", "paper/mcts")
+TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
+SWEEPS = {f"{task}-{robot}": ALL if robot == "fetch" else MAIN for robot in ("fetch", "g1") for task in TASKS}
+COMMAND = [sys.executable, "-m", "hazard_ms.cli"]
+
+
+def play(sweep: str) -> None:
+    """Play what is missing of a sweep."""
+    task, robot = sweep.split("-")
+    options = ["-e", TASKS[task], "-r", robot, "--split", "test", "--episodes", "25", "-o", str(RAW / sweep)]
+    subprocess.run([*COMMAND, "evaluate", *options, "--agents", *SWEEPS[sweep]], check=False)
+
+
+def bounds(env_id: str, robot: str, results: list[EpisodeResult]) -> dict[str, float]:
+    """The Value that no agent can exceed in each scene of `results`."""
+    task, build, made = task_of(env_id, "paper"), robot_class(robot).build, {}
+    for result in results:
+        if result.scene not in made:
+            spec = task.build(result.scene)
+            values = [t.value for t in result.targets]
+            timeline = recorded(task, "paper", spec, result.seed)
+            made[result.scene] = bound(timeline, spec, build, values, result.max_frames)
+    return made
+
+
+def table(sweep: str, rows: csv.DictWriter[str]) -> str:
+    """The section of a sweep in the README; its episodes are added to `rows`. Empty if nothing was played."""
+    task, robot = sweep.split("-")
+    results = [EpisodeResult.read(path) for path in sorted((RAW / sweep).glob("Hazard*.json"))]
+    if not results:
+        return ""
+    best = bounds(TASKS[task], robot, results)
+    for r in results:
+        rows.writerow(
+            {
+                "task": task,
+                "robot": robot,
+                "agent": r.agent,
+                "scene": r.scene,
+                "value": round(r.tally.value, 4),
+                "bound": round(best[r.scene], 4),
+                "frames": r.frames,
+                "ended": r.ended,
+                "rescued": sum(t.rescued for t in r.targets),
+                "targets": len(r.targets),
+            }
+        )
+        if r.tally.value > best[r.scene] + 1e-9:
+            raise AssertionError(f"Value must not exceed its bound {best[r.scene]}, got {r.tally.value} of {r.agent}")
+    told = subprocess.run([*COMMAND, "report", str(RAW / sweep), "--json"], check=True, capture_output=True, text=True)
+    lines = [f"\n## {task.capitalize()}, {robot}\n", "| agent | Value | Step | Damage | regret | rescued | episodes |"]
+    lines.append("|---|---|---|---|---|---|---|")
+    for group in json.loads(told.stdout)["groups"]:
+        for name, agent in sorted(group["agents"].items(), key=lambda item: -item[1]["value"]["mean"]):
+            cells = [_interval(agent["value"], 100), _interval(agent["step"], 1), _interval(agent["damage"], 100)]
+            regret = _interval(agent["regret"], 100) if agent["regret"] else "-"
+            saved = f"{agent['rescued']} of {agent['targets']}"
+            lines.append(f"| {name} | {' | '.join(cells)} | {regret} | {saved} | {agent['episodes']} |")
+        lines.append(f"\nNo agent can exceed {100 * sum(best.values()) / len(best):.1f} on average (the bound).\n")
+        for pair in group["differences"]:
+            if pair["agent"] == "planner" and pair["other"] != "random":
+                lines.append(f"- planner less {pair['other']}: {_interval(pair['value'], 100)}")
+    return "\n".join(lines) + "\n"
+
+
+def _interval(told: dict[str, Any], scale: float) -> str:
+    return f"{scale * told['mean']:.1f} [{scale * told['low']:.1f}, {scale * told['high']:.1f}]"
+
+
+def machine() -> str:
+    """The commit and the machine, for the README."""
+    commit = subprocess.run(["git", "-C", str(HERE), "describe", "--always", "--dirty"], capture_output=True, text=True)
+    version = subprocess.run([*COMMAND, "version"], capture_output=True, text=True, check=True).stdout.strip()
+    return f"commit {commit.stdout.strip()}; {version.splitlines()[0]}; {platform.machine()}"
+
+
+def main(wanted: list[str]) -> None:
+    """Play the sweeps called `wanted`, or all, and write the tables. Raises ValueError for unknown names."""
+    for sweep in [one_of(name, SWEEPS, "a sweep") for name in wanted] or SWEEPS:
+        play(sweep)
+    with (HERE / "scores.csv").open("w", newline="", encoding="utf-8") as file:
+        names = ("task", "robot", "agent", "scene", "value", "bound", "frames", "ended", "rescued", "targets")
+        rows = csv.DictWriter(file, names, lineterminator="\n")
+        rows.writeheader()
+        sections = [table(sweep, rows) for sweep in SWEEPS]
+    head = (HERE / "head.md").read_text(encoding="utf-8").replace("MACHINE", machine())
+    (HERE / "README.md").write_text(head + "".join(sections), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hazard_ms.agents.courses import Courses, Notion, Reach, State
 from hazard_ms.agents.truth import Future
 from hazard_ms.sketch import skill_times
-from hazard_ms.sketch.rescue_problem import OTHERS, RescueScene
+from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.skills.decision import Action, Result
 from hazard_ms.skills.executor import SkillEnv
@@ -30,8 +30,7 @@ class Hindsight:
         self._env, self._future = env, Future(env)
         scene = RescueScene(base.specs[0], brief.robot, base.agent.build.radius, brief.max_frames)
         carts = tuple(base.world.index(0, name) for name in brief.containers)
-        tables = skill_times.read(skill_times.SHIPPED)
-        self._courses = Courses(scene, carts, times or tables.get(brief.robot, tables[OTHERS]))
+        self._courses = Courses(scene, carts, times or skill_times.shipped(brief.robot))
         self.targets = {target.index: target for target in brief.targets}
         self.truth = Notion({target.index: target.value for target in brief.targets})
         self._failures: Counter[int] = Counter()

@@ -50,7 +50,7 @@ def fit(
                     attempts[str(result.settings.get("robot_uids", "fetch"))].append(made)
     tables = skill_times.read(skill_times.SHIPPED)
     for robot, found in attempts.items():
-        tables[robot] = fit_times.fit(robot, found, tables.get(robot, tables["fetch"]), source)
+        tables[robot] = fit_times.fit(robot, found, skill_times.shipped(robot), source)
     if output is not None:
         write(output, skill_times.as_json(tables))
     for robot, times in sorted(tables.items()):

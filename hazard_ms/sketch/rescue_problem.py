@@ -19,7 +19,6 @@ from hazard_ms.spec import SceneSpec
 DRIFT = 0.5  # targets that get no farther than this before the limit are taken to rest [m] [ours]
 TURNING = TURN * np.pi / 2 + SETTLE  # frames of a walk that are not spent on its length: a right angle [ours]
 DETOUR = 1.1  # length of ways in the open over that of straight lines [ours]
-OTHERS = "fetch"  # whose skill times stand in for those of a robot without any
 
 
 @dataclass(frozen=True)
@@ -39,8 +38,7 @@ class RescueScene:
         """`robot`: name of the robot, of `radius` [m]; `limit`: the last frame of an episode."""
         self.spec, self.limit = spec, limit
         self.ways = Ways(spec, radius=radius)
-        tables = skill_times.read(skill_times.SHIPPED)
-        times = tables.get(robot, tables[OTHERS])
+        times = skill_times.shipped(robot)
         self.pick, self.bag, self.cart = (
             times.typical(skill)[1] for skill in (skill_times.PICK_UP, skill_times.BAG, skill_times.CART)
         )

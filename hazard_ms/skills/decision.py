@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.target_table import Target
-from hazard_ms.skills.failures import UNFINISHED
 
 WALK_TO, WALK_ONE_STEP, PICK_UP, DROP, EXPLORE, STOP = "walk_to", "walk_one_step", "pick_up", "drop", "explore", "stop"
 VERBS = (WALK_TO, WALK_ONE_STEP, PICK_UP, DROP, EXPLORE, STOP)
@@ -43,17 +42,12 @@ class Action:
 class Result:
     """The outcome of an action: whether it was done, why not, and how many frames it took.
 
-    What is not done is `unfinished` or has failed.
+    An action that ran out of frames (`failures.UNFINISHED`) has not failed: whoever asks for it again goes on with it.
     """
 
     ok: bool
     reason: str = ""  # empty when ok
     frames: int = 0
-
-    @property
-    def unfinished(self) -> bool:
-        """Whether the action was still under way when its budget of frames, or the episode, ran out."""
-        return self.reason in UNFINISHED
 
 
 @dataclass(frozen=True)

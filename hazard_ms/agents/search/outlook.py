@@ -49,8 +49,7 @@ class SkillFrames:
 @lru_cache
 def skill_frames(robot: str) -> SkillFrames:
     """The measured skill frames of a robot; those of Fetch for a robot that was not measured."""
-    tables = skill_times.read(skill_times.SHIPPED)
-    times = tables.get(robot, tables["fetch"])
+    times = skill_times.shipped(robot)
     works, pick, failed = times.typical(skill_times.PICK_UP)
     rest = (times.typical(skill)[1] for skill in (skill_times.BAG, skill_times.CART, skill_times.EXPLORE))
     return SkillFrames(pick, failed, works, *rest)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hazard_ms.agents.base import PrivilegedAgent
+from hazard_ms.agents.search.outlook import SPREAD
 from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import PlannedRescue
@@ -115,6 +116,7 @@ class Oracle(PrivilegedAgent):
             Outset(decision.agent_position, decision.agent_heading, decision.frame, self._held(decision)),
             np.array([-LOYALTY * (t.name == self._goal) for t in targets]),
             FADING,
+            SPREAD,
         )
         plan = solve(problem, MOST_LABELS, BEAM)
         if not plan.rescues:

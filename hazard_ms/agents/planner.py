@@ -22,8 +22,9 @@ class Planner(Searcher):
     def __init__(
         self,
         loyalty: float = 0.1,
-        fading: float = 0.3,
+        fading: float = 0.1,
         search: float = 1.0,
+        caution: float = 1.0,
         reach: float = REACH,
         give_up: int = GIVE_UP,
     ) -> None:
@@ -31,10 +32,11 @@ class Planner(Searcher):
 
         `loyalty`: share of the way to where it is going already that is not counted; `fading`: share of its value that
         a target loses if it is saved at the last frame; `search`: share of what may be found by searching that counts;
+        `caution`: from 0, where plans count on usual durations, to 1, where they leave time for what goes wrong;
         `reach`: length of the way from which a target is picked up without walking up to it first [m]; `give_up`:
         failures after which a thing is given up. Raises ValueError for numbers out of range.
         """
-        super().__init__(Weights(loyalty, fading, search), reach, give_up)
+        super().__init__(Weights(loyalty, fading, search, caution), reach, give_up)
 
     def first(self, ahead: Outlook) -> First | None:
         """The first rescue of the best plan."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -26,7 +27,8 @@ class Problem:
     A target is met, picked up and put into the bag there, or carried to a cart where `travel` has carts. It counts
     its value if it is safe by `damaged_at`, else `damaged_share` of it. Frames may be fractions. With `fading` it
     counts less the later it is safe, since much can go wrong until then: of plans that save the same, the best is the
-    one that saves valuable targets first.
+    one that saves valuable targets first. With `spread` it counts by the chance that it is safe in time, where rescues
+    take longer or shorter than planned: of two plans, the one with time to spare may be better.
     """
 
     travel: Travel
@@ -39,6 +41,7 @@ class Problem:
     holding: int | None = None  # the target in the hand: it must be put away first
     damaged_share: float = 0.5  # of its value that a damaged target counts
     fading: float = 0.0  # share of its value by which a target counts less with every frame until it is safe
+    spread: float = 0.0  # standard deviation of the frames that a plan takes, over their root [sqrt(frames)]
 
     def __post_init__(self) -> None:
         """Raises ValueError for wrong lengths, for NaN, and for negative or infinite numbers that must not be."""
@@ -59,13 +62,22 @@ class Problem:
             raise ValueError(f"damaged_share must be from 0 to 1, got {self.damaged_share}")
         if not 0 <= self.fading * max(self.limit - self.frame, 1.0) <= 1:
             raise ValueError(f"fading must be from 0 to 1 over the frames up to the limit, got {self.fading}")
+        if not 0 <= self.spread < np.inf:
+            raise ValueError(f"spread must be a number from 0 on, got {self.spread}")
         if self.holding is not None and not 0 <= self.holding < targets:
             raise ValueError(f"holding must be None or a target from 0 to {targets - 1}, got {self.holding}")
 
     def worth(self, target: int, safe: float) -> float:
         """The value that the target counts if it is safe at a frame, the limit not considered."""
         share = 1.0 if safe <= self.damaged_at[target] else self.damaged_share
-        return self.values[target] * share * (1.0 - self.fading * (safe - self.frame))
+        return self.values[target] * share * (1.0 - self.fading * (safe - self.frame)) * self._in_time(safe)
+
+    def _in_time(self, safe: float) -> float:
+        """The chance that what is planned to be safe at the frame `safe` is so by the limit."""
+        if not self.spread:
+            return 1.0
+        deviation = self.spread * math.sqrt(max(safe - self.frame, 1.0))
+        return 0.5 * (1.0 + math.erf((self.limit - safe) / deviation / math.sqrt(2.0)))
 
     def stows(self, target: int, spot: Spot, frame: float) -> Iterator[Stow]:
         """All ways of putting away a target that is in the hand at a spot and frame."""

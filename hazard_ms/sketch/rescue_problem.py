@@ -53,11 +53,12 @@ class RescueScene:
         outset: Outset,
         delays: NDArray[np.float64] | None = None,
         fading: float = 0.0,
+        spread: float = 0.0,
     ) -> Problem:
         """The problem of rescuing `targets`, indices [T] along B, worth `values` [T], from an outset on.
 
         `carts`: indices of the carts, [C], none if the safe place is the bag; `delays`: frames that each pick-up takes
-        longer than usual, [T]; `fading` as for `Problem`. A thing in the hand must be among the targets.
+        longer than usual, [T]; `fading` and `spread` as for `Problem`. A thing in the hand must be among the targets.
         """
         extra = np.zeros(len(targets)) if delays is None else delays
         travel, saved = self._travel(future, targets, carts, outset)
@@ -70,6 +71,7 @@ class RescueScene:
             limit=float(max(self.limit, outset.frame)),
             frame=float(outset.frame),
             fading=fading,
+            spread=spread,
             holding=None if outset.holding is None else targets.tolist().index(outset.holding),
         )
 

@@ -107,6 +107,7 @@ def test_the_note_says_what_the_plan_is() -> None:
     [
         ("planner:loyalty=1.5", "loyalty must be a share from 0 to 1, got 1.5"),
         ("planner:fading=-0.1", "fading must be a share from 0 to 1, got -0.1"),
+        ("planner:caution=2", "caution must be a share from 0 to 1, got 2.0"),
         ("planner:search=nan", "search must be a share from 0 to 1, got nan"),
         ("planner:give_up=0", "give_up must be a whole number from 1 to 100, got 0"),
         ("mcts:simulations=0", "simulations must be a whole number from 1 to"),

@@ -1,4 +1,4 @@
-"""Targets that count less the later they are safe: by hand, and the exact search against every order."""
+"""Targets that count less the later they are safe, or the less likely in time: by hand, and against every order."""
 
 from __future__ import annotations
 
@@ -12,13 +12,15 @@ from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import StaticTravel
 
 
-def problem(fading: float, limit: float = 1000.0, frame: float = 0.0, seed: int = 0, count: int = 5) -> Problem:
+def problem(
+    fading: float = 0.0, limit: float = 1000.0, frame: float = 0.0, seed: int = 0, count: int = 5, spread: float = 0.0
+) -> Problem:
     """Targets anywhere within 4 m of the start, some of which are damaged early."""
     draw = np.random.default_rng(seed)
     places = np.vstack([draw.uniform(-4, 4, (count, 2)), np.zeros(2)])
     travel = StaticTravel(62 * np.hypot(*np.moveaxis(places[:, None] - places, -1, 0)))
     values, damaged = draw.choice([1.0, 5.0], count).tolist(), draw.uniform(100, 900, count).tolist()
-    return Problem(travel, values, damaged, [60.0] * count, [4.0] * count, limit, frame, fading=fading)
+    return Problem(travel, values, damaged, [60.0] * count, [4.0] * count, limit, frame, fading=fading, spread=spread)
 
 
 def test_a_target_fades_from_now_on() -> None:
@@ -29,10 +31,26 @@ def test_a_target_fades_from_now_on() -> None:
         assert faded.worth(target, 100) == whole.worth(target, 100)
 
 
+def test_a_target_counts_by_the_chance_that_it_is_safe_in_time() -> None:
+    """Standard deviation 4 * sqrt(900) = 120 frames at frame 900: the 100 frames to spare are 0.8333 of it."""
+    risky, sure = problem(spread=4.0), problem()
+    for safe, chance in ((900, 0.79767), (1000, 0.5), (400, 1.0), (0, 1.0)):
+        assert risky.worth(0, safe) == pytest.approx(chance * sure.worth(0, safe), abs=1e-4)
+
+
+def test_a_cheap_target_on_the_way_is_left_where_a_dear_one_would_hardly_be_safe_in_time() -> None:
+    """Value 1 on the way to value 5: with both, the dear one is safe at frame 480 of 500; without, at 360."""
+    travel = StaticTravel([[0.0, 100.0, 100.0], [100.0, 0.0, 300.0], [100.0, 300.0, 0.0]])
+    for spread, targets in ((0.0, [0, 1]), (8.0, [1])):
+        given = Problem(travel, [1.0, 5.0], [np.inf] * 2, [220.0, 60.0], [0.0, 0.0], 500.0, spread=spread)
+        assert [rescue.target for rescue in solve(given).rescues][: len(targets)] == targets
+
+
 @pytest.mark.parametrize("seed", range(8))
-def test_the_programme_finds_the_best_order_with_fading(seed: int) -> None:
+@pytest.mark.parametrize(("fading", "spread"), [(0.0006, 0.0), (0.0, 5.0), (0.0004, 3.0)])
+def test_the_best_order_is_found(seed: int, fading: float, spread: float) -> None:
     """All orders of all subsets of five targets are tried."""
-    given = problem(0.0006, limit=900.0, seed=seed)
+    given = problem(fading, limit=900.0, seed=seed, spread=spread)
     best = 0.0
     for order in permutations(range(5)):
         frame, spot, value = given.frame, given.travel.start, 0.0
@@ -59,3 +77,9 @@ def test_of_two_orders_that_save_the_same_the_dearer_target_comes_first() -> Non
 def test_fading_beyond_nothing_is_refused(fading: float) -> None:
     with pytest.raises(ValueError, match="fading must be from 0 to 1 over the frames up to the limit"):
         problem(fading)
+
+
+@pytest.mark.parametrize("spread", [-1.0, float("inf"), float("nan")])
+def test_a_spread_below_nothing_is_refused(spread: float) -> None:
+    with pytest.raises(ValueError, match="spread must be a number from 0 on"):
+        problem(spread=spread)

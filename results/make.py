@@ -1,5 +1,7 @@
 """Plays the benchmark and writes its tables: `./run python results/make.py [TASK-ROBOT...]`; resumes where it stopped.
 
+With `tables` alone it plays nothing.
+
 Every agent plays the 25 scenes of each task's split `test`; raw results go to build/results, from where `hazard-ms
 report` and `hazard-ms regret` can read them. README.md and scores.csv beside this file are written anew from all that
 was played.
@@ -103,7 +105,8 @@ def machine() -> str:
 
 def main(wanted: list[str]) -> None:
     """Play the sweeps called `wanted`, or all, and write the tables. Raises ValueError for unknown names."""
-    for sweep in [one_of(name, SWEEPS, "a sweep") for name in wanted] or SWEEPS:
+    chosen = [] if wanted == ["tables"] else [one_of(name, SWEEPS, "a sweep") for name in wanted] or [*SWEEPS]
+    for sweep in chosen:
         play(sweep)
     with (HERE / "scores.csv").open("w", newline="", encoding="utf-8") as file:
         names = ("task", "robot", "agent", "scene", "value", "bound", "frames", "ended", "rescued", "targets")

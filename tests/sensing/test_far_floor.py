@@ -39,6 +39,15 @@ def test_no_stripes_of_unseen_floor_stay_between_seen_ones() -> None:
     assert seen[wedge].all()
 
 
+def test_where_pixels_are_far_apart_what_lies_between_them_is_not_taken_for_seen() -> None:
+    """From 10.6 m on, rows of pixels are 0.7 m apart, more than a thing on the floor may be long."""
+    seen, x, y = explored()
+    away = np.hypot(x - EYE[0], y - EYE[1])
+    wedge = (np.abs(np.arctan2(y - EYE[1], x - EYE[0])) < np.deg2rad(20)) & (away > 10.6) & (away < 12.5)
+    assert wedge.sum() > 500
+    assert seen[wedge].mean() < 0.2
+
+
 def test_floor_behind_a_thing_stays_unseen() -> None:
     """A box 0.4 m high, 7 m ahead, hides the floor for 7.5 * 0.4 / (1.1 - 0.4) m = 4.3 m behind it."""
     seen, x, y = explored(LOW)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import platform
 import subprocess
 import sys
@@ -100,7 +101,7 @@ def machine() -> str:
     """The commit and the machine, for the README."""
     commit = subprocess.run(["git", "-C", str(HERE), "describe", "--always", "--dirty"], capture_output=True, text=True)
     version = subprocess.run([*COMMAND, "version"], capture_output=True, text=True, check=True).stdout.strip()
-    return f"commit {commit.stdout.strip()}; {version.splitlines()[0]}; {platform.machine()}"
+    return f"commit {commit.stdout.strip()}; {version.splitlines()[0]}; {platform.machine()}, {os.cpu_count()} cores"
 
 
 def main(wanted: list[str]) -> None:

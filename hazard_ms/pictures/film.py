@@ -19,6 +19,7 @@ from hazard_ms.simulation.viewpoint import corner_view, following_view
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import EXPLORE, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.failures import UNFINISHED
 
 RATE = 24.0  # pictures of a film per second
 NEWS_SHOTS = 45  # pictures for which news stay: nearly 2 s
@@ -55,8 +56,8 @@ class Film(Watcher):
         self._action, self._note = action, note
 
     def ended(self, result: Result) -> None:
-        """Show a failure for a while."""
-        if not result.ok:
+        """Show a failure for a while; what ran out of frames has not failed and goes on."""
+        if not result.ok and result.reason not in UNFINISHED:
             self._tell(f"{str(self._action).replace('_', ' ', 1)}: {result.reason.replace('_', ' ')}", good=False)
 
     def frame(self, action: LowLevel) -> None:

@@ -14,7 +14,9 @@ import pytest
 
 from hazard_ms.machine.files import drafts
 from hazard_ms.pictures.files import film, save
+from hazard_ms.pictures.film import Film
 from hazard_ms.pictures.video import Video
+from hazard_ms.skills.decision import WALK_TO, Action, Result
 
 SIZE = (160, 90)
 LIMIT = 20_000  # of a file that a child may write [bytes]; its film has more
@@ -156,3 +158,13 @@ def test_a_picture_is_written_as_what_its_name_says(ending: str, tmp_path: Path)
     save(path, np.dstack([shade(200)[..., 0], shade(100)[..., 0], shade(50)[..., 0]]))
     assert path.read_bytes()[:3] == (b"\x89PN" if ending == ".png" else b"\xff\xd8\xff")
     assert cv2.imread(str(path))[0, 0].tolist() == pytest.approx([50, 100, 200], abs=3), "blue, green, red"
+
+
+@pytest.mark.parametrize(("reason", "shown"), [("max_frames", ""), ("no_path", "walk to cup: no path")])
+def test_a_walk_that_goes_on_is_not_shown_as_a_failure(reason: str, shown: str, tmp_path: Path) -> None:
+    with drafts(tmp_path / "out.mp4") as (draft,):
+        made = Film(draft, "", 4)
+        made._action = Action(WALK_TO, "cup")
+        made.ended(Result(False, reason, 100))
+        assert made._news == shown
+        Path(draft.path).write_bytes(b"film")

@@ -3,12 +3,12 @@
 It judges decisions afterwards; no agent but a privileged one may ask it. All values count what is rescued already, too.
 
     best     by the best plan from a state on, with walks and skills that take as long as they usually do
-    choice   by the best course that begins with an action: either it is gone through with, so that the best plan counts
-             whose first rescue, or whose first cart, it is for; or it is planned anew where the action usually ends
+    choice   by the best course that begins with an action: either the action is seen through, and the best plan
+             counts that begins with its target or cart; or all is planned anew where the action usually ends
 
 How long skills take is uncertain. What a state is worth is therefore the mean over PACES, at each of which all that is
-left to do takes so much less or more time: else a single frame could decide over a target, and who wasted the hundred
-frames before it would not be blamed.
+left to do takes that much less or more time: otherwise a single frame could decide whether a target counts, and the
+hundred frames wasted before it would not be blamed.
 """
 
 from __future__ import annotations

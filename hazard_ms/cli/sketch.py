@@ -124,9 +124,9 @@ def speed(
 
 def _results(path: Path) -> Iterator[EpisodeResult]:
     """The results in a file or in a folder."""
-    from hazard_ms.evaluation.result import EpisodeResult
+    from hazard_ms.evaluation.result import EpisodeResult, result_files
 
-    for file in sorted(path.rglob("*.json")) if path.is_dir() else [path]:
+    for file in result_files([path]) if path.is_dir() else [path]:
         yield EpisodeResult.read(file)
 
 

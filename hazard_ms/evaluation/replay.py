@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from pathlib import Path
 
 from hazard_ms.evaluation.options import EpisodeOptions, ReplayOptions
-from hazard_ms.evaluation.regret.causes import SUFFIX
-from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.evaluation.result import EpisodeResult, result_files
 from hazard_ms.evaluation.spread import spread
 from hazard_ms.evaluation.workers import SILENCE, Job
 
@@ -19,7 +17,7 @@ def replay(options: ReplayOptions) -> int:
 
     Returns 1 if one of them is different, else 0. Raises ValueError for files that hold no result.
     """
-    files = [found for path in options.files for found in (_results(path) if path.is_dir() else [path])]
+    files = [found for path in options.files for found in (result_files([path]) if path.is_dir() else [path])]
     if not files:
         raise ValueError(f"files must hold at least one result of an episode, got {', '.join(map(str, options.files))}")
     records = [(path, EpisodeResult.read(path)) for path in files]
@@ -34,11 +32,6 @@ def replay(options: ReplayOptions) -> int:
             print(f"{path}: {verdict}{why}", flush=True)
     print(", ".join(f"{n} {verdict}" for verdict, n in found.most_common()))
     return int(found[DIFFERENT] > 0)
-
-
-def _results(folder: Path) -> list[Path]:
-    """The results in a folder, without what `hazard-ms regret` wrote beside them."""
-    return sorted(path for path in folder.glob("*.json") if not path.name.endswith(SUFFIX))
 
 
 def episode_of(record: EpisodeResult, load: tuple[str, ...] = ()) -> EpisodeOptions:

@@ -10,6 +10,7 @@ import importlib.metadata
 import json
 import os
 import platform
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_type_hints
@@ -47,6 +48,9 @@ class DecisionRecord:
     value: float = 0.0  # rescued by then, as a share of all
     waited: int = 0  # frames that passed while the agent chose
     fallback: bool = False  # whether it stands in for an answer that could not be read
+
+
+REGRET = ".regret.json"  # end of the names of the files that `hazard-ms regret` writes beside results
 
 
 @dataclass(frozen=True)
@@ -176,3 +180,15 @@ def machine() -> dict[str, Any]:
 
     gpu = torch.cuda.get_device_name(0) if torch.cuda.is_available() else None
     return {"system": f"{platform.system()} {platform.machine()}", "cores": os.cpu_count(), "gpu": gpu}
+
+
+def result_files(folders: Sequence[Path]) -> list[Path]:
+    """The files in `folders` and the folders in them that may hold results, in order; not those of their regrets.
+
+    Raises ValueError for a folder that does not exist.
+    """
+    for folder in folders:
+        if not folder.is_dir():
+            raise ValueError(f"folder must be one that `hazard-ms evaluate -o FOLDER` wrote, got {folder}")
+    found = {path.resolve() for folder in folders for path in folder.rglob("*.json")}
+    return sorted(path for path in found if not path.name.endswith(REGRET))

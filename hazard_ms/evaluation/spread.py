@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 
 from hazard_ms.evaluation.attempts import attempt
-from hazard_ms.evaluation.workers import Crew, Job, Outcome
+from hazard_ms.evaluation.workers import Crew, Job, Outcome, ending
 
 MOST_SHARDS = 100_000  # [ours]
 SCHEDULER = "SLURM_ARRAY_TASK_"  # how the variables of an array job begin
@@ -63,12 +63,8 @@ def spread(
         crew: _RaySeats | Crew = _RaySeats(workers, most, address)
     else:
         crew = Crew(min(workers or os.cpu_count() or 1, most), attempt)
-    try:
+    with ending(crew.end):
         yield crew.play(jobs)
-    except BaseException:  # Ctrl-C, or a disk that is full
-        crew.end(now=True)
-        raise
-    crew.end()
 
 
 def _serial(jobs: Sequence[Job]) -> Iterator[tuple[Job, Outcome]]:

@@ -171,6 +171,17 @@ class Crew:
 
 
 @contextlib.contextmanager
+def ending(end: Callable[[bool], None]) -> Iterator[None]:
+    """Call `end` of a crew after the block, and with True, at once, where an error, such as Ctrl-C, ends that."""
+    try:
+        yield
+    except BaseException:
+        end(True)
+        raise
+    end(False)
+
+
+@contextlib.contextmanager
 def _one_thread() -> Iterator[None]:
     """Let processes that are started meanwhile compute with one thread each: several would get in each other's way."""
     before = os.environ.get("OMP_NUM_THREADS")

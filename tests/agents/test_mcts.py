@@ -75,7 +75,7 @@ def test_it_is_a_function_of_its_seed_and_says_why() -> None:
             f"t{n}": (float(x), float(y)) for n, (x, y) in enumerate(np.random.default_rng(3).uniform(-2, 2, (5, 2)))
         }
         player = Mcts(simulations=30)
-        return play(player, Playground(places, dict.fromkeys(places, 1.0)), seed, most=3), player.note
+        return play(player, Playground(places, dict.fromkeys(places, 1.0)), seed, most=2), player.note
 
     assert episode(1) == episode(1)
-    assert "of the value in" in (episode(1)[1] or "") or "it is here" in (episode(1)[1] or "")
+    assert "of the value in" in (episode(1)[1] or "")

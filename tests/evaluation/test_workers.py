@@ -9,18 +9,16 @@ from pathlib import Path
 import pytest
 
 from hazard_ms.evaluation import workers
-from hazard_ms.evaluation.workers import Crew, Job, Outcome
+from hazard_ms.evaluation.workers import Crew, Job, Outcome, ending
 from tests.worlds.jobs import DIES, DIES_ONCE, HANGS_ASKED, HANGS_BETWEEN, HOUR, WELL, attempt, job
 
 
 def played(jobs: list[Job], count: int) -> dict[int, Outcome]:
     """Outcomes by seed; no process is left."""
     crew = Crew(count, attempt)
-    try:
+    with ending(crew.end):
         made = [(job.options.seed, outcome) for job, outcome in crew.play(jobs)]
         assert len(multiprocessing.active_children()) <= count
-    finally:
-        crew.end(now=True)  # else a process that hangs would keep this one from ending
     assert not multiprocessing.active_children()
     assert len(made) == len(dict(made)), "one outcome for each job"
     return dict(made)
@@ -57,12 +55,10 @@ def test_a_process_with_one_thread_serves_many_jobs_and_is_then_replaced(
     monkeypatch.setattr(workers, "LIFETIME", 2)
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
     crew, processes = Crew(1, attempt), []
-    try:
+    with ending(crew.end):
         for _, outcome in crew.play([job(5 * k, tmp_path) for k in range(3)]):
             processes.append(outcome.error)
             words = Path(f"/proc/{outcome.error}/environ").read_bytes().split(b"\0")
             assert b"OMP_NUM_THREADS=1" in words
-    finally:
-        crew.end()
     assert [processes.count(p) for p in dict.fromkeys(processes)] == [2, 1]
     assert os.environ["OMP_NUM_THREADS"] == "7", "this process keeps its own"

@@ -8,8 +8,7 @@ from pathlib import Path
 
 from hazard_ms.evaluation.comparison.pairing import Episode
 from hazard_ms.evaluation.metrics import value
-from hazard_ms.evaluation.regret.causes import SUFFIX
-from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult
+from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult, result_files
 
 
 @dataclass(frozen=True)
@@ -60,7 +59,7 @@ def groups(folders: Sequence[Path]) -> tuple[list[Group], list[str]]:
     """
     found: dict[str, dict[str, dict[Episode, Kept]]] = {}
     left_out: list[str] = []
-    for path in _files(folders):
+    for path in result_files(folders):
         try:
             kept = Kept(EpisodeResult.read(path), path)
         except DamagedResultError as damaged:
@@ -82,14 +81,6 @@ def _best_first(agents: dict[str, dict[Episode, Kept]]) -> dict[str, dict[Episod
     """Agents by their mean Value, and each one's episodes in order."""
     means = {agent: value([kept.result.tally for kept in made.values()]) or 0.0 for agent, made in agents.items()}
     return {agent: dict(sorted(agents[agent].items())) for agent in sorted(agents, key=lambda a: (-means[a], a))}
-
-
-def _files(folders: Sequence[Path]) -> list[Path]:
-    for folder in folders:
-        if not folder.is_dir():
-            raise ValueError(f"folder must be one that `hazard-ms evaluate -o FOLDER` wrote, got {folder}")
-    found = {path.resolve() for folder in folders for path in folder.rglob("*.json")}
-    return sorted(path for path in found if not path.name.endswith(SUFFIX))
 
 
 def _title(result: EpisodeResult) -> str:

@@ -14,10 +14,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from hazard_ms.evaluation.result import REGRET
 from hazard_ms.machine.files import write
 
 FORMAT = 1  # goes up when a field changes its meaning
-SUFFIX = ".regret.json"  # of the file beside that of the result
 LEAST = 0.02  # share of the value of all targets, beyond which a decision's regret has a cause
 EXPLAINED = 0.5  # at most this share of a regret may be left without its cause [ours]
 
@@ -101,7 +101,7 @@ class EpisodeRegret:
 
 def place_of(result: Path) -> Path:
     """The file for the regret of the episode whose result is in the file `result`."""
-    return result.with_suffix(SUFFIX)
+    return result.with_suffix(REGRET)
 
 
 def digest(result: Path) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,12 +11,12 @@ import torch
 
 from hazard_ms.evaluation.attempts import Recorded, Teller
 from hazard_ms.evaluation.regret.appraiser import Appraiser
-from hazard_ms.evaluation.regret.causes import SUFFIX, EpisodeRegret, beside, decisions_of, digest, lost_by, place_of
+from hazard_ms.evaluation.regret.causes import EpisodeRegret, beside, decisions_of, digest, lost_by, place_of
 from hazard_ms.evaluation.regret.table import table
 from hazard_ms.evaluation.replay import DIFFERENT, compare, job_of
-from hazard_ms.evaluation.result import FAILED, DamagedResultError, EpisodeResult
+from hazard_ms.evaluation.result import FAILED, DamagedResultError, EpisodeResult, result_files
 from hazard_ms.evaluation.runner import play
-from hazard_ms.evaluation.workers import Crew, Job, Outcome, Say
+from hazard_ms.evaluation.workers import Crew, Job, Outcome, Say, ending
 
 
 @dataclass(frozen=True)
@@ -32,19 +32,22 @@ def regret(folders: Sequence[Path], workers: int, load: tuple[str, ...]) -> list
     Files that are there and fit their result are kept. `workers`: processes, 0 for one for each core; `load`: modules
     that the episodes need. Raises ValueError for a folder without results, and for results that cannot be played again.
     """
-    found = {path: EpisodeResult.read(path) for path in _files(folders)}
+    found = _records(folders)
     if not found:
         raise ValueError(f"folders must hold results of `hazard-ms evaluate`, got none in {_listed(folders)}")
     made = {path: kept for path in found if (kept := _kept(path)) is not None}
     jobs = [_job(path, result, load) for path, result in found.items() if path not in made]
     failed = []
-    for job, outcome in _judged(jobs, workers):
-        if outcome.result is None:
-            failed.append(f"{job.path}: {outcome.error}")
-            print(f"no regret: {failed[-1]}", flush=True)
-            continue
-        made[job.path] = EpisodeRegret.read(place_of(job.path))
-        print(f"{len(made)}/{len(found)} {job.path.name}: {line(made[job.path])}", flush=True)
+    crew = Crew(min(workers or os.cpu_count() or 1, max(len(jobs), 1)), attempt)
+    with ending(crew.end):
+        for job, outcome in crew.play(jobs):
+            assert isinstance(job, RegretJob)
+            if outcome.result is None:
+                failed.append(f"{job.path}: {outcome.error}")
+                print(f"no regret: {failed[-1]}", flush=True)
+                continue
+            made[job.path] = EpisodeRegret.read(place_of(job.path))
+            print(f"{len(made)}/{len(found)} {job.path.name}: {line(made[job.path])}", flush=True)
     if made:
         print(table([made[path] for path in sorted(made)]))
     if failed:
@@ -96,41 +99,19 @@ def attempt(job: Job, say: Say) -> Outcome:
         return Outcome(None, f"{type(error).__name__}: {error}")
 
 
-def _judged(jobs: Sequence[RegretJob], workers: int) -> Iterator[tuple[RegretJob, Outcome]]:
-    """Each job with its outcome, as soon as it is there."""
-    if not jobs:
-        return
-    crew = Crew(min(workers or os.cpu_count() or 1, len(jobs)), attempt)
-    try:
-        for job, outcome in crew.play(jobs):
-            assert isinstance(job, RegretJob)
-            yield job, outcome
-    except BaseException:
-        crew.end(now=True)
-        raise
-    crew.end()
-
-
 def _job(path: Path, result: EpisodeResult, load: tuple[str, ...]) -> RegretJob:
     played = job_of(result, load)
     return RegretJob(played.options, played.decision_seconds, played.actions, played.waits, path)
 
 
-def _files(folders: Sequence[Path]) -> list[Path]:
-    """The results in `folders`, without what stands beside them; a file that holds none is named and left out."""
-    found = []
-    for folder in folders:
-        if not folder.is_dir():
-            raise ValueError(f"folder must be one that `hazard-ms evaluate -o FOLDER` wrote, got {folder}")
-        for path in sorted({path.resolve() for path in folder.rglob("*.json")}):
-            if path.name.endswith(SUFFIX) or path in found:
-                continue
-            try:
-                EpisodeResult.read(path)
-            except DamagedResultError as damaged:
-                print(f"left out: {damaged}")
-                continue
-            found.append(path)
+def _records(folders: Sequence[Path]) -> dict[Path, EpisodeResult]:
+    """The results in `folders` by their files; a file that holds none is named and left out."""
+    found = {}
+    for path in result_files(folders):
+        try:
+            found[path] = EpisodeResult.read(path)
+        except DamagedResultError as damaged:
+            print(f"left out: {damaged}")
     return found
 
 

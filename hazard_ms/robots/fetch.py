@@ -71,7 +71,7 @@ class HazardFetch(PlanarRobot, Fetch):
         np.array([1.2, -0.8, -0.4, 2.1, 0.0, 1.5, 0.0]),
         np.array([0.0, -1.2, 0.0, 2.2, 0.0, 1.6, 0.0]),
     )
-    stretched = (
+    outstretched = (
         np.array([0.0, -0.3, 0.0, 1.2, 0.0, 0.7, 0.0]),
         np.array([0.0, 0.6, 0.0, 0.6, 0.0, 0.6, 0.0]),
         np.array([0.0, 0.2, 1.57, 1.2, -1.57, 0.9, 0.0]),
@@ -151,8 +151,8 @@ class HazardFetch(PlanarRobot, Fetch):
         joints[self._arm] = arm
         return self.hand_kinematics(joints, self._hand, self._arm)
 
-    def arm_places(self, arm: NDArray[np.float64]) -> NDArray[np.float64]:
-        joints = self.all_joints()
+    def arm_places(self, arm: NDArray[np.float64], resting: bool = False) -> NDArray[np.float64]:
+        joints = self.rest.copy() if resting else self.all_joints()
         joints[self._arm] = arm
         return self.link_places(joints, self._along)
 

@@ -90,6 +90,7 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
     head_camera = "head"
     skill_control_mode = "pd_joint_pos"
     tucked = TUCKED
+    outstretched = STRETCHED
     # the elbow back and out, in three ways, and before the body [ours: the quickest of 110 over tables of the scenes]
     between = (
         np.array([0.0, 0.0, 0.03, -0.45, -0.55, -0.4, 0.45, 0.0]),
@@ -158,7 +159,7 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
     @property
     def stretched(self) -> tuple[NDArray[np.float64], ...]:
         """Postures to search from [rad], of shape [J]; the first is the present one, which is the quickest to leave."""
-        return (self.arm(), *STRETCHED)
+        return (self.arm(), *self.outstretched)
 
     def gripper_pose(self) -> tuple[Tensor, Tensor]:
         right, left = (tcp.pose for tcp in self._tcps)
@@ -198,8 +199,8 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
         hand, turn, jacobian = self.hand_kinematics(joints, self._hands[used], self._arms[used])
         return hand, turn, jacobian * self._signs(used)
 
-    def arm_places(self, arm: NDArray[np.float64]) -> NDArray[np.float64]:
-        used, joints = self._used, self.all_joints()
+    def arm_places(self, arm: NDArray[np.float64], resting: bool = False) -> NDArray[np.float64]:
+        used, joints = self._used, self.rest.copy() if resting else self.all_joints()
         joints[self._arms[used]] = arm * self._signs(used)
         return self.link_places(joints, self._along[used])
 

@@ -29,6 +29,7 @@ class Robot(abc.ABC):
     tucked: NDArray[np.float64]  # arm joints where the arm is out of the way [rad], [J]
     # arm joints that lead past furniture to where the hand is needed [rad], [J] each
     between: tuple[NDArray[np.float64], ...]
+    outstretched: tuple[NDArray[np.float64], ...]  # arm joints that reach low and high [rad], [J] each
     pointing: tuple[float, ...]  # how far below the horizon the fingers point at a thing, in the order of trying [rad]
 
     @abc.abstractmethod
@@ -80,9 +81,9 @@ class Robot(abc.ABC):
         """Lower and upper limit of each of the J arm joints [rad], shape [J, 2]."""
 
     @property
-    @abc.abstractmethod
     def stretched(self) -> tuple[NDArray[np.float64], ...]:
-        """Postures of the arm from which a search for a reaching one starts [rad], each [Joints]."""
+        """Postures of the arm from which a search for a reaching one starts [rad], each [J]."""
+        return self.outstretched
 
     @abc.abstractmethod
     def kinematics(
@@ -95,10 +96,11 @@ class Robot(abc.ABC):
         """
 
     @abc.abstractmethod
-    def arm_places(self, arm: NDArray[np.float64]) -> NDArray[np.float64]:
+    def arm_places(self, arm: NDArray[np.float64], resting: bool = False) -> NDArray[np.float64]:
         """Places of the joints along the arm, from the shoulder to the hand [m], world frame, [P, 3].
 
-        The arm is as if it were at `arm` [rad], shape [J], in the first environment.
+        The arm is as if it were at `arm` [rad], shape [J], in the first environment. With `resting`, places are in the
+        frame of the base, and all other joints are as the robot has them at rest.
         """
 
     @abc.abstractmethod

@@ -9,8 +9,9 @@ from hazard_ms.skills import failures
 from hazard_ms.skills.context import LowLevel, Skill
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.motor.grasping import pick_up
-from hazard_ms.skills.motor.routes import Leg, Place, Surface, quickest
+from hazard_ms.skills.motor.routes import quickest
 from hazard_ms.skills.motor.stowing import drop
+from hazard_ms.skills.motor.surface import Leg, Place, Surface
 from tests.worlds.arena import Arena
 from tests.worlds.skill_room import TABLE, walk
 

@@ -12,7 +12,8 @@ from hazard_ms.skills.decision import Result
 from hazard_ms.skills.failures import BLOCKED, MAX_FRAMES, UNREACHABLE
 from hazard_ms.skills.motor.kinematics import Posture, lifted, solve
 from hazard_ms.skills.motor.motion import BACK_OFF, CLOSE, finite, wrap
-from hazard_ms.skills.motor.routes import NEARLY, Leg, Place, Route, Surface, quickest
+from hazard_ms.skills.motor.routes import Route, quickest
+from hazard_ms.skills.motor.surface import NEARLY, Leg, Place, Surface
 
 REACHED_ERROR = 0.05  # position error at which a posture counts as reaching its point [m]
 CARRIED = 0.6  # the arm counts as folded when every joint is this close; it goes on to fold while the base drives [rad]
@@ -106,7 +107,7 @@ def follow(stage: Stage, route: Route, done: Callable[[], bool] = never, close: 
     used, at = 0, 0.0
     for leg in route.legs:
         last = leg is route.legs[-1]
-        moved = yield from go(stage, leg.arm, REACH_FRAMES, done, close if last else NEARLY, leg.ahead - at)
+        moved = yield from go(stage, leg.arm, REACH_FRAMES, done, close if last else leg.near, leg.ahead - at)
         used, at = used + moved.frames, leg.ahead
         if last or not moved.ok or done():
             break

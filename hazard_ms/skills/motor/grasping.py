@@ -17,7 +17,8 @@ from hazard_ms.skills.motor.drift import DRIFT_FRAMES, Drift
 from hazard_ms.skills.motor.kinematics import Posture, lifted
 from hazard_ms.skills.motor.motion import drive, turn_to
 from hazard_ms.skills.motor.navigation import LOW
-from hazard_ms.skills.motor.routes import HIT_COST, NEARLY, Leg, Route, Surface, place_of, quickest
+from hazard_ms.skills.motor.routes import HIT_COST, Route, quickest
+from hazard_ms.skills.motor.surface import NEARLY, Leg, Surface, place_of
 from hazard_ms.skills.motor.walking import known, way_to
 
 LIMIT = 2.5  # greatest distance from the shoulder to the thing at which a pick-up begins (docs/benchmark.md 3) [m]
@@ -30,7 +31,8 @@ SHUT_FRAMES = 4  # frames that the hand needs to shut or to open
 OVER = 0.25  # the hand comes down from above on things higher than this [m]
 FEW_HITS = 30  # points of a route that may lie in something: the map is coarse, and makes things wider [ours]
 ASTRAY = 0.4  # the hand is led to a thing that moved if it is this close [m] [ours]
-NEAR = 0.25  # and if it is this close where the arm was stopped [m] [ours]
+NEAR = 0.35  # and if it is this close where the arm was stopped [m] [ours]
+ONCE_MORE = 75  # frames after which it is not led to a thing again where the arm was stopped [ours]
 AGAIN_FRAMES = 20  # budget of each movement by which the hand is led to a thing anew [frames] [ours]
 TRIES = 2  # number of postures that are tried
 GIVE_UP = 20  # frames after which no other posture is tried [ours]
@@ -154,7 +156,7 @@ def _grasp(stage: Stage, index: int, way: Way, drift: Drift) -> Skill:
 
     moved = yield from follow(stage, way.route, done)
     used = moved.frames
-    if not close() and stage.gap(index) < (ASTRAY if moved.ok else NEAR) and (moved.ok or used <= GIVE_UP_CHASE):
+    if stage.would_take() != index and stage.gap(index) < (ASTRAY if moved.ok else NEAR) and (moved.ok or used <= ONCE_MORE):
         goal = stage.position(index) if moved.ok else aims(stage, stage.position(index), index)[0]
         arm = posture_for(stage, goal).arm
         if not moved.ok:  # it touched something, or the thing moved: once more from above

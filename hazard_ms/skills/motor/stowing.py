@@ -23,7 +23,8 @@ from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, follow, go, lacking
 from hazard_ms.skills.motor.grasping import LIMIT, SHUT_FRAMES, come_near, standings
 from hazard_ms.skills.motor.kinematics import Posture, lifted, solve
 from hazard_ms.skills.motor.motion import turn_to
-from hazard_ms.skills.motor.routes import NEARLY, Leg, Place, Route, Surface, quickest
+from hazard_ms.skills.motor.routes import Route, quickest
+from hazard_ms.skills.motor.surface import NEARLY, Leg, Place, Surface
 from hazard_ms.skills.motor.walking import known
 
 OVER_BAG = 0.8 * BAG_REACH  # the hand opens this close to the mouth of the bag [m]

@@ -27,8 +27,8 @@ class Problem:
     A target is met, picked up and put into the bag there, or carried to a cart where `travel` has carts. It counts
     its value if it is safe by `damaged_at`, else `damaged_share` of it. Frames may be fractions. With `fading` it
     counts less the later it is safe, since much can go wrong until then: of plans that save the same, the best is the
-    one that saves valuable targets first. With `spread` it counts by the chance that it is safe in time, where rescues
-    take longer or shorter than planned: of two plans, the one with time to spare may be better.
+    one that saves valuable targets first. With `spread` it counts by the chances that it is safe in time, and before it is
+    damaged, where rescues take longer or shorter than planned: of two plans, the one with time to spare may be better.
     """
 
     travel: Travel
@@ -69,15 +69,17 @@ class Problem:
 
     def worth(self, target: int, safe: float) -> float:
         """The value that the target counts if it is safe at a frame, the limit not considered."""
-        share = 1.0 if safe <= self.damaged_at[target] else self.damaged_share
-        return self.values[target] * share * (1.0 - self.fading * (safe - self.frame)) * self._in_time(safe)
+        by = self.damaged_at[target]
+        whole = self._in_time(safe, by) if safe <= by else 0.0
+        share = self.damaged_share + (1.0 - self.damaged_share) * whole
+        return self.values[target] * share * (1.0 - self.fading * (safe - self.frame)) * self._in_time(safe, self.limit)
 
-    def _in_time(self, safe: float) -> float:
-        """The chance that what is planned to be safe at the frame `safe` is so by the limit."""
+    def _in_time(self, safe: float, by: float) -> float:
+        """The chance that what is planned to be safe at the frame `safe` is so at the frame `by`."""
         if not self.spread:
             return 1.0
         deviation = self.spread * math.sqrt(max(safe - self.frame, 1.0))
-        return 0.5 * (1.0 + math.erf((self.limit - safe) / deviation / math.sqrt(2.0)))
+        return 0.5 * (1.0 + math.erf((by - safe) / deviation / math.sqrt(2.0)))
 
     def stows(self, target: int, spot: Spot, frame: float) -> Iterator[Stow]:
         """All ways of putting away a target that is in the hand at a spot and frame."""

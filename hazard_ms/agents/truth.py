@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.sensing.furniture import told
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sketch.recording import ahead
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.options.landmarks import WALKABLE
 
 SURPRISE = 0.25  # how far a target may be from where it was expected before the future is predicted again [m] [ours]
 
@@ -42,8 +44,15 @@ class Truth:
     """The true state and future of a running episode, and how it gets into the map."""
 
     def __init__(self, env: SkillEnv, only_known: bool) -> None:
-        """Enter the truth into the map of `env` after every look; `only_known`: only about what the map knows."""
+        """Enter the furniture into the map of `env` now, and where things are after every look.
+
+        `only_known`: only where the things are that the map knows. Floor then stays unexplored until it is seen, so
+        that there is something to search.
+        """
         self.env, self._only_known = env, only_known
+        spec = env.base.specs[0]
+        height, within = told(env.seen, spec, env.base.actors[0][len(spec.bodies) :])
+        env.seen.tell(height, height >= WALKABLE if only_known else within)
         self.aim: dict[int, NDArray[np.float32]] = {}  # where the map is to place some things instead [m], by index
         self._future = Future(env)
         look = env.stage.look

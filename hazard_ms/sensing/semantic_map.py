@@ -225,6 +225,10 @@ class SemanticMap:
         self._light[y, x] = 0.0
         self.object_id[y, x] = -1
 
+    def tell(self, height: NDArray[np.float32], explored: NDArray[np.bool_]) -> None:
+        """Enter the true heights of what stays [m], and mark cells as explored, [Y, X] each, without a look."""
+        self._firm, self.explored = np.maximum(self._firm, height), self.explored | explored
+
     def forget(self, index: int) -> None:
         """Remove the thing `index`, which is no longer there: it was picked up or rescued."""
         self.objects = {other: sighting for other, sighting in self.objects.items() if other != index}

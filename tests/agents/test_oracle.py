@@ -18,7 +18,7 @@ from hazard_ms.registry import AGENTS, load
 from hazard_ms.sketch.bound import bound
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
+from hazard_ms.skills.decision import EXPLORE, STOP, WALK_TO, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.spec import AgentStart, Body, Room, SceneSpec, Task
 from hazard_ms.tasks.fire import hazard_fire
@@ -152,6 +152,19 @@ def test_everything_in_a_small_room_is_rescued(known: bool, room: SkillEnv) -> N
     assert played.ended == "all rescued" and all(fate.rescued for fate in fates(room))
     looked = [record.verb for record in played.decisions].count(EXPLORE)
     assert looked == (1 if known else 0)
+
+
+@pytest.mark.render
+def test_what_no_plan_saves_in_time_is_tried_all_the_same() -> None:
+    """In less time than the shortest rescue is expected to take, which it may beat, the oracle does not give up."""
+    with registered_task("HazardHurry-v1", hide) as name:
+        env = SkillEnv.make(name, max_episode_steps=70, **SMALL)
+        try:
+            played = Runner(env, agent("oracle")).run(0)
+        finally:
+            env.close()
+    assert [record.verb for record in played.decisions][:1] == [WALK_TO] and played.ended == "time"
+    assert played.decisions[0].note == "too late by any plan, but the nearest"
 
 
 def value(env: SkillEnv, name: str, seed: int) -> float:

@@ -31,6 +31,7 @@ MAIN = ("greedy", "mcts", "planner", "oracle")
 ALL = (*MAIN, "random", "rule", "oracle:known=true", "paper/greedy", "paper/rule", "paper/mcts")
 TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
 SWEEPS = {f"{task}-{robot}": ALL if robot == "fetch" else MAIN for robot in ("fetch", "g1") for task in TASKS}
+PLAYED = "played.txt"  # beside raw results: the commits and machines that they were played on, one a line
 COMMAND = [sys.executable, "-m", "hazard_ms.cli"]
 
 
@@ -38,7 +39,11 @@ def play(sweep: str) -> None:
     """Play what is missing of a sweep."""
     task, robot = sweep.split("-")
     options = ["-e", TASKS[task], "-r", robot, "--split", "test", "--episodes", "25", "-o", str(RAW / sweep)]
-    subprocess.run([*COMMAND, "evaluate", *options, "--agents", *SWEEPS[sweep]], check=False)
+    (RAW / sweep).mkdir(parents=True, exist_ok=True)
+    note, here = RAW / sweep / PLAYED, machine()
+    before = note.read_text(encoding="utf-8").splitlines() if note.exists() else []
+    note.write_text("".join(f"{line}\n" for line in dict.fromkeys([*before, here])), encoding="utf-8")
+    subprocess.run([*COMMAND, "evaluate", *options, "--workers", "2", "--agents", *SWEEPS[sweep]], check=False)
 
 
 def bounds(env_id: str, robot: str, results: list[EpisodeResult]) -> dict[str, float]:
@@ -78,8 +83,9 @@ def table(sweep: str, rows: csv.DictWriter[str]) -> str:
         if r.tally.value > best[r.scene] + 1e-9:
             raise AssertionError(f"Value must not exceed its bound {best[r.scene]}, got {r.tally.value} of {r.agent}")
     told = subprocess.run([*COMMAND, "report", str(RAW / sweep), "--json"], check=True, capture_output=True, text=True)
-    lines = [f"\n## {task.capitalize()}, {robot}\n", "| agent | Value | Step | Damage | regret | rescued | episodes |"]
-    lines.append("|---|---|---|---|---|---|---|")
+    played = "; ".join((RAW / sweep / PLAYED).read_text(encoding="utf-8").splitlines())
+    lines = [f"\n## {task.capitalize()}, {robot}\n", f"Played at {played}.\n"]
+    lines += ["| agent | Value | Step | Damage | regret | rescued | episodes |", "|---|---|---|---|---|---|---|"]
     for group in json.loads(told.stdout)["groups"]:
         for name, agent in sorted(group["agents"].items(), key=lambda item: -item[1]["value"]["mean"]):
             cells = [_interval(agent["value"], 100), _interval(agent["step"], 1), _interval(agent["damage"], 100)]
@@ -98,7 +104,7 @@ def _interval(told: dict[str, Any], scale: float) -> str:
 
 
 def machine() -> str:
-    """The commit and the machine, for the README."""
+    """The commit and the machine."""
     commit = subprocess.run(["git", "-C", str(HERE), "describe", "--always", "--dirty"], capture_output=True, text=True)
     version = subprocess.run([*COMMAND, "version"], capture_output=True, text=True, check=True).stdout.strip()
     return f"commit {commit.stdout.strip()}; {version.splitlines()[0]}; {platform.machine()}, {os.cpu_count()} cores"
@@ -114,7 +120,7 @@ def main(wanted: list[str]) -> None:
         rows = csv.DictWriter(file, names, lineterminator="\n")
         rows.writeheader()
         sections = [table(sweep, rows) for sweep in SWEEPS]
-    head = (HERE / "head.md").read_text(encoding="utf-8").replace("MACHINE", machine())
+    head = (HERE / "head.md").read_text(encoding="utf-8")
     (HERE / "README.md").write_text(head + "".join(sections), encoding="utf-8")
 
 

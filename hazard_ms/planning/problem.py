@@ -27,8 +27,9 @@ class Problem:
     A target is met, picked up and put into the bag there, or carried to a cart where `travel` has carts. It counts
     its value if it is safe by `damaged_at`, else `damaged_share` of it. Frames may be fractions. With `fading` it
     counts less the later it is safe, since much can go wrong until then: of plans that save the same, the best is the
-    one that saves valuable targets first. With `spread` it counts by the chances that it is safe in time, and before it is
-    damaged, where rescues take longer or shorter than planned: of two plans, the one with time to spare may be better.
+    one that saves valuable targets first. With `spread` it counts by the chances that it is safe in time, and before
+    it is damaged, where rescues take longer or shorter than planned: of two plans, the one with time to spare may be
+    better.
     """
 
     travel: Travel

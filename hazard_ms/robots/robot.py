@@ -82,7 +82,7 @@ class Robot(abc.ABC):
 
     @property
     def stretched(self) -> tuple[NDArray[np.float64], ...]:
-        """Postures of the arm from which a search for a reaching one starts [rad], each [J]."""
+        """Postures of the arm from which a search for a reaching one starts [rad], each [Joints]."""
         return self.outstretched
 
     @abc.abstractmethod

@@ -13,7 +13,7 @@ from hazard_ms.skills.failures import BLOCKED, MAX_FRAMES, UNREACHABLE
 from hazard_ms.skills.motor.kinematics import Posture, lifted, solve
 from hazard_ms.skills.motor.motion import BACK_OFF, CLOSE, finite, wrap
 from hazard_ms.skills.motor.routes import Route, quickest
-from hazard_ms.skills.motor.surface import NEARLY, Leg, Place, Surface
+from hazard_ms.skills.motor.surface import Leg, Place, Surface
 
 REACHED_ERROR = 0.05  # position error at which a posture counts as reaching its point [m]
 CARRIED = 0.6  # the arm counts as folded when every joint is this close; it goes on to fold while the base drives [rad]

@@ -156,7 +156,8 @@ def _grasp(stage: Stage, index: int, way: Way, drift: Drift) -> Skill:
 
     moved = yield from follow(stage, way.route, done)
     used = moved.frames
-    if stage.would_take() != index and stage.gap(index) < (ASTRAY if moved.ok else NEAR) and (moved.ok or used <= ONCE_MORE):
+    near = stage.gap(index) < (ASTRAY if moved.ok else NEAR)
+    if stage.would_take() != index and near and (moved.ok or used <= ONCE_MORE):
         goal = stage.position(index) if moved.ok else aims(stage, stage.position(index), index)[0]
         arm = posture_for(stage, goal).arm
         if not moved.ok:  # it touched something, or the thing moved: once more from above

@@ -104,7 +104,7 @@ class Surface:
         return int(self._inside(np.vstack(points), np.vstack(middles), np.concatenate(radii)).sum())
 
     def paths(self, start: NDArray[np.float64], ahead: float, cost: float) -> Paths:
-        """The quickest paths over the roadmap from the joints `start` [rad], [Joints], with the base `ahead` [m] of here.
+        """The quickest paths over the roadmap from joints `start` [rad], [Joints], with the base `ahead` [m] of here.
 
         `cost`: what a checked point that lies in something counts as much as [frames].
         """

@@ -80,6 +80,8 @@ class Oracle(PrivilegedAgent):
     def act(self, decision: Decision) -> Action:
         """The next action: the first step of the best plan from here on."""
         assert self._truth is not None
+        if self._before is None:  # not earlier: who records the episode begins with the map of an honest agent
+            self._truth.furnish()
         self._judge(decision, self._truth)
         action = self._choose(decision, self._truth)
         self._before = (action, decision.agent_position)

@@ -44,15 +44,8 @@ class Truth:
     """The true state and future of a running episode, and how it gets into the map."""
 
     def __init__(self, env: SkillEnv, only_known: bool) -> None:
-        """Enter the furniture into the map of `env` now, and where things are after every look.
-
-        `only_known`: only where the things are that the map knows. Floor then stays unexplored until it is seen, so
-        that there is something to search.
-        """
+        """Enter where things are into the map of `env` after every look; `only_known`: only those that it knows."""
         self.env, self._only_known = env, only_known
-        spec = env.base.specs[0]
-        height, within = told(env.seen, spec, env.base.actors[0][len(spec.bodies) :])
-        env.seen.tell(height, height >= WALKABLE if only_known else within)
         self.aim: dict[int, NDArray[np.float32]] = {}  # where the map is to place some things instead [m], by index
         self._future = Future(env)
         look = env.stage.look
@@ -75,6 +68,15 @@ class Truth:
     def future(self) -> Timeline:
         """The timeline from here on if nobody acts, predicted again when a target is not as predicted."""
         return self._future.timeline()
+
+    def furnish(self) -> None:
+        """Enter furniture and walls into the map.
+
+        With `only_known`, floor stays unexplored until it is seen, so that there is something to search.
+        """
+        seen, spec = self.env.seen, self.env.base.specs[0]
+        height, within = told(seen, spec, self.env.base.actors[0][len(spec.bodies) :])
+        seen.tell(height, height >= WALKABLE if self._only_known else within)
 
     def reveal(self) -> None:
         """Enter into the map where targets and containers really are, or where `aim` says."""

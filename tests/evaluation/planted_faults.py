@@ -78,6 +78,7 @@ class Faulty(PrivilegedAgent):
         """Begin an episode; whatever goes wrong by chance follows from its seed."""
         self._planner.reset(brief)
         self._shown_once: set[int] = set()
+        self._noticed: set[int] = set()  # what the first decision showed, before the fault was planted
         self._draw = np.random.default_rng(brief.random_seed)
         names = sorted(target.name for target in brief.targets)
         self._wrong = dict(zip(names, self._draw.random(len(names)) < OFTEN, strict=True))
@@ -86,6 +87,8 @@ class Faulty(PrivilegedAgent):
 
     def act(self, decision: Decision) -> Action:
         """The planner's choice, unless the fault is in it."""
+        if not decision.frame:
+            self._noticed = set(decision.map.objects)
         action = self._planner.act(decision)
         self.note, looked = self._planner.note, decision.frame > 0  # around, as the planner does first
         if self._fault == RANDOM and looked and self._draw.random() < RANDOMLY:
@@ -117,8 +120,8 @@ class Faulty(PrivilegedAgent):
         """Some targets are overlooked, and some of the others are taken for something else."""
         kept, rows = dict(decision.map.objects), []
         for row in decision.targets:
-            if self._wrong[row.name] and self._lost[row.name]:
-                kept.pop(row.index, None)
+            if self._wrong[row.name] and self._lost[row.name] and row.index not in self._noticed:
+                kept.pop(row.index, None)  # what is noticed and then gone would be forgotten
             elif self._wrong[row.name]:
                 taken = CHEAP if row.value > 1.0 else DEAR
                 row = dataclasses.replace(row, category=taken, value=float(CATEGORIES[taken].value))

@@ -13,7 +13,7 @@ from tests.evaluation.planted_faults import CLUMSY, NONE, RANDOM, SHOWN_IN, adde
 from tests.worlds.plaza import FRAMES, TASK, task
 from tests.worlds.registering import registered_task
 
-SEEDS = range(3)
+SEEDS = range(8)
 LEAST = 0.8  # share of what a fault costs that must be put down to it
 COSTLY = 0.04  # least loss that a fault must add, so that its share means something
 

@@ -58,6 +58,7 @@ setup(
         "imageio-ffmpeg>=0.5",
         "pillow>=10.3",
         "tyro>=0.9",
+        "safetensors>=0.7",
     ],
     extras_require={
         "rl": ["stable-baselines3>=2.9", "sb3-contrib>=2.9"],  # policies over skills, with action masks

@@ -24,7 +24,7 @@ from tests.worlds.files.checkout import (
 )
 
 pytestmark = pytest.mark.setup
-LOCKED_EXTRAS = ("rl", "pictures", "docs", "test")  # the others serve users, not our own checks
+LOCKED_EXTRAS = ("rl", "pictures", "demos", "docs", "test")  # the others serve users, not our own checks
 HASH = re.compile(r"--hash=sha256:[0-9a-f]{64}")
 WRONG = "0" * 64
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from hazard_ms.scenes.generate import indoor, outdoor
@@ -70,6 +70,20 @@ def scene(name: str) -> SceneSpec:
     places = [place for f in FAMILIES.values() for split in f.places.values() for place in split]
     known = ", ".join(f"{place}/00 to {place}/{SCENES - 1:02d}" for place in places)
     raise ValueError(f"scene must be one of {known}, got {name!r}")
+
+
+def spare_scene(names: Sequence[str], number: int) -> SceneSpec:
+    """A scene that belongs to no split, for training: `number` from SCENES on, in one of the places of `names`.
+
+    The places take turns. Raises ValueError for unknown names, and for the number of a scene that belongs to a split.
+    """
+    places = sorted({name.split("/")[0] for name in names})
+    place = places[number % len(places)]
+    homes = [(family, split) for family in FAMILIES.values() for split, of in family.places.items() if place in of]
+    if not homes or number < SCENES:
+        raise ValueError(f"a spare scene must have a known place and a number from {SCENES}, got {place}/{number}")
+    (family, split), *_ = homes
+    return family.make(place, f"{place}/{number:02d}", split)
 
 
 def _family(name: str) -> Family:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from hazard_ms.robots import robot_class
+from hazard_ms.scenes.splits import SCENES, spare_scene
 from hazard_ms.simulation.building import extent_of
 from hazard_ms.sketch.limits import limit_of
 from hazard_ms.sketch.recording import recorded
@@ -31,6 +32,7 @@ SITE_STEP = 0.6  # distance that a moving target goes on from one of its sites t
 INDOOR_CELL, OUTDOOR_CELL = 0.5, 1.0  # edges of the cells, in each of which sight is the same [m] [ours]
 FLOOR_SEEN = 5.0  # distance up to which a look shows the floor without gaps: farther off, pixels are too sparse [m]
 MANY_PIXELS = 1e4  # of a thing, beyond which the number makes no difference
+MOST_SCENES = 100_000  # any larger number of a scene must be a mistake [ours]
 GOLDEN = np.pi * (3.0 - np.sqrt(5.0))  # turn from one spot around a landmark to the next, for even spacing [rad]
 EYES = {"fetch": FETCH, "g1": G1}
 
@@ -61,6 +63,23 @@ def training_scenes(env_id: str, physics: str, count: int, robot: str = "fetch")
     names = task_of(env_id, physics).scenes("train")
     some = names[: whole(count, 1, len(names), "count")]
     return scenes_of(env_id, some, range(len(some)), physics, robot)
+
+
+def more_scenes(env_id: str, physics: str, first: int, count: int, robot: str = "fetch") -> list[SketchScene]:
+    """`count` scenes that belong to no split, in the places of the split `train` in turn.
+
+    Their numbers begin with `first`, and are their seeds. Raises ValueError for unknown names, and for numbers of
+    scenes that belong to a split.
+    """
+    task = task_of(env_id, physics)
+    whole(first, SCENES, MOST_SCENES, "first")
+    numbers = range(first, first + whole(count, 0, MOST_SCENES, "count"))
+    return [sketch_scene(task, physics, spare_scene(task.scenes("train"), number), number, robot) for number in numbers]
+
+
+def level_ranges(env_id: str, physics: str) -> list[tuple[float, float]]:
+    """The ends of the usual level of each hazard of a task, in its unit. Raises ValueError for unknown names."""
+    return [(hazard.level.low, hazard.level.high) for hazard in task_of(env_id, physics).hazards]
 
 
 def sketch_scene(task: Task, physics: str, spec: SceneSpec, seed: int, robot: str = "fetch") -> SketchScene:
@@ -122,6 +141,7 @@ class _Maker:
             safe_at=self.future.safe_at[self.targets].astype(np.int64),
             level=self.future.levels[:, :, self.targets].astype(np.float64).transpose(0, 2, 1),
             limit=self._limits(height),
+            traits=self._traits(),
             **grid,
             **self._travel(grid["stand"], position[:, :2], edge),
             **self._views(grid["stand"], position, np.array(sites.thing), marks),
@@ -188,6 +208,11 @@ class _Maker:
         """Distance from things at `position` [m], [T, 2], to where the robot can stand [m], [T]."""
         floor = self.ways.places
         return np.array([np.hypot(*(floor - place).T).min() for place in position]).reshape(len(position))
+
+    def _traits(self) -> Floats:
+        """What agents are told of the targets beside their values, [T, 3]: see TRAITS."""
+        kinds = [CATEGORIES[self.spec.things[n].category] for n in self.targets]
+        return np.array([(k.flammable, k.waterproof, k.ignition_temperature) for k in kinds], np.float64).reshape(-1, 3)
 
     def _limits(self, height: Floats) -> Floats:
         """Level of each hazard from which each target is damaged, [T, H]; infinite where it never is."""

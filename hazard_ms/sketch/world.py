@@ -14,6 +14,7 @@ options: it goes the same alone as among thousands. The rewards of an episode ad
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 
 import numpy as np
@@ -31,7 +32,7 @@ from hazard_ms.sketch.skill_times import CART as OVER_CART
 from hazard_ms.skills.motor.walking import WALK_FRAMES
 from hazard_ms.skills.options.environment import IDLE
 from hazard_ms.skills.options.macros import LEGS, NEAR
-from hazard_ms.skills.options.options import CART, CART_SLOTS, COUNT, END, FIRST, LANDMARK, LOOK, TARGET, TARGET_SLOTS
+from hazard_ms.skills.options.options import CART, CART_SLOTS, END, FIRST, LANDMARK, LOOK, TARGET, TARGET_SLOTS
 
 WALK_BUDGET = LEGS * WALK_FRAMES  # frames after which an approach is given up
 THINGS = TARGET_SLOTS + CART_SLOTS  # targets and carts that a scene can have: landmarks are numbered from there
@@ -56,17 +57,9 @@ class Sketch:
         """
         if count < 1:
             raise ValueError(f"count must be at least 1, got {count}")
-        self.stack, self.times = Stack(scenes), times
-        self.domain, self._stop = domain, stop
-        self.state = Rescues.allocate(count, self.stack)
-        self._chance = Chance(count)
+        self.stack, self.times, self.domain, self._stop = Stack(scenes), times, domain, stop
+        self.state, self._chance = Rescues.allocate(count, self.stack), Chance(count)
         self._targets = self.stack.value.shape[1]
-        self._plays = (
-            (self._fetch, FIRST[TARGET], FIRST[CART]),
-            (self._stow, FIRST[CART], FIRST[LANDMARK]),
-            (self._search, FIRST[LANDMARK], FIRST[LOOK]),
-            (self._explore, FIRST[LOOK], FIRST[END]),
-        )
         self._menu()
 
     def reset(self, scene: ArrayLike, seeds: ArrayLike, rows: ArrayLike | None = None) -> None:
@@ -76,10 +69,7 @@ class Sketch:
         """
         which = np.arange(len(self.state.frame)) if rows is None else np.asarray(rows, np.int64)
         scenes, drawn = np.asarray(scene, np.int64), np.asarray(seeds, np.int64)
-        if not scenes.shape == drawn.shape == which.shape:
-            raise ValueError(f"scene and seeds must have shape {which.shape}, got {scenes.shape} and {drawn.shape}")
-        if len(scenes) and not 0 <= scenes.min() <= scenes.max() < len(self.stack.names):
-            raise ValueError(f"scene must be from 0 to {len(self.stack.names) - 1}, got {scenes.max()}")
+        menu.refuse_start(scenes, drawn, which, len(self.stack.names))
         self._chance.restart(torch.from_numpy(which), torch.from_numpy(drawn))
         chance, state = self._draw("sketch.domain", 2 + 2 * TARGET_SLOTS)[which], self.state
         state.restart(which, scenes, self.stack, chance, self.domain)
@@ -87,22 +77,31 @@ class Sketch:
         self._look(which, state.place[which][:, None], state.heading[which][:, None], state.frame[which][:, None])
         self._menu()
 
+    def fork(self, rows: Ints, seeds: ArrayLike) -> Sketch:
+        """Copies of the rescues `rows` [R] as they are now, with the chance of `seeds` [R] from here on."""
+        made = copy.copy(self)
+        made.state, made._chance = self.state.copies(rows), Chance(len(rows))
+        made._chance.restart(torch.arange(len(rows)), torch.from_numpy(np.asarray(seeds, np.int64)))
+        made._menu()
+        return made
+
     def step(self, option: ArrayLike) -> tuple[Floats, Bools]:
         """Play `option` [N], one of those of `mask` [N, A]: the rewards, [N], and whether each episode is over, [N].
 
         An option that cannot be chosen costs a few frames; what is over stays as it is. Raises ValueError for anything
         but numbers of options.
         """
-        chosen = np.asarray(option)
-        if chosen.shape != self.state.frame.shape or chosen.dtype.kind not in "iu":
-            raise ValueError(f"option must be {len(self.state.frame)} whole numbers, got {chosen!r:.100}")
-        if chosen.min() < 0 or chosen.max() >= COUNT:
-            raise ValueError(f"option must be from 0 to {COUNT - 1}, got {chosen.min()} to {chosen.max()}")
+        chosen = menu.checked(option, len(self.state.frame))
         state, before, started = self.state, self.state.score.copy(), self.state.frame.copy()
         allowed = self.mask[np.arange(len(chosen)), chosen]
         self._chance.tick()
         self._luck = self._draw("sketch.skill", DRAWS)
-        for play, first, end in self._plays:
+        for play, first, end in (
+            (self._fetch, FIRST[TARGET], FIRST[CART]),
+            (self._stow, FIRST[CART], FIRST[LANDMARK]),
+            (self._search, FIRST[LANDMARK], FIRST[LOOK]),
+            (self._explore, FIRST[LOOK], FIRST[END]),
+        ):
             rows = np.flatnonzero(allowed & (chosen >= first) & (chosen < end))
             if len(rows):
                 play(rows, chosen[rows] - first)
@@ -141,7 +140,8 @@ class Sketch:
         """Pick up what is near, and with a bag put it in; whether that worked, [R]."""
         stack, state, scene = self.stack, self.state, self.state.scene[rows]
         place = stack.height[scene, target], stack.clearance[scene, target]
-        worked, frames = self.times.draw(PICK_UP, self._luck[rows, :2], *place, state.ease[rows])
+        ease = state.ease[rows] * self.domain.again ** state.failures[rows, target]
+        worked, frames = self.times.draw(PICK_UP, self._luck[rows, :2], *place, ease)
         worked &= self._pass(rows, frames)
         damaged = stack.damaged_at[scene, target]
         state.spoiled[rows, target] |= worked & (damaged >= 0) & (damaged <= state.frame[rows])

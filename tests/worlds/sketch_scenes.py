@@ -86,6 +86,7 @@ def scene(position: Sequence[tuple[float, float]], targets: Sequence[int] = (), 
         "safe_at": np.full(count, -1),
         "level": np.zeros((1, count, 1)),
         "limit": np.full((count, 1), np.inf),
+        "traits": np.tile([1.0, 0.0, 300.0], (count, 1)),
         "pixels": np.full((stands, len(places)), 99.0),
         "spots": np.full((stands, marks), 2**16 - 1, np.uint16),
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from hazard_ms.sketch.rescues.scene import SPOTS, Bools, Floats, Ints, Stack
 from hazard_ms.sketch.rescues.state import Rescues
@@ -60,3 +61,24 @@ def mask(stack: Stack, state: Rescues, slots: Ints, stop: bool) -> Bools:
     made[:, FIRST[END]] = stop
     made[:, FIRST[LOOK]] = ~state.looked | ~made[:, : FIRST[LOOK]].any(axis=1)
     return made & running[:, None]
+
+
+def refuse_start(scenes: Ints, seeds: Ints, rows: Ints, count: int) -> None:
+    """Check `scenes`, numbers below `count`, and `seeds` of episodes that begin at `rows`: [R] each.
+
+    Raises ValueError for other shapes, and for scenes out of range.
+    """
+    if not scenes.shape == seeds.shape == rows.shape:
+        raise ValueError(f"scene and seeds must have shape {rows.shape}, got {scenes.shape} and {seeds.shape}")
+    if len(scenes) and not 0 <= scenes.min() <= scenes.max() < count:
+        raise ValueError(f"scene must be from 0 to {count - 1}, got {scenes.max()}")
+
+
+def checked(option: ArrayLike, count: int) -> Ints:
+    """Columns of masks [N, A], one for each of N = `count` rescues. Raises ValueError for anything else."""
+    chosen = np.asarray(option)
+    if chosen.shape != (count,) or chosen.dtype.kind not in "iu":
+        raise ValueError(f"option must be {count} whole numbers, got {chosen!r:.100}")
+    if chosen.min() < 0 or chosen.max() >= COUNT:
+        raise ValueError(f"option must be from 0 to {COUNT - 1}, got {chosen.min()} to {chosen.max()}")
+    return chosen

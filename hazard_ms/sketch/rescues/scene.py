@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from hazard_ms.skills.options.options import CART_SLOTS, TARGET_SLOTS
 
 SPOTS = 16  # places on the floor around a landmark, whose sight counts as the share explored there: bits of uint16
+# of a target: 1 if it can burn, 1 if water does not damage it, and the temperature at which it catches fire [C]
+TRAITS = ("flammable", "waterproof", "ignition")
 LOOKS = 4  # looks on each way, Q: the robot looks once a metre, and ways are about so long [ours]
 
 Ints = NDArray[np.int64]
@@ -55,6 +57,7 @@ class SketchScene:
     safe_at: Ints  # frame in which each target becomes safe by itself, [T]; -1: never
     level: Floats  # of each hazard at each target at every sample, in its unit, [K, T, H]
     limit: Floats  # level from which each target is damaged, in the hazard's unit, [T, H]; infinite: none
+    traits: Floats  # of each target, as agents are told of it: see TRAITS, [T, 3]
 
     def __post_init__(self) -> None:
         sites, targets, marks = len(self.position), len(self.value), len(self.landmark_site)
@@ -70,6 +73,7 @@ class SketchScene:
             "damaged_at": (targets,),
             "safe_at": (targets,),
             "limit": (targets, hazards),
+            "traits": (targets, len(TRAITS)),
             "pixels": (stands, sites),
             "spots": (stands, marks),
         }
@@ -103,8 +107,8 @@ class Stack:
             _stacked([getattr(s, n) for s in scenes], 0.0) for n in ("position", "first", "last", "way")
         )
         self.travel = _stacked([s.travel for s in scenes], np.inf)
-        self.value, self.height, self.clearance = (
-            _stacked([getattr(s, n) for s in scenes], 0.0) for n in ("value", "height", "clearance")
+        self.value, self.height, self.clearance, self.traits = (
+            _stacked([getattr(s, n) for s in scenes], 0.0) for n in ("value", "height", "clearance", "traits")
         )
         self.there = _stacked([np.ones(len(s.value), bool) for s in scenes], False)
         self.damaged_at = _stacked([s.damaged_at for s in scenes], -1)

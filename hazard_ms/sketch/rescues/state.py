@@ -22,19 +22,22 @@ class Domain:
     ease: tuple[float, float] = (1.0, 1.0)  # least and greatest factor on the share of attempts that work
     missed: float = 0.0  # share of sightings that do not happen
     revalued: float = 0.0  # share of targets whose value is drawn anew
+    again: float = 1.0  # factor on the share of pick-ups that work after each failure with the same target
 
     def __post_init__(self) -> None:
         for name in ("pace", "ease"):
             low, high = finite(getattr(self, name), 2, name)
             if not 0.0 < low <= high:
                 raise ValueError(f"{name} must be positive numbers, the least first, got {(low, high)}")
-        for name in ("missed", "revalued"):
+        for name in ("missed", "revalued", "again"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise ValueError(f"{name} must be a share from 0 to 1, got {getattr(self, name)!r}")
 
 
 AS_MEASURED = Domain()
-TRAINING = Domain((0.8, 1.3), (0.85, 1.0), 0.1, 0.3)  # wide enough to cover what the sketch leaves out [ours]
+# Of 4,670 pick-ups in recorded episodes of all agents 81 % of the first worked, 56, 55 and 45 % after 1, 2, 3 failures.
+AGAIN = 0.75
+TRAINING = Domain((0.8, 1.3), (0.85, 1.0), 0.1, 0.3, AGAIN)  # wide enough to cover what the sketch leaves out [ours]
 
 
 @dataclass
@@ -108,6 +111,10 @@ class Rescues:
         anew, drawn = (part[:, : self.value.shape[1]] for part in np.split(chance[:, 2:], 2, axis=1))
         values = np.where(anew < domain.revalued, np.where(drawn < 0.5, *VALUES), stack.value[scene])
         self.value[rows] = np.where(stack.there[scene], values, 0.0)
+
+    def copies(self, rows: Ints) -> Rescues:
+        """Rescues that are as `rows` [R] are now; a row may be there several times."""
+        return Rescues(**{each.name: getattr(self, each.name)[rows] for each in fields(self)})
 
     def rescue(self, rows: Ints, target: Ints, frame: Ints) -> None:
         """Count the `target` [R] of each of `rows` [R] as safe since `frame` [R]."""

@@ -1,0 +1,104 @@
+"""The commands `hazard-ms train ...`; each imports what it needs when it is called, so that help is quick."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import tyro
+
+from hazard_ms import registry
+from hazard_ms.evaluation.choices import PRESETS, flag, offer
+from hazard_ms.registry.version import __version__
+
+AGENT = "hazard_ms.agents.learned.bc:Bc"  # which asks these policies [ours]
+VALIDATION = 1000  # number of the first scene whose Value chooses the best round; training stays below it [ours]
+VALIDATION_SCENES = 24  # of that sort: 192 rescues, whose mean is known to 0.02 [ours]
+
+
+def bc(
+    env_id: Annotated[str, offer(registry.TASKS), flag("-e")],
+    output: Annotated[Path, flag("-o")],
+    seed: int = 0,
+    scenes: int = 225,
+    rounds: int = 4,
+    episodes: int = 1536,
+    physics: Annotated[str, offer(PRESETS)] = "paper",
+) -> int:
+    """Train the policy of the agent `bc` by behaviour cloning in the sketch, in minutes on one core.
+
+    It learns in generated scenes that belong to no split, and keeps the round that does best in others of that sort.
+    `hazard-ms evaluate --agents hazard_ms.agents.learned.bc:Bc:weights=FILE` scores it in the real environment.
+
+    Args:
+        env_id: Task.
+        output: Folder for bc_TASK.safetensors and bc_TASK.json.
+        seed: Seed of everything that is random.
+        scenes: Number of scenes to learn in.
+        rounds: Rounds of labelling and learning.
+        episodes: Rescues that are labelled in each round.
+        physics: Preset of the hazards.
+    """
+    import torch
+    from tqdm import tqdm
+
+    from hazard_ms.agents.learned.weights import ENDING, contents
+    from hazard_ms.learning.cloning import Student, train
+    from hazard_ms.machine.files import make_folder, write_together
+    from hazard_ms.sketch.scenes import SCENES, level_ranges, more_scenes
+    from hazard_ms.sketch.skill_times import load
+    from hazard_ms.spec.checks import whole
+
+    count = whole(scenes, 1, VALIDATION - SCENES, "scenes")
+    path = output / f"bc_{env_id}{ENDING}"
+    make_folder(output)
+    student = Student(level_ranges(env_id, physics), whole(seed, 0, 2**31, "seed"))
+    numbers = [*range(SCENES, SCENES + count), *range(VALIDATION, VALIDATION + VALIDATION_SCENES)]
+    made = [more_scenes(env_id, physics, number, 1)[0] for number in tqdm(numbers, "scenes", unit="scene")]
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        done = train(student, made[:count], made[count:], load("fetch"), seed, rounds, episodes, print)
+    finally:
+        torch.set_num_threads(threads)
+    facts: dict[str, Any] = {
+        "command": f"hazard-ms train bc -e {env_id} --seed {seed} --scenes {scenes} --rounds {rounds} "
+        f"--episodes {episodes} --physics {physics}",
+        "version": __version__,
+        "rounds": [vars(each) for each in done],
+    }
+    weights, told = contents(student.policy, env_id, facts)
+    write_together({path: weights, path.with_suffix(".json"): told})
+    print(f"hazard-ms evaluate -e {env_id} --agents {AGENT}:weights={path} greedy --split train")
+    return 0
+
+
+def score(
+    weights: tyro.conf.Positional[Path],
+    env_id: Annotated[str, offer(registry.TASKS), flag("-e")],
+    physics: Annotated[str, offer(PRESETS)] = "paper",
+) -> int:
+    """Print the mean Value of a policy in the sketch, in scenes that none is trained in, beside those of plain rules.
+
+    Args:
+        weights: File NAME.safetensors.
+        env_id: Task of the policy.
+        physics: Preset of the hazards.
+    """
+    from hazard_ms.agents.learned.weights import load as policy_of
+    from hazard_ms.learning.cloning import Student
+    from hazard_ms.learning.comparison import table
+    from hazard_ms.sketch.scenes import level_ranges, more_scenes
+    from hazard_ms.sketch.skill_times import load
+
+    student = Student(level_ranges(env_id, physics), 0)
+    student.policy = policy_of(weights, env_id)
+    scenes = more_scenes(env_id, physics, VALIDATION, VALIDATION_SCENES)
+    print(table(scenes, load("fetch"), {str(weights): student.play}))
+    return 0
+
+
+TrainCommand = (
+    Annotated[int, tyro.conf.subcommand(name="bc", constructor=bc)]
+    | Annotated[int, tyro.conf.subcommand(name="score", constructor=score)]
+)

@@ -1,0 +1,1 @@
+"""Training of policies over options in the sketch. Nothing here scores an agent."""

@@ -1,0 +1,41 @@
+"""The commands `hazard-ms train ...`, on one scene each."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from hazard_ms.agents.learned.weights import load
+from hazard_ms.cli import train
+from hazard_ms.cli.__main__ import main
+
+FIRE = "HazardFire-v1"
+
+
+@pytest.fixture(autouse=True)
+def _few_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(train, "VALIDATION_SCENES", 1)
+
+
+@pytest.mark.long
+def test_a_policy_is_trained_stored_and_scored(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    few = ["--scenes", "1", "--rounds", "1", "--episodes", "4"]
+    assert main(["train", "bc", "-e", FIRE, "-o", str(tmp_path / "made"), *few]) == 0
+    out = capsys.readouterr().out
+    path = tmp_path / "made" / f"bc_{FIRE}.safetensors"
+    assert "round 0: " in out and str(path) in out
+    told = json.loads(path.with_suffix(".json").read_text())
+    assert told["command"].endswith("--seed 0 --scenes 1 --rounds 1 --episodes 4 --physics paper")
+    assert len(told["rounds"]) == 1 and load(path, FIRE).shape.ranges == ((20.0, 600.0),)
+    assert main(["train", "score", str(path), "-e", FIRE]) == 0
+    (line,) = (line for line in capsys.readouterr().out.splitlines() if line.endswith(str(path)))
+    assert line.split()[0] == f"{told['rounds'][0]['student']:.3f}"
+
+
+def test_what_cannot_be_trained_or_scored_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["train", "bc", "-e", FIRE, "-o", str(tmp_path), "--scenes", "0"]) == 2
+    assert "scenes must be a whole number from 1 to 975" in capsys.readouterr().err
+    assert main(["train", "score", str(tmp_path / "none.safetensors"), "-e", FIRE]) == 2
+    assert "none.safetensors must hold a policy for HazardFire-v1" in capsys.readouterr().err

@@ -1,0 +1,56 @@
+"""Students of labels: the loss against its known minimum, and what is learned in a few seconds."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from hazard_ms.learning.cloning import SOFT, Round, Student, loss, scores, train
+from hazard_ms.learning.comparison import table
+from hazard_ms.sketch.policies import POLICIES
+from tests.worlds.sketch_scenes import chancy_times, random_scene
+
+FIRE = [(20.0, 600.0)]
+
+
+def test_the_loss_is_least_where_options_are_as_likely_as_they_are_worth() -> None:
+    """Shares in proportion to exp(worth / SOFT): there the gradient is zero, and any other logits are worse."""
+    chance = torch.Generator().manual_seed(0)
+    worth = torch.rand(5, 7, generator=chance) * 0.1
+    mask = torch.rand(5, 7, generator=chance) < 0.7
+    mask[:, 0] = True
+    best = (worth / SOFT).masked_fill(~mask, -1e9).requires_grad_()
+    least = loss(best, mask, worth)
+    least.backward()
+    assert best.grad is not None and float(best.grad.abs().max()) < 1e-6
+    for _ in range(20):
+        other = best.detach() + torch.randn(5, 7, generator=chance) * mask
+        assert float(loss(other, mask, worth)) > float(least.detach())
+
+
+@pytest.mark.long
+def test_a_student_learns_in_rounds_and_stays_as_in_its_best() -> None:
+    scenes = [random_scene(seed) for seed in range(12)]
+    student, told = Student(FIRE, 0), list[Round]()
+    before = scores(scenes, chancy_times(), student.play).mean()
+    done = train(student, scenes, scenes, chancy_times(), 0, 2, 64, told.append)
+    assert done == told and [each.number for each in done] == [0, 1] and done[1].labels > done[0].labels
+    best = max(each.student for each in done)
+    assert scores(scenes, chancy_times(), student.play).mean() == pytest.approx(best)
+    rule = scores(scenes, chancy_times(), POLICIES["rule"]).mean()
+    assert best > before + 0.02 and best > rule, (before, rule, best)
+    text = table(scenes, chancy_times(), {"mine": student.play})
+    assert f"{best:.3f}" in next(line for line in text.splitlines() if line.endswith("mine"))
+
+
+def test_training_is_repeatable() -> None:
+    scenes = [random_scene(seed) for seed in range(3)]
+    weights = []
+    for _ in range(2):
+        student = Student(FIRE, 4)
+        train(student, scenes, scenes, chancy_times(), 4, 1, 8, lambda _: None)
+        weights.append(torch.cat([part.flatten() for part in student.policy.parameters()]))
+        torch.manual_seed(99)  # of no consequence
+    assert torch.equal(*weights)
+    with pytest.raises(ValueError, match="rounds must be at least 1, got 0"):
+        train(student, scenes, scenes, chancy_times(), 4, 0, 8, lambda _: None)

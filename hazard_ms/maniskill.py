@@ -16,8 +16,7 @@ import runpy
 import sys
 from collections.abc import Sequence
 
-from hazard_ms.registry import load_plugin
-from hazard_ms.spec.checks import one_of
+from hazard_ms.registry import find, load_plugin
 
 PACKAGES = ("mani_skill.trajectory", "mani_skill.examples", "mani_skill.utils")  # where short names are looked up
 
@@ -39,8 +38,7 @@ def full_name(module: str) -> str:
         if module.startswith("mani_skill.") and importlib.util.find_spec(module) is not None:
             return module
         raise ValueError(f"MODULE must be a module of mani_skill, got {module!r}")
-    known = modules()
-    return known[one_of(module, known, "MODULE")]
+    return find(modules(), module, "MODULE")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -17,6 +17,7 @@ import tyro
 from hazard_ms.assets.foreign import printable
 from hazard_ms.cli.assets import AssetCommand
 from hazard_ms.cli.bench import bench
+from hazard_ms.cli.demos import DemosCommand
 from hazard_ms.cli.describe import describe
 from hazard_ms.cli.episodes import evaluate, play, replay
 from hazard_ms.cli.pictures import gallery, render
@@ -24,6 +25,7 @@ from hazard_ms.cli.regret import regret
 from hazard_ms.cli.report import report
 from hazard_ms.cli.scenes import SceneCommand
 from hazard_ms.cli.sketch import SketchCommand
+from hazard_ms.cli.train import TrainCommand
 from hazard_ms.cli.validate import validate
 from hazard_ms.registry.version import __version__
 
@@ -74,6 +76,16 @@ def sketch(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[Sket
     return int(done)
 
 
+def demos(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[DemosCommand]]) -> int:
+    """Demonstrations: record, verify, repair, merge, stats, show, export."""
+    return int(done)
+
+
+def train(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[TrainCommand]]) -> int:
+    """Policies: train bc, score one in the sketch."""
+    return int(done)
+
+
 COMMANDS: dict[str, Callable[..., Any]] = {
     "doctor": doctor,
     "version": version,
@@ -90,6 +102,8 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "scenes": scenes,
     "assets": assets,
     "sketch": sketch,
+    "demos": demos,
+    "train": train,
 }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import os
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -37,12 +38,12 @@ def page(result: EpisodeResult, video: str | None = None) -> str:
         video=video,
         colours=COLOURS,
         unfinished=UNFINISHED,
-        steps=_steps(result),
+        steps=rescue_curve(result),
     )
 
 
 def rendered(template: Path, **values: Any) -> str:
-    """The page that `template` makes of `values`; a template may include style.css, which all pages share."""
+    """The page that `template` makes of `values`; it may include style.css and timeline.html, which pages share."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader([template.parent, TEMPLATE.parent]),
         autoescape=True,
@@ -63,12 +64,19 @@ def address(video: Path, name: str) -> str:
     return quote(name, errors="surrogateescape")
 
 
+def link(target: Path, source: Path) -> str | None:
+    """The address of a file for the page `source`; None where there is no such file."""
+    if not target.is_file():
+        return None
+    return quote(os.path.relpath(target.resolve(), source.resolve().parent), errors="surrogateescape")
+
+
 def _percent(share: float | None) -> str:
     return "–" if share is None else f"{100 * share:.1f} %"
 
 
-def _steps(result: EpisodeResult) -> str:
-    """The curve of value rescued over frames as the points of an SVG line, in a box of 1000 x 100."""
+def rescue_curve(result: EpisodeResult) -> str:
+    """The curve of value rescued over frames as the points of an SVG line for timeline.html, in a box of 1000 x 100."""
     end = max(1, result.max_frames)
     total = sum(f.value for f in result.targets)
     points, level = [(0.0, 100.0)], 0.0

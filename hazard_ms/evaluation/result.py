@@ -138,13 +138,7 @@ class EpisodeResult:
             row = json.loads(content)
             number = row["format"]
             if number == FORMAT:
-                row.pop("score")
-                row["targets"] = tuple(_made(Fate, t) for t in row["targets"])
-                row["decisions"] = tuple(_made(DecisionRecord, d) for d in row["decisions"])
-                row["links"] = tuple(_made(Link, each) for each in row["links"])
-                found: EpisodeResult = _made(cls, row)
-                found.to_dict()
-                return found
+                return cls.from_dict(row)
         except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
             raise DamagedResultError(
                 f"{path} must hold the result of an episode, got {type(error).__name__}: {error}"
@@ -152,6 +146,17 @@ class EpisodeResult:
         raise ValueError(
             f"the format of {path} must be {FORMAT}, got {number!r:.100}; play its episode again, in another folder"
         )
+
+    @classmethod
+    def from_dict(cls, row: dict[str, Any]) -> EpisodeResult:
+        """The result that `to_dict` gave. Raises LookupError, TypeError, AttributeError or ValueError for all else."""
+        row = {name: entry for name, entry in row.items() if name != "score"}
+        row["targets"] = tuple(_made(Fate, t) for t in row["targets"])
+        row["decisions"] = tuple(_made(DecisionRecord, d) for d in row["decisions"])
+        row["links"] = tuple(_made(Link, each) for each in row["links"])
+        found: EpisodeResult = _made(cls, row)
+        found.to_dict()
+        return found
 
 
 def _made(kind: Any, row: dict[str, Any]) -> Any:

@@ -9,7 +9,7 @@ import cv2
 
 from hazard_ms.effects.raytracing.still import Image
 from hazard_ms.machine.files import drafts, write
-from hazard_ms.pictures.video import FINE, Video
+from hazard_ms.machine.video import FINE, Video
 
 QUALITY = 82  # of a JPEG, of 100
 

@@ -11,9 +11,9 @@ from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.runner import fates
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.machine.files import Draft
+from hazard_ms.machine.video import Video
 from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import Pixels
-from hazard_ms.pictures.video import Video
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.simulation.viewpoint import corner_view, following_view
 from hazard_ms.skills.context import LowLevel

@@ -78,7 +78,7 @@ class AgentEntry:
 
 
 Entry = TaskEntry | HazardEntry | RobotEntry | AgentEntry
-_Kind = TypeVar("_Kind", TaskEntry, HazardEntry, RobotEntry, AgentEntry)
+_Kind = TypeVar("_Kind")
 
 _tasks: dict[str, TaskEntry] = {}
 _hazards: dict[str, HazardEntry] = {}
@@ -146,7 +146,7 @@ def follow(added: Callable[[Entry], None], removed: Callable[[Entry], None] = la
 
 
 def find(table: Mapping[str, _Kind], name: Any, what: str) -> _Kind:
-    """The entry called `name` in one of the tables above. Raises ValueError for others, which says `what` it is."""
+    """The entry called `name` in a table by name. Raises ValueError for others, which says `what` it is."""
     from hazard_ms.spec.checks import one_of  # loads numpy
 
     return table[one_of(name, table, what)]
@@ -196,7 +196,7 @@ def load_plugin(text: str) -> ModuleType:
     return module
 
 
-def _add(table: dict[str, _Kind], entry: _Kind, form: re.Pattern[str] = NAME, shown: str = "'name'") -> None:
+def _add(table: dict[str, Any], entry: Entry, form: re.Pattern[str] = NAME, shown: str = "'name'") -> None:
     if not isinstance(entry.name, str) or not form.fullmatch(entry.name):
         raise ValueError(f"a registered name must look like {shown}, got {entry.name!r}")
     if entry.name in table:

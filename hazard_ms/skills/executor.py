@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import gymnasium as gym
 import numpy as np
@@ -39,7 +39,8 @@ class SkillEnv:
     they leave out the observation.
 
     `watch` is called after every frame with the low-level action, for films and recorders. At `until_frame` an action
-    is broken off, and `step` says that the episode is truncated: for pictures of a frame.
+    is broken off, and `step` says that the episode is truncated: for pictures of a frame. Looks are entered into all
+    `maps`, of which the first is `seen`: privileged agents write into that one, so recorders may add their own.
     """
 
     def __init__(self, env: gym.Env, watch: Callable[[LowLevel], None] | None = None) -> None:
@@ -54,7 +55,7 @@ class SkillEnv:
             raise ValueError(f"gym.make's control_mode must be {wanted!r} for skills of this robot, got {given!r}")
         if not base.observer.renders:
             raise ValueError(
-                "a renderer is needed for skills, which look through the head camera: see `hazard-ms doctor`"
+                "render_backend must be a renderer, got none: skills look through a camera (see `hazard-ms doctor`)"
             )
         self.env = env
         self._bare = is_bare(env)
@@ -119,6 +120,7 @@ class SkillEnv:
         start = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))
         cells, hazards = cells_for(self.base.specs[0].room.size), len(self.base.task.hazards)
         self._seen = SemanticMap(start, world.movable[0].cpu().numpy(), cells=cells, hazards=hazards)
+        self.maps = [self._seen]
         self.stage = Stage(self.base, self._seen, self.look)
         self._images: Images | None = None
         self._last: tuple[Action | None, Result | None] = (None, None)
@@ -139,11 +141,11 @@ class SkillEnv:
         if not isinstance(action, Action):
             raise ValueError(f"an action must be an Action(verb, target), got {action!r}")
         self._check(action)
-        doing = skill(self.stage, action)
-        self._reward = 0.0
+        self._reward, doing = 0.0, skill(self.stage, action)
         result = self.run(doing)
         if action.verb == PICK_UP and result.ok and action.target is not None:
-            self._seen.forget(self.base.world.index(0, action.target))
+            for seen in self.maps:
+                seen.forget(self.base.world.index(0, action.target))
         self._last = (action, result)
         info = self.base.get_info()
         terminated = action.verb == STOP or bool(info["success"][0]) or bool(info["fail"][0])
@@ -155,11 +157,9 @@ class SkillEnv:
         return self.decision(), self._reward, terminated, truncated, info
 
     def _check(self, action: Action) -> None:
-        if action.target is None:
-            return
-        if action.verb in (EXPLORE, STOP):
+        if action.verb in (EXPLORE, STOP) and action.target is not None:
             raise ValueError(f"the target of {action.verb} must be None, got {action.target!r}")
-        if action.verb == DROP and action.target not in self._containers():
+        if action.verb == DROP and action.target not in (None, *self._containers()):
             allowed = ", ".join(["None", *self._containers()])
             raise ValueError(f"the target of drop must be one of {allowed}, got {action.target!r}")
 
@@ -182,8 +182,7 @@ class SkillEnv:
                     self.watch(action)
                 action = next(doing)
         except StopIteration as ended:
-            result: Result = ended.value
-            return result
+            return cast(Result, ended.value)
 
     def _frame(self, action: LowLevel) -> float:
         """Let one frame pass, and return its reward; wrappers of others see every frame, as recorders must."""
@@ -202,10 +201,11 @@ class SkillEnv:
         rgb, view = base.observer.look()
         gone = torch.nonzero(world.held[0] | world.away[0]).flatten().tolist()
         where = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))
-        for index in gone:
-            self._seen.forget(index)
-        self._seen.update(view, self.frame, where, gone, base.episode.damage.damaged[0].cpu().numpy())
-        self._seen.mark_free(where, base.agent.build.radius)
+        for seen in self.maps:
+            for index in gone:
+                seen.forget(index)
+            seen.update(view, self.frame, where, gone, base.episode.damage.damaged[0].cpu().numpy())
+            seen.mark_free(where, base.agent.build.radius)
         hazard = np.zeros((len(base.task.hazards), 1, 1), np.float32) if view.level is None else view.level
         self._images = Images(rgb.cpu().numpy().copy(), view.depth, view.labels, hazard)
         self.look_seconds += time.perf_counter() - start

@@ -33,7 +33,7 @@ PASSED, FAILED, BROKEN, EMPTY = 0, 1, 2, 5  # exit codes of pytest; BROKEN: a fi
 LINKED = ("assets", "docs", ".git")  # large, and changed by no test
 # a line of `pytest -v` on a test that failed, or of its summary on a file that could not be imported
 FAILURE = re.compile(r"^(tests/.+::.+) (?:FAILED|ERROR) +\[ *\d+%\]$|^ERROR (tests/[^\s:]+)", re.MULTILINE)
-MADE = shutil.ignore_patterns("__pycache__", ".*_cache", ".hypothesis", ".venv", "build", "demo_output")
+MADE = shutil.ignore_patterns("__pycache__", ".*_cache", ".hypothesis", ".venv", "build", "demo*_output")
 
 
 @dataclass(frozen=True)

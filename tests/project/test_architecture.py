@@ -27,12 +27,15 @@ LAYERS = (  # a room may import only from rooms to its left, or from those besid
     ("sketch",),
     ("agents",),
     ("evaluation",),
-    ("pictures",),
+    ("pictures", "demonstrations", "learning"),
     ("validation",),
     ("bench",),
     ("cli",),
 )
-MOST_ROOMS, MOST_ARROWS = 30, 120
+MOST_ROOMS = 30
+# 4 more than before demonstrations, which play, look, store, and are read by the command; and 3 more than before
+# learning, which plays in the sketch, makes the policies that agents ask, and is begun by the command
+MOST_ARROWS = 127
 MOST_FILES = 16  # of a folder
 MOST_LINES = 250  # of a file
 HEAVY = ("torch", "warp", "sapien", "mani_skill", "scipy", "numpy", "gymnasium")  # that take seconds to import

@@ -1,4 +1,4 @@
-"""Charts as SVG for the page of a comparison: lines over frames, areas that add up, and bars."""
+"""Charts as SVG for pages about many episodes: lines over frames, areas that add up, and bars."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Curve = NDArray[np.float64]
+Stroke = tuple[str, float]  # colour and width [pixels] of a line
 
 AGENT_COLOURS = (  # one agent after the other; they begin again after the last
     "#5cadff",
@@ -34,15 +35,24 @@ def colour(number: int) -> str:
     return AGENT_COLOURS[number % len(AGENT_COLOURS)]
 
 
-def lines(curves: Mapping[str, Curve], frames: Curve, size: tuple[float, float] = (1000.0, 300.0)) -> str:
-    """Shares, 0 to 1, over `frames`, one line for each agent; the axis ends where the highest line does."""
+def lines(
+    curves: Mapping[str, Curve],
+    frames: Curve,
+    size: tuple[float, float] = (1000.0, 300.0),
+    strokes: Mapping[str, Stroke] | None = None,
+) -> str:
+    """Shares, 0 to 1, over `frames`, one line for each name; the axis ends where the highest line does.
+
+    `strokes`: how each line is drawn; if not given, in the colour of an agent.
+    """
+    strokes = strokes or {name: (colour(k), 2.2) for k, name in enumerate(curves)}
     highest = max(float(curve.max()) for curve in curves.values())
     step = 0.1 if highest <= 0.5 else 0.2
     top = step * max(1.0, np.ceil(highest / step - 1e-9))
     drawn = [
-        f'<polyline points="{_points(frames, curve / top, float(frames[-1]), size)}" fill="none" stroke="{colour(k)}" '
-        f'stroke-width="2.2"><title>{escape(name)}</title></polyline>'
-        for k, (name, curve) in enumerate(curves.items())
+        f'<polyline points="{_points(frames, curve / top, float(frames[-1]), size)}" fill="none" '
+        f'stroke="{strokes[name][0]}" stroke-width="{strokes[name][1]}"><title>{escape(name)}</title></polyline>'
+        for name, curve in curves.items()
     ]
     return _chart([*_axes(float(frames[-1]), top, step, size), *drawn], size, "Value rescued over frames")
 

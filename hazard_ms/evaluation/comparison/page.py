@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
 from markupsafe import Markup
 
@@ -60,7 +58,10 @@ def episode_pages(found: Sequence[Group], output: Path) -> dict[Path, Path]:
             name, number = f"{beside.stem}-{number}.html", number + 1
         taken.add(name)
         make_folder(folder)
-        write(folder / name, episode_page.page(kept.result, _link(kept.path.with_suffix(".mp4"), folder / name)))
+        write(
+            folder / name,
+            episode_page.page(kept.result, episode_page.link(kept.path.with_suffix(".mp4"), folder / name)),
+        )
         made[kept.path] = folder / name
     return made
 
@@ -94,7 +95,7 @@ def _shown(group: Group, summary: dict[str, Any], pages: Mapping[Path, Path], ou
         "lost": lost,
         "loss_chart": Markup(charts.bars({a: losses.pieces(row) for a, row in lost.items()}, "%")) if lost else "",
         "loss_parts": {part: (losses.named(part), fill) for part, fill in losses.COLOURS.items()},
-        "loss_links": {file.name: _link(where, output) for file, where in pages.items()},
+        "loss_links": {file.name: episode_page.link(where, output) for file, where in pages.items()},
         "rows": [_row(group, seed, scene, pages, output) for seed, scene in group.episodes],
     }
 
@@ -124,18 +125,11 @@ def _row(group: Group, seed: int, scene: str, pages: Mapping[Path, Path], output
             continue
         where = pages.get(kept.path)
         links = {
-            "page": where and _link(where, output),
-            "film": _link(kept.path.with_suffix(".mp4"), output),
+            "page": where and episode_page.link(where, output),
+            "film": episode_page.link(kept.path.with_suffix(".mp4"), output),
         }
         cells.append({"value": kept.result.tally.value, **links})
     return {"seed": seed, "scene": scene, "cells": cells}
-
-
-def _link(target: Path, source: Path) -> str | None:
-    """The address of a file for the page `source`; None where there is no such file."""
-    if not target.is_file():
-        return None
-    return quote(os.path.relpath(target.resolve(), source.resolve().parent), errors="surrogateescape")
 
 
 def _origin(kept: Kept) -> str:

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.env import inputs
-from hazard_ms.machine.render_backend import backend
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Decision, Result
 from hazard_ms.skills.executor import SkillEnv
@@ -71,11 +70,6 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         for name in FIXED:
             if name in settings:
                 raise ValueError(f"{name} must not be given, because skills decide it, got {settings[name]!r}")
-        wanted = settings.get("render_backend", "auto")
-        if (backend() if wanted == "auto" else wanted) in ("none", None):
-            raise ValueError(
-                "render_backend must be a renderer, got none: skills look through a camera (see `hazard-ms doctor`)"
-            )
         if max_frames is not None:
             settings["max_episode_steps"] = whole(max_frames, 1, 2**31, "max_frames")
         settings.setdefault("effects", "off" if render_mode is None else "full")  # effects only change pictures

@@ -98,7 +98,7 @@ def _record_hash(text: str) -> str:
 
 def source_copy(folder: Path) -> Path:
     """The files that a package is built from, and those that must not get into it, copied to `folder`."""
-    unwanted = shutil.ignore_patterns(".*", "__pycache__", "demo_output", "build", "dist", "_assets", "*.egg-info")
+    unwanted = shutil.ignore_patterns(".*", "__pycache__", "demo*_output", "build", "dist", "_assets", "*.egg-info")
     shutil.copytree(ROOT, folder, ignore=unwanted)
     return folder
 

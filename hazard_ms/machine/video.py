@@ -12,9 +12,9 @@ from typing import NoReturn
 import cv2
 import imageio_ffmpeg
 import numpy as np
+from numpy.typing import NDArray
 
 from hazard_ms.machine.files import Draft
-from hazard_ms.pictures.drawing import Pixels
 
 FAST = ("-preset", "veryfast", "-crf", "23")  # how ffmpeg encodes films of episodes [ours]
 FINE = ("-crf", "20")  # how it encodes few pictures [ours]
@@ -55,7 +55,7 @@ class Video:
                 f"ffmpeg must be a program that starts, got {program}: {error.strerror}; IMAGEIO_FFMPEG_EXE names it"
             ) from None
 
-    def add(self, frame: Pixels) -> None:
+    def add(self, frame: NDArray[np.uint8]) -> None:
         """Append a frame, [H, W, 3], uint8, RGB. Raises ValueError for another shape or type, and if ffmpeg stopped."""
         wide, high = self._size
         if frame.shape != (high, wide, 3) or frame.dtype != np.uint8:

@@ -1,0 +1,1 @@
+"""Exporters: demonstrations in the formats that learners of other packages read."""

@@ -1,0 +1,145 @@
+"""A LeRobot dataset of format v3.0, written with pyarrow and av alone: lerobot itself is not needed."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.demonstrations.export.lerobot_film import Film, picture_info, samples
+from hazard_ms.demonstrations.export.lerobot_stats import Stats, merged, stats_of
+from hazard_ms.demonstrations.export.lerobot_tables import Tables, write_episodes, write_info, write_words
+from hazard_ms.demonstrations.export.source import Common, Source, needed
+from hazard_ms.demonstrations.reading import Demonstration
+
+HEAD = "observation.images.head"
+STATE_NAMES = ("base.x", "base.y", "base.heading", "hand.x", "hand.y", "hand.z", "hand.holding")  # after the joints
+ROWS = (
+    "A row is a frame, or a picture of the head camera where pictures were recorded. Then the action of a row is the "
+    "one that was sent in the frame of its picture, and the reward is the sum over all frames up to the next picture."
+)
+Columns = dict[str, NDArray[Any]]
+
+
+def write(source: Source, folder: Path) -> str:
+    """Write the dataset into `folder`. Returns "", since readers open the folder itself.
+
+    Raises ValueError where pyarrow or av is missing, and for pictures that were not taken a whole number of times a
+    second.
+    """
+    for package in ("pyarrow", "av"):
+        needed(package, "lerobot")
+    rate = rate_of(source.common)
+    with closing(_Writing(folder, source.common, rate)) as writing:
+        for one in source:
+            writing.add(one)
+    write_words(folder / "meta/tasks.parquet", "task_index", list(writing.tasks))
+    write_words(folder / "meta/subtasks.parquet", "subtask_index", list(writing.subtasks))
+    write_episodes(folder, writing.episodes, writing.stats)
+    write_info(folder, source.common.robot, rate, writing.features(source), writing.episodes, merged(writing.stats))
+    (folder / "README.md").write_text(_card(source, rate))
+    return ""
+
+
+def rate_of(common: Common) -> int:
+    """Rows per second of simulated time. Raises ValueError where it is not a whole number, as LeRobot needs it."""
+    step = _step(common)
+    if common.fps % step:
+        raise ValueError(
+            f"every must divide the {common.fps:g} frames of a second for lerobot, got {step}; record it with another"
+        )
+    return round(common.fps / step)
+
+
+def rows_of(one: Demonstration, step: int) -> Columns:
+    """The rows of an episode of T frames, one for each `step` frames: R of them in each column, [R, ...].
+
+    The state holds joints [rad, m], their velocities [rad/s, m/s], and what `STATE_NAMES` lists [m, rad].
+    """
+    frames, total = one.frames, len(one.frames["action"])
+    at = np.arange(0, total, step)
+    body = [frames[name][at] for name in ("qpos", "qvel", "base", "hand")]
+    made: Columns = {
+        "observation.state": np.concatenate([*body, frames["held"][at, None] >= 0], axis=1).astype(np.float32),
+        "action": frames["action"][at],
+        "next.reward": np.add.reduceat(frames["reward"], at).astype(np.float32),
+        "next.done": np.arange(len(at)) == len(at) - 1,
+        "next.success": np.logical_or.reduceat(frames["success"], at),
+        "subtask_index": frames["subtask"][at].astype(np.int64),
+    }
+    return {**made, "observation.environment_state": frames["obs"][at]} if "obs" in frames else made
+
+
+class _Writing:
+    """The parts of a dataset that grow episode by episode."""
+
+    def __init__(self, folder: Path, common: Common, rate: int) -> None:
+        self.tasks: dict[str, int] = {}
+        self.subtasks: dict[str, int] = {}
+        self.episodes: list[dict[str, Any]] = []
+        self.stats: list[Stats] = []
+        self._step, self._rate, self._start = _step(common), rate, 0
+        self._tables = Tables(folder)
+        self._film = Film(folder, HEAD, rate) if common.pictures else None
+        self._columns: Columns = {}  # of the last episode
+        self._look: dict[str, Any] = {}  # of its pictures
+
+    def add(self, one: Demonstration) -> None:
+        """Add an episode. Raises ValueError for one with fewer pictures than rows."""
+        columns, number = rows_of(one, self._step), len(self.episodes)
+        count = len(columns["action"])
+        words = [self.subtasks.setdefault(text, len(self.subtasks)) for text in one.meta["subtasks"]]
+        columns["subtask_index"] = np.array(words)[columns["subtask_index"]]
+        columns["timestamp"] = (np.arange(count) / self._rate).astype(np.float32)  # [s]
+        columns["frame_index"] = np.arange(count)
+        columns["episode_index"] = np.full(count, number)
+        columns["index"] = np.arange(self._start, self._start + count)
+        task = one.meta["instruction"]
+        columns["task_index"] = np.full(count, self.tasks.setdefault(task, len(self.tasks)))
+        entry = {"episode_index": number, "tasks": [task], "length": count}
+        entry |= {"dataset_from_index": self._start, "dataset_to_index": self._start + count}
+        stats = {name: stats_of(column.reshape(count, -1)) for name, column in columns.items()}
+        if self._film is not None:
+            entry |= self._film.add(one, count)
+            shown = samples(one, count)
+            stats[HEAD] = stats_of(shown, picture=True)
+            self._look = picture_info(shown, self._rate)
+        self.episodes.append(entry | self._tables.add(columns))
+        self.stats.append(stats)
+        self._columns, self._start = columns, self._start + count
+
+    def features(self, source: Source) -> dict[str, Any]:
+        """The description of each column in info.json."""
+        joints = source.common.joints
+        names = {
+            "observation.state": [*joints, *(f"{joint}.velocity" for joint in joints), *STATE_NAMES],
+            "action": source.action_names,
+        }
+        made = {
+            name: {"dtype": str(column.dtype), "shape": list(column.shape[1:]) or [1], "names": names.get(name)}
+            for name, column in self._columns.items()
+        }
+        return {**made, **({HEAD: self._look} if self._look else {})}
+
+    def close(self) -> None:
+        """Finish the files that are being written."""
+        self._tables.close()
+        if self._film is not None:
+            self._film.close()
+
+
+def _step(common: Common) -> int:
+    """Frames from one row to the next."""
+    return common.every if common.pictures else 1
+
+
+def _card(source: Source, rate: int) -> str:
+    """The dataset card that LeRobot's users read first."""
+    common = source.common
+    return (
+        f"# {common.env_id} by {common.agent}\n\n{source.count} episodes in LeRobot's format v3.0, {rate} rows a "
+        f"second.\n\n{ROWS}\n\n```text\n{source.action_text}\n```\n"
+    )

@@ -1,0 +1,116 @@
+"""The films of a LeRobot dataset: those of many episodes one after the other, without encoding them again."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.demonstrations.export.lerobot_tables import CHUNK, FILM_SIZE, MB, place
+from hazard_ms.demonstrations.reading import Demonstration
+
+MOST_SAMPLES = 100  # pictures of an episode for statistics [ours]
+
+
+class Film:
+    """Appends the films of episodes to the files of a dataset; `close` finishes the last one."""
+
+    def __init__(self, folder: Path, key: str, rate: int) -> None:
+        """Begin the films of the camera `key` in the dataset `folder`, which show `rate` pictures a second."""
+        self._folder, self._key, self._rate = folder / "videos" / key, key, rate
+        self._number = -1  # of the file that is being written
+        self._file: Any = None
+        self._size = self._shown = 0  # bytes and pictures in it
+
+    def add(self, one: Demonstration, count: int) -> dict[str, Any]:
+        """Append the first `count` pictures of an episode. Returns the columns that say where they are.
+
+        Raises ValueError for an episode with fewer pictures, and for films that cannot follow each other.
+        """
+        import av
+
+        with av.open(str(_film(one))) as film:
+            stream = film.streams.video[0]
+            packets = [packet for packet in film.demux(stream) if packet.size][:count]
+            if len(packets) < count or any(packet.pts != packet.dts for packet in packets):
+                raise ValueError(f"{one.video} must hold {count} pictures in their order, got {len(packets)}")
+            size = sum(packet.size for packet in packets)
+            if self._file is None or self._size + size > FILM_SIZE * MB:
+                self._begin(stream)
+            if stream.codec_context.extradata != self._header:
+                raise ValueError(f"{one.video} must be encoded as the films before, got another header")
+            start = self._shown
+            for packet in packets:
+                packet.stream, packet.time_base = self._stream, Fraction(1, self._rate)
+                packet.pts = packet.dts = self._shown
+                packet.duration = 1
+                self._file.mux(packet)
+                self._shown += 1
+            self._size += size
+        chunk, number = divmod(self._number, CHUNK)
+        return {
+            f"videos/{self._key}/chunk_index": chunk,
+            f"videos/{self._key}/file_index": number,
+            f"videos/{self._key}/from_timestamp": start / self._rate,
+            f"videos/{self._key}/to_timestamp": self._shown / self._rate,
+        }
+
+    def _begin(self, like: Any) -> None:
+        import av
+
+        self.close()
+        self._number += 1
+        path = self._folder / place(self._number, "mp4")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._file = av.open(str(path), "w")
+        self._stream = self._file.add_stream_from_template(like)
+        self._stream.time_base = Fraction(1, self._rate)
+        self._header, self._size, self._shown = like.codec_context.extradata, 0, 0
+
+    def close(self) -> None:
+        """Finish the file that is being written."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+
+def samples(one: Demonstration, count: int) -> NDArray[np.uint8]:
+    """Some of the first `count` pictures of an episode, evenly spaced, [N, H, W, 3].
+
+    Raises ValueError for an episode without a film.
+    """
+    import av
+
+    chosen = set(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).round().astype(int).tolist())
+    with av.open(str(_film(one))) as film:
+        shown = enumerate(film.decode(video=0))
+        return np.stack([picture.to_ndarray(format="rgb24") for number, picture in shown if number in chosen])
+
+
+def picture_info(shown: NDArray[np.uint8], rate: int) -> dict[str, Any]:
+    """The entry of pictures [N, H, W, 3] in info.json."""
+    height, width, channels = shown.shape[1:]
+    return {
+        "dtype": "video",
+        "shape": [height, width, channels],
+        "names": ["height", "width", "channels"],
+        "info": {
+            "video.height": height,
+            "video.width": width,
+            "video.codec": "h264",
+            "video.pix_fmt": "yuv420p",
+            "video.is_depth_map": False,
+            "video.fps": rate,
+            "video.channels": channels,
+            "has_audio": False,
+        },
+    }
+
+
+def _film(one: Demonstration) -> Path:
+    if one.video is None:
+        raise ValueError(f"{one.folder} must hold a film of the head camera as the others do, got none")
+    return one.video

@@ -1,0 +1,87 @@
+"""Options of `hazard-ms demos record` as plain data: loading them for a help text imports nothing heavy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Annotated, Any
+
+from hazard_ms.demonstrations.layout import plain
+from hazard_ms.evaluation.choices import flag, offer
+from hazard_ms.evaluation.options import MOST, MOST_WORKERS, EnvOptions, EpisodeOptions
+
+STATE, NONE = "state", "none"
+PICTURES = ("rgb", "depth", "segmentation")
+OBSERVATIONS = (NONE, STATE, "rgb", "rgb+depth+segmentation")  # that help texts offer
+
+
+@dataclass(frozen=True)
+class RecordOptions:
+    """Options of `hazard-ms demos record`."""
+
+    env: EnvOptions = EnvOptions()
+    agent: Annotated[str, offer(("oracle", "planner"), "any agent"), flag("-a")] = "oracle"
+    """Teacher, as `hazard-ms play --agent` takes it."""
+    episodes: Annotated[int, flag("-n")] = 20
+    """Episodes, one for each seed; those that are there already are not played again."""
+    seed: Annotated[int, flag("-s")] = 0
+    """First seed."""
+    obs: Annotated[str, offer(OBSERVATIONS)] = NONE
+    """Recorded besides joints, poses and actions: none, or some of state, rgb, depth, segmentation, joined by +."""
+    every: int = 3
+    """Frames of the episode from one picture to the next."""
+    keep: float = 0.8
+    """Least value of an episode that is kept, as a share of what the best plan reaches from its start; 0: any. The
+    others go into failures/."""
+    verify: bool = True
+    """Simulate each episode again in a new environment, and keep it only if all hashes are equal."""
+    workers: int = 0
+    """Processes; 0: one for each core."""
+    output: Annotated[Path, flag("-o")] = Path("demos")
+    """Folder for datasets; that of this task and agent is OUTPUT/TASK/AGENT."""
+
+    def check(self) -> None:
+        """Check all options. Raises ValueError for what cannot be recorded."""
+        from hazard_ms.spec.checks import one_of, whole  # loads torch
+
+        whole(self.episodes, 1, MOST, "episodes")
+        whole(self.seed, 0, MOST, "seed")
+        whole(self.every, 1, MOST, "every")
+        whole(self.workers, 0, MOST_WORKERS, "workers")
+        if not 0.0 <= self.keep <= 1.0:
+            raise ValueError(f"keep must be a share from 0 to 1, got {self.keep}")
+        for part in self.obs.split("+"):
+            one_of(part, (STATE, *PICTURES) if "+" in self.obs else (NONE, STATE, *PICTURES), "obs")
+        self.env.check()
+
+    @property
+    def pictures(self) -> tuple[str, ...]:
+        """The kinds of pictures that are recorded."""
+        return tuple(kind for kind in PICTURES if kind in self.obs.split("+"))
+
+    @property
+    def state(self) -> bool:
+        """Whether observations of the mode "state" are recorded."""
+        return STATE in self.obs.split("+")
+
+    @property
+    def dataset(self) -> Path:
+        """Folder of the dataset."""
+        return self.output / self.env.env_id / plain(self.agent)
+
+    @property
+    def recipe(self) -> dict[str, Any]:
+        """The settings that all episodes of a dataset have in common."""
+        return {
+            "env_id": self.env.env_id,
+            "agent": self.agent,
+            "settings": self.env.settings,
+            "obs": "+".join([STATE] * self.state + list(self.pictures)) or NONE,
+            "every": self.every if self.pictures else 0,
+            "keep": self.keep,
+        }
+
+    def episode_options(self) -> list[EpisodeOptions]:
+        """The episodes, seed by seed."""
+        env = {f.name: getattr(self.env, f.name) for f in fields(EnvOptions)}
+        return [EpisodeOptions(**env, agent=self.agent, seed=self.seed + k) for k in range(self.episodes)]

@@ -1,0 +1,1 @@
+"""Watchers that take an episode down while it is played, and the labels that they give it."""

@@ -1,0 +1,94 @@
+"""`hazard-ms demos ...` from end to end, and recordings that are killed."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from hazard_ms.cli.__main__ import main
+from hazard_ms.demonstrations.layout import FAILURES, datasets
+from hazard_ms.demonstrations.options import RecordOptions
+from hazard_ms.demonstrations.reading import entries
+from hazard_ms.demonstrations.recording import RecordJob, attempt
+from hazard_ms.evaluation.result import EpisodeResult
+from tests.worlds.recordings import content, stored
+
+AGENT = "tests.evaluation.test_play:Short"
+
+
+def test_a_dataset_is_looked_after_by_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    dataset = tmp_path / "a" / "HazardFire-v1" / "oracle"
+    stored(dataset, 0)
+    assert main(["demos", "verify", str(tmp_path)]) == 0 and "1 episodes, no fault" in capsys.readouterr().out
+    assert main(["demos", "merge", str(dataset), "-o", str(tmp_path / "b")]) == 0
+    assert "1 episodes more" in capsys.readouterr().out
+    (dataset / "kitchen_b-00-s000000" / "frames.npz").write_bytes(b"")
+    assert main(["demos", "verify", str(dataset)]) == 1
+    assert "other bytes in frames.npz" in capsys.readouterr().out
+    assert main(["demos", "repair", str(tmp_path)]) == 0 and "1 moved aside" in capsys.readouterr().out
+    assert main(["demos", "stats", str(tmp_path / "b")]) == 0 and "1 of 1" in capsys.readouterr().out
+    assert main(["demos", "stats", str(tmp_path / "none")]) == 2
+    assert "folder must hold a dataset" in capsys.readouterr().err
+
+
+@pytest.mark.render
+@pytest.mark.long
+def test_episodes_are_recorded_verified_and_not_played_twice(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["demos", "record", "-a", AGENT, "--episodes", "2", "--keep", "0", "--workers", "2", "-o", str(tmp_path)]
+    assert main(words) == 0
+    (dataset,) = datasets(tmp_path)
+    made = entries(dataset)
+    assert {entry.seed for entry in made} == {0, 1} and all(entry.verified for entry in made)
+    assert main(["demos", "verify", str(tmp_path), "--replay", "--workers", "1"]) == 0
+    capsys.readouterr()
+    assert main(words) == 0
+    assert "2 of 2 episodes are there already" in capsys.readouterr().out and entries(dataset) == made
+    assert main([*words, "--physics", "shipped"]) == 2
+    assert "output must hold episodes with {'settings'" in capsys.readouterr().err
+    assert "| 2 of 2 " in (dataset / "README.md").read_text()
+
+
+@pytest.mark.render
+@pytest.mark.long
+def test_an_episode_that_differs_when_it_is_simulated_again_is_not_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from hazard_ms.demonstrations import recording
+
+    real = recording.job_of
+
+    def other(result: EpisodeResult, load: tuple[str, ...]) -> object:
+        return real(dataclasses.replace(result, decisions=result.decisions[:1]), load)
+
+    monkeypatch.setattr(recording, "job_of", other)
+    options = RecordOptions(agent=AGENT, episodes=1, keep=0.0, output=tmp_path)
+    options.dataset.mkdir(parents=True)
+    outcome = attempt(RecordJob(options.episode_options()[0], 60.0, record=options), lambda word: None)
+    assert not outcome.error
+    (entry,) = entries(options.dataset / FAILURES)
+    assert entry.reason.startswith("simulated again, it is ") and not entry.verified
+
+
+@pytest.mark.render
+@pytest.mark.long
+def test_a_recording_that_is_killed_again_and_again_ends_as_an_undisturbed_one(tmp_path: Path) -> None:
+    """In a process of its own, which makes copies of itself before anything is drawn."""
+    assert kill(tmp_path / "undisturbed", 0) == {"killed": 0, "wrong": 0}
+    told = kill(tmp_path / "killed", 3)
+    wanted, found = (next(datasets(tmp_path / name)) for name in ("undisturbed", "killed"))
+    assert told["killed"] and not told["wrong"] and content(entries(found)) == content(entries(wanted))
+
+
+def kill(output: Path, kills: int) -> dict[str, int]:
+    """What `tests.worlds.killed_recordings` prints."""
+    command = [sys.executable, "-m", "tests.worlds.killed_recordings", str(output), str(kills)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path(__file__).parents[2])
+    told: dict[str, int] = json.loads(done.stdout.splitlines()[-1])
+    return told

@@ -136,9 +136,8 @@ class Oracle(PrivilegedAgent):
         self.note = "too late by any plan, but the nearest"
         travel, held = problem.travel, problem.holding
         if held is not None:
-            return PlannedRescue(
-                held, problem.frame, problem.limit, 0.0, int(np.argmin([*travel.to_carts(travel.start)]))
-            )
+            carts = travel.to_carts(travel.start)
+            return PlannedRescue(held, problem.frame, problem.limit, 0.0, int(np.argmin(carts)) if carts else -1)
         met = [frame for frame, _ in travel.meetings(travel.start, problem.frame, range(travel.targets))]
         first = int(np.argmin(met))
         return PlannedRescue(first, met[first], problem.limit, 0.0, 0) if met[first] < problem.limit else None
@@ -201,11 +200,9 @@ class Oracle(PrivilegedAgent):
             return action
         if self._attempts.failures and self._attempts.rounds < ROUNDS:
             self._attempts = Attempts(rounds=self._attempts.rounds + 1, looked=True)
-            return (
-                self._say("try again what was given up", Action(EXPLORE))
-                if self._only_known
-                else self._choose(decision, truth)
-            )
+            if self._only_known:
+                return self._say("try again what was given up", Action(EXPLORE))
+            return self._choose(decision, truth)
         return self._say("nothing can be rescued any more", Action(STOP))
 
     def _searched(self, decision: Decision) -> Action | None:

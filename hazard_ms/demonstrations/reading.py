@@ -50,7 +50,7 @@ class Demonstration:
 def demonstrations(folder: Path) -> Iterator[Demonstration]:
     """The episodes of a dataset in the order of its manifest, each compared with its hashes before it is read.
 
-    Raises ValueError for a folder that is no dataset, and a DamagedDatasetError for an episode that is not as it was
+    Raises ValueError for a folder without a dataset, and a DamagedDatasetError for an episode that is not as it was
     written.
     """
     for entry in entries(folder):
@@ -69,7 +69,7 @@ def demonstrations(folder: Path) -> Iterator[Demonstration]:
 def entries(folder: Path) -> list[Entry]:
     """The lines of a dataset's manifest, without those that are torn; the last one of each name counts.
 
-    Raises ValueError for a folder that is no dataset, and for a dataset of another format.
+    Raises ValueError for a folder without a dataset, and for a dataset of another format.
     """
     path = folder / MANIFEST
     try:

@@ -28,7 +28,7 @@ def export(options: ExportOptions) -> int:
     """Write the dataset of `options` in their format, and print where it is. Returns 0.
 
     The folder appears when everything is in it. Raises ValueError for options that do not fit the format, for a folder
-    that is no dataset, and for an output that exists.
+    without a dataset, and for an output that exists already.
     """
     writer = WRITERS[one_of(options.format, WRITERS, "format")]
     for name, formats in TAKEN_BY.items():

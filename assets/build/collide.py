@@ -129,13 +129,14 @@ def _block(e: np.ndarray, top: float | None = None) -> list[list[float]]:
     return [_span([-e[0] / 2, -e[1] / 2, 0], [e[0] / 2, e[1] / 2, e[2] if top is None else top])]
 
 
-def _table(e: np.ndarray, top: float, leg: float, inset: float = 0.0) -> list[list[float]]:
-    """A slab `top` metres thick on four square legs."""
+def _table(e: np.ndarray, top: float, leg: float, inset: float = 0.0, round: bool = False) -> list[list[float]]:
+    """A slab `top` metres thick on four square legs; a `round` one is made of boxes that cross within its edge."""
     x, y = e[0] / 2 - inset, e[1] / 2 - inset
-    slab = _span([-e[0] / 2, -e[1] / 2, e[2] - top], e * [0.5, 0.5, 1])
+    corners = [(np.cos(a), np.sin(a)) for a in np.deg2rad([9.0, 27.0, 45.0, 63.0, 81.0])] if round else [(1.0, 1.0)]
+    slabs = [_span([*(-e[:2] / 2 * c), e[2] - top], [*(e[:2] / 2 * c), e[2]]) for c in corners]
     corners = [(sx, sy) for sx in (-1, 1) for sy in (-1, 1)]
     legs = [[sx * (x - leg / 2), sy * (y - leg / 2), (e[2] - top) / 2, leg / 2, leg / 2, (e[2] - top) / 2] for sx, sy in corners]
-    return [slab, *legs]
+    return [*slabs, *legs]
 
 
 def _pedestal(e: np.ndarray, top: float, stem: float, foot: float) -> list[list[float]]:

@@ -100,9 +100,13 @@ class Stage:
         ahead = self.robot.build.radius + BUMP_RADIUS / 2
         self.bumps.append((x + ahead * np.cos(heading), y + ahead * np.sin(heading), self.frame))
 
-    def room_ahead(self, height: float, most: float) -> float:
-        """Distance [m] from the base's middle to the next thing ahead higher than `height` [m], at most `most` [m]."""
+    def room_ahead(self, height: float, most: float, turn: float = 0.0) -> float:
+        """Distance [m] from the base's middle to the next thing ahead higher than `height` [m], at most `most` [m].
+
+        Ahead is where the base faces, or will face when it has turned by `turn` [rad], anticlockwise.
+        """
         x, y, heading = self.robot.base()
+        heading += turn
         radius = self.robot.build.radius
         along, across = np.meshgrid(np.arange(0.0, most, self.seen.cell / 4), np.linspace(-radius, radius, 9) * 0.8)
         points_x = x + along * np.cos(heading) - across * np.sin(heading)

@@ -127,8 +127,11 @@ def fold(stage: Stage, place: Place) -> Skill:
     return Result(freed.ok, freed.reason, moved.frames + freed.frames)
 
 
-def lacking(stage: Stage) -> float:
-    """Distance [m] by which the base may have to draw back so that the arm can fold or unfold before furniture."""
+def lacking(stage: Stage, turn: float = 0.0) -> float:
+    """Distance [m] by which the base may have to draw back so that the arm can fold or unfold before furniture.
+
+    The base faces where it will when it has turned by `turn` [rad], anticlockwise.
+    """
     room = stage.robot.build.elbow_room
-    missing = room - stage.room_ahead(LEG_ROOM, room)
+    missing = room - stage.room_ahead(LEG_ROOM, room, turn)
     return missing + SPARE if missing > 0.0 else 0.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,9 +14,9 @@ from hazard_ms.skills.decision import Result
 from hazard_ms.skills.motor.arm import HOVER, fold, follow, go, lacking, posture_for, postures
 from hazard_ms.skills.motor.drift import DRIFT_FRAMES, Drift
 from hazard_ms.skills.motor.kinematics import Posture, lifted
-from hazard_ms.skills.motor.motion import drive, turn_to
+from hazard_ms.skills.motor.motion import drive, turn_by, turn_to, turned
 from hazard_ms.skills.motor.navigation import LOW
-from hazard_ms.skills.motor.routes import HIT_COST, Route, quickest
+from hazard_ms.skills.motor.routes import CLOSELY, HIT_COST, Route, quickest
 from hazard_ms.skills.motor.surface import NEARLY, Leg, Surface, place_of
 from hazard_ms.skills.motor.walking import known, way_to
 
@@ -29,10 +28,13 @@ APPROACH_FRAMES = 120  # budget for coming near enough [frames]
 STAND_OFF = 0.85  # share of the arm's span at which the base stands for a pick-up
 SHUT_FRAMES = 4  # frames that the hand needs to shut or to open
 OVER = 0.25  # the hand comes down from above on things higher than this [m]
+TURNS = tuple(np.deg2rad([0.0, 30.0, -30.0, 60.0, -60.0]).tolist())  # of the base before it reaches [rad] [ours]
+LEAST = 25.0  # a route that is at most this much longer than what it takes to turn is not bettered [frames] [ours]
 FEW_HITS = 30  # points of a route that may lie in something: the map is coarse, and makes things wider [ours]
 ASTRAY = 0.4  # the hand is led to a thing that moved if it is this close [m] [ours]
 NEAR = 0.35  # and if it is this close where the arm was stopped [m] [ours]
 ONCE_MORE = 75  # frames after which it is not led to a thing again where the arm was stopped [ours]
+FREE = 0.2  # height by which the hand is raised from what it touched [m] [ours]
 AGAIN_FRAMES = 20  # budget of each movement by which the hand is led to a thing anew [frames] [ours]
 TRIES = 2  # number of postures that are tried
 GIVE_UP = 20  # frames after which no other posture is tried [ours]
@@ -45,11 +47,14 @@ MISSED = 0.2  # distance between where a thing will be and where the hand goes a
 
 @dataclass(frozen=True)
 class Way:
-    """A way to a thing: the number of its posture, its route, and the thing's middle when the hand gets there."""
+    """A way to a thing: the base turns, then the arm follows a route."""
 
-    number: int
+    number: int  # of the posture
+    turn: float  # of the base, anticlockwise [rad]
     route: Route
-    meets: NDArray[np.float64]  # [3] [m], world frame
+    meets: NDArray[np.float64]  # the thing's middle when the hand gets there, [3] [m], world frame
+    frames: float  # that it takes at least
+    cost: float  # these, and what touching things is likely to cost [frames]
 
 
 def pick_up(stage: Stage, index: int) -> Skill:
@@ -120,6 +125,7 @@ def _take(stage: Stage, index: int) -> Skill:
         way = _way_to_where_it_will_be(stage, index, tried, drift)
         if way is None:
             break
+        used += (yield from turn_by(stage, way.turn)).frames if way.turn else 0
         used += (yield from _grasp(stage, index, way, drift)).frames
         if stage.held == index:
             break
@@ -160,7 +166,9 @@ def _grasp(stage: Stage, index: int, way: Way, drift: Drift) -> Skill:
     if stage.would_take() != index and near and (moved.ok or used <= ONCE_MORE):
         goal = stage.position(index) if moved.ok else aims(stage, stage.position(index), index)[0]
         arm = posture_for(stage, goal).arm
-        if not moved.ok:  # it touched something, or the thing moved: once more from above
+        if not moved.ok:  # it touched something, or the thing moved: up, and once more from above
+            raised = lifted(stage.robot, stage.robot.arm(), FREE)
+            used += (yield from go(stage, raised, AGAIN_FRAMES, close, CLOSELY)).frames
             used += (yield from go(stage, lifted(stage.robot, arm, HOVER), AGAIN_FRAMES, close, NEARLY)).frames
         used += (yield from go(stage, arm, AGAIN_FRAMES, close)).frames
     if stage.would_take() == index:
@@ -183,25 +191,28 @@ def _way(
 ) -> Way | None:
     """The quickest way to the thing at `middle` [m], [3], by its frames and what it touches.
 
-    Goals in `tried` are left out; None if the arm is too short for all others, or too much is in its way. Aims and
-    places of the base are tried in turn, until there is a route that touches nothing.
+    Goals in `tried` are left out; None if the arm is too short for all others, or too much is in its way. The base may
+    turn first, or draw back meanwhile, unless the thing moves; that is tried until nothing better can be found.
     """
-    surface, back = Surface(stage, replace(place_of(stage, index), middle=middle)), lacking(stage)
-    heading, high = stage.robot.base()[2], middle[2] > OVER
-    best: Way | None = None
-    sides = len(stage.robot.pointing)
-    ends = itertools.product(standings(stage, middle), aims(stage, middle, index))
-    for first, (ahead, aim) in enumerate(ends):
-        moved = ahead * np.array([np.cos(heading), np.sin(heading), 0.0])
-        for number, posture in enumerate(postures(stage, aim - moved), first * sides):
-            if number in tried or posture.error > GETS_THERE:
-                continue
-            above = lifted(stage.robot, posture.arm, HOVER) if high else None
-            route = quickest(stage, [Leg(posture.arm, ahead)], surface, back, above, hit_cost=hit_cost)
-            if best is None or route.cost < best.route.cost:
-                best = Way(number, route, middle)
-        if best is not None and best.route.hits == 0:
-            break
+    place, best, number = replace(place_of(stage, index), middle=middle), None, 0
+    for turn in TURNS if hit_cost == HIT_COST else TURNS[:1]:
+        surface, back = Surface(stage, place, turn), lacking(stage, turn)
+        x, y, heading = stage.robot.base()
+        seen = turned(middle, (x, y), -turn)  # where the thing would be before a base that did not turn
+        turning = abs(turn) / stage.robot.build.turn_step
+        for ahead in standings(stage, middle) if turn == 0.0 else [0.0]:
+            moved = ahead * np.array([np.cos(heading), np.sin(heading), 0.0])
+            for aim in aims(stage, seen, index):
+                if best is not None and best.route.hits == 0 and best.frames <= turning + LEAST:
+                    return best
+                for posture in postures(stage, aim - moved):
+                    number += 1
+                    if number in tried or posture.error > GETS_THERE:
+                        continue
+                    above = lifted(stage.robot, posture.arm, HOVER) if middle[2] > OVER else None
+                    route = quickest(stage, [Leg(posture.arm, ahead)], surface, back, above, hit_cost=hit_cost)
+                    if best is None or turning + route.cost < best.cost:
+                        best = Way(number, turn, route, middle, turning + route.frames, turning + route.cost)
     return None if best is None or best.route.hits > FEW_HITS else best
 
 

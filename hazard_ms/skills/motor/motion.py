@@ -26,6 +26,13 @@ def wrap(angle: float) -> float:
     return float(np.arctan2(np.sin(angle), np.cos(angle)))
 
 
+def turned(point: NDArray[np.float64], about: tuple[float, float], turn: float) -> NDArray[np.float64]:
+    """`point` [m], [3], turned by `turn` [rad], anticlockwise, about the upright axis through `about` [m]."""
+    x, y = point[:2] - about
+    cos, sin = np.cos(turn), np.sin(turn)
+    return np.array([about[0] + cos * x - sin * y, about[1] + sin * x + cos * y, point[2]])
+
+
 def finite(number: float, name: str) -> float:
     """`number` as a float. Raises ValueError where it is not finite."""
     if not np.isfinite(number):

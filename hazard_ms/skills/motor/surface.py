@@ -51,14 +51,18 @@ def place_of(stage: Stage, index: int) -> Place:
 class Surface:
     """The heights that the arm keeps above, as the map has them now."""
 
-    def __init__(self, stage: Stage, place: Place) -> None:
-        """Take the map of `stage` as it is; around `place` the hand may come down."""
+    def __init__(self, stage: Stage, place: Place, turn: float = 0.0) -> None:
+        """Take the map of `stage` as it is; around `place` the hand may come down.
+
+        The base is taken to have turned by `turn` [rad], anticlockwise, from where it is.
+        """
         self._stage = stage
         self._place = place
         self._x, self._y, heading = stage.robot.base()
-        self._ahead = np.array([np.cos(heading), np.sin(heading)])
+        self._ahead = np.array([np.cos(heading + turn), np.sin(heading + turn)])
         self._origin, self._height = self._window()
         self._paths: dict[tuple[float, bytes], Paths] = {}
+        self._known: dict[tuple[float, bytes, float, bytes], int] = {}  # hits of legs that were checked before
 
     def _window(self) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
         """The map within WINDOW of the base: its corner [m], [2], and heights [m], [Y, X].
@@ -91,17 +95,14 @@ class Surface:
         return count
 
     def _hits(self, start: Leg, end: Leg) -> int:
-        points, middles, radii = [], [], []
-        steps = max(1, int(np.ceil(np.abs(end.arm - start.arm).max() / SPACING)))
-        for share in np.arange(1, steps + 1) / steps:
-            along = self._stage.robot.arm_places(start.arm + share * (end.arm - start.arm))
-            along = _dense(along[None])[0]
-            moved = (start.ahead + share * (end.ahead - start.ahead)) * self._ahead
-            along[:, :2] += moved
-            points.append(along)
-            middles.append(np.broadcast_to(moved + (self._x, self._y), (len(along), 2)))
-            radii.append(_radii(len(along)))
-        return int(self._inside(np.vstack(points), np.vstack(middles), np.concatenate(radii)).sum())
+        key = (start.ahead, start.arm.tobytes(), end.ahead, end.arm.tobytes())
+        if key not in self._known:
+            steps = max(1, int(np.ceil(np.abs(end.arm - start.arm).max() / SPACING)))
+            shares = np.arange(1, steps + 1) / steps
+            arms = start.arm + shares[:, None] * (end.arm - start.arm)
+            places = np.array([self._stage.robot.arm_places(arm, resting=True) for arm in arms])
+            self._known[key] = int(self._touching(places, start.ahead + shares * (end.ahead - start.ahead)).sum())
+        return self._known[key]
 
     def paths(self, start: NDArray[np.float64], ahead: float, cost: float) -> Paths:
         """The quickest paths over the roadmap from joints `start` [rad], [Joints], with the base `ahead` [m] of here.
@@ -110,19 +111,25 @@ class Surface:
         """
         key = (ahead, start.tobytes())
         if key not in self._paths:
-            heading = np.array([[self._ahead[0], self._ahead[1]], [-self._ahead[1], self._ahead[0]]])
-            middle = np.array([self._x, self._y]) + ahead * self._ahead
 
             def touched(places: NDArray[np.float64]) -> NDArray[np.int64]:
-                points = _dense(places)
-                count, along = points.shape[:2]
-                points[..., :2] = points[..., :2] @ heading + middle
-                base = np.broadcast_to(middle, (count * along, 2))
-                inside = self._inside(points.reshape(-1, 3), base, np.tile(_radii(along), count))
-                return np.asarray(inside.reshape(count, along).sum(axis=1))
+                return self._touching(places, np.full(len(places), ahead))
 
             self._paths[key] = Paths(self._stage.robot, start, touched, cost)
         return self._paths[key]
+
+    def _touching(self, places: NDArray[np.float64], ahead: NDArray[np.float64]) -> NDArray[np.int64]:
+        """How many points along each arm lie in something, [N].
+
+        Joints are at `places` [m], [N, P, 3], in the frame of the base, which is `ahead` [m], [N], of where it is.
+        """
+        points = _dense(places)
+        count, along = points.shape[:2]
+        middle = np.array([self._x, self._y]) + ahead[:, None] * self._ahead
+        points[..., :2] = points[..., :2] @ np.array([self._ahead, [-self._ahead[1], self._ahead[0]]])
+        points[..., :2] += middle[:, None]
+        inside = self._inside(points.reshape(-1, 3), np.repeat(middle, along, axis=0), np.tile(_radii(along), count))
+        return np.asarray(inside.reshape(count, along).sum(axis=1))
 
     def _inside(
         self, points: NDArray[np.float64], base: NDArray[np.float64], radius: NDArray[np.float64]

@@ -57,6 +57,16 @@ def test_episodes_are_recorded_verified_and_not_played_twice(
 
 @pytest.mark.render
 @pytest.mark.long
+def test_a_dataset_of_which_no_episode_was_kept_has_numbers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["demos", "record", "-a", AGENT, "--episodes", "1", "--keep", "1", "--no-verify", "-o", str(tmp_path)]
+    assert main(words) == 0
+    capsys.readouterr()
+    assert main(["demos", "stats", str(tmp_path)]) == 0
+    assert "| 0 of 1 " in capsys.readouterr().out
+
+
+@pytest.mark.render
+@pytest.mark.long
 def test_an_episode_that_differs_when_it_is_simulated_again_is_not_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -10,7 +10,7 @@ from hazard_ms.agents.base import agent
 from hazard_ms.agents.greedy import Greedy
 from hazard_ms.agents.planner import Planner
 from hazard_ms.sensing.sighting import Sighting
-from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Result
 from tests.worlds.playground import Playground, brief, play
 
 
@@ -82,6 +82,33 @@ def test_with_something_in_the_hand_it_searches_for_a_cart() -> None:
     ground = Playground(places, {"a": 1.0}, carts=("cart",))
     play(Planner(), ground)
     assert ground.rescued == {"a"}
+
+
+@pytest.mark.parametrize(("away", "verb"), [(1.2, DROP), (2.0, WALK_ONE_STEP), (2.7, WALK_TO)])
+def test_near_a_cart_the_drop_drives_the_rest_of_the_way(away: float, verb: str) -> None:
+    """A drop drives on by up to 0.7 m, while the arm unfolds."""
+    ground = Playground({"a": (0.6, 0.0), "cart": (0.0, away)}, {"a": 1.0}, carts=("cart",))
+    player = begun(ground)
+    ground.do(player.act(ground.decision()))
+    assert ground.held == "a" and player.act(ground.decision()) == Action(verb, "cart")
+
+
+def test_after_a_step_that_did_not_bring_it_near_it_walks_up_to_the_cart() -> None:
+    """A step that ends where it begins takes no frames: another one would follow for ever."""
+    ground = Playground({"a": (0.6, 0.0), "cart": (0.0, 2.0)}, {"a": 1.0}, carts=("cart",))
+    player = begun(ground)
+    ground.do(player.act(ground.decision()))
+    ground.last = player.act(ground.decision()), Result(True, "", 0)
+    assert player.act(ground.decision()) == Action(WALK_TO, "cart")
+
+
+def test_after_a_drop_that_failed_it_walks_up_to_the_cart() -> None:
+    ground = Playground({"a": (0.6, 0.0), "cart": (0.0, 1.2)}, {"a": 1.0}, carts=("cart",))
+    player = begun(ground)
+    ground.do(player.act(ground.decision()))
+    drop = player.act(ground.decision())
+    ground.last = drop, Result(False, "cart_unreachable", 5)
+    assert player.act(ground.decision()) == Action(WALK_TO, "cart")
 
 
 def test_it_goes_on_to_what_it_walks_to_unless_another_is_clearly_better() -> None:

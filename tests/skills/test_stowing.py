@@ -19,6 +19,8 @@ SIZE = (0.56, 0.94, 1.02)  # of a cart [m]
 X, RIM = 1.1, 0.885  # where the cart stands, and the height of its basket [m]
 SIDE, END, WALL = 0.266, 0.44, 0.035  # distances of the basket's walls from its middle, and their thickness [m]
 FLOOR = 0.51  # of the basket, which the arena takes for the cart's middle [m]
+BACK = 0.5  # how much farther from the cart it may begin [m]
+WALK = 62.0  # frames that the base takes to drive a metre [1/m]
 LOW_FALL = 0.2  # most that a thing may fall to the rim [m]
 CART = (
     Box("cart", (X, 0.0, FLOOR), (2 * SIDE, 2 * END, 0.04), target=False),
@@ -71,6 +73,21 @@ def test_a_thing_is_let_go_in_the_basket(street: Arena, name: str) -> None:
     half = float(street.world.extent[0, index, 2]) / 2
     assert abs(x - X) < SIDE and abs(y) < END
     assert z - half < RIM + LOW_FALL  # wind has no time to carry it past the walls
+
+
+@pytest.mark.long
+def test_from_farther_away_the_base_drives_on_while_the_arm_unfolds(street: Arena) -> None:
+    frames = []
+    for back in (0.0, BACK):
+        cart = begin(street)
+        index = street.index("can")
+        assert street.run(pick_up(street.stage, index)).ok
+        street.agent.place(torch.tensor([0]), torch.tensor([[-back, 0.0]]), torch.tensor([0.0]))
+        began = street.stage.frame
+        x, y, _ = let_go_at(street, cart)
+        assert abs(x - X) < SIDE and abs(y) < END
+        frames.append(street.stage.frame - began)
+    assert frames[1] - frames[0] < 0.85 * WALK * BACK, frames
 
 
 def test_a_thing_stays_in_the_hand_where_no_basket_is_within_reach(street: Arena) -> None:

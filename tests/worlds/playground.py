@@ -15,6 +15,7 @@ from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STE
 from hazard_ms.tasks import task_of
 
 STRIDE = 1.6  # a walk gives up after 100 frames of 1/62 m
+DRIVE_ON = 1.4  # from here a drop drives on to a cart [m]
 
 
 def brief(env_id: str = "HazardFire-v1", seed: int = 0) -> Brief:
@@ -122,7 +123,7 @@ class Playground:
     def _drop(self, cart: str | None) -> Result:
         if self.held is None:
             return Result(False, "not_holding", 1)
-        if self.carts and (cart is None or np.hypot(*(np.array(self.places[cart]) - self.at)) > 0.8):
+        if self.carts and (cart is None or np.hypot(*(np.array(self.places[cart]) - self.at)) > DRIVE_ON):
             return Result(False, "cart_unreachable", 1)
         self.rescued.add(self.held)
         self.held = None

@@ -11,6 +11,7 @@ from hazard_ms.skills.failures import TOO_FAR
 PROGRESS = 0.2  # a walk that got it this far is not a failure, even if it did not arrive [m]
 LEGS = 12  # walks without arrival to one thing that together count as a failure: 19 m, longer than any way [ours]
 ELSEWHERE = 1.0  # distance from where a pick-up failed at which another try is worthwhile [m] [ours]
+DRIFTED = 0.4  # distance that the thing must have moved for another try from the same place [m] [ours]
 SAME_AGAIN = 0.05  # chance of a pick-up where one has just failed, as a share of that elsewhere [ours]
 
 Place = tuple[float, float]  # [m], world frame
@@ -24,12 +25,13 @@ class Memory:
         """Begin an episode; `seed` fixes all randomness in it."""
         self.fire = FireWatch(seed)
         self.failures: dict[str, int] = {}  # of walks to a thing, and of picking it up
-        self.missed: dict[str, list[Place]] = {}  # where it stood when the hand did not get to a thing
+        self.missed: dict[str, list[tuple[Place, Place]]] = {}  # failed pick-ups: where it stood then, and the thing
         self.visits: dict[str, int] = {}  # to things in search
         self.looks: list[Place] = []  # where it looked around
         self.tracks: dict[str, list[Seen]] = {}  # frame and place of the sightings of each target
         self._legs: dict[str, int] = {}
         self._before: tuple[Action, Place] | None = None  # the last action, and where it began
+        self._lay: Place | None = None  # where the thing was seen that this action was for
 
     def note(self, decision: Decision) -> None:
         """Enter what the last action came to, and where the targets were seen."""
@@ -46,6 +48,7 @@ class Memory:
     def chose(self, decision: Decision, action: Action) -> None:
         """Enter the action taken at `decision`."""
         self._before = (action, decision.agent_position)
+        self._lay = None if action.target is None else _seen(decision, action.target)
 
     def _judge(self, action: Action, start: Place, decision: Decision) -> None:
         """Count the last action's failure, unless it was a walk that came further."""
@@ -61,10 +64,21 @@ class Memory:
                 return
         self.failures[name] = self.failures.get(name, 0) + 1
         if action.verb == PICK_UP and decision.last_result is not None and decision.last_result.reason != TOO_FAR:
-            self.missed.setdefault(name, []).append(decision.agent_position)
+            stood = decision.agent_position
+            self.missed.setdefault(name, []).append((stood, self._lay or stood))
 
     def chance(self, decision: Decision, name: str) -> float:
         """The chance that a pick-up begun at `decision` works, as a share of the chance of a first attempt."""
-        places = self.missed.get(name, ())
-        again = any(np.hypot(*np.subtract(decision.agent_position, place)) < ELSEWHERE for place in places[-1:])
-        return (SAME_AGAIN if again else 1.0) / (1 + len(places))
+        missed, now = self.missed.get(name, ()), _seen(decision, name)
+        again = any(
+            np.hypot(*np.subtract(decision.agent_position, stood)) < ELSEWHERE
+            and (now is None or np.hypot(*np.subtract(now, lay)) < DRIFTED)
+            for stood, lay in missed[-1:]
+        )
+        return (SAME_AGAIN if again else 1.0) / (1 + len(missed))
+
+
+def _seen(decision: Decision, name: str) -> Place | None:
+    """The place where a thing was seen last; None if it is not on the map."""
+    sighting = decision.map.objects.get(decision.index(name))
+    return None if sighting is None else (float(sighting.position[0]), float(sighting.position[1]))

@@ -25,7 +25,7 @@ from hazard_ms.sensing.target_table import Target
 from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.ways import WALK
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import WALK_TO, Action, Decision
+from hazard_ms.skills.decision import WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.motor.walking import ARRIVED
 
 FOUND_WAY = 1.5  # distance to fetch what is found in a search [m] [ours]
@@ -90,6 +90,11 @@ class Outlook:
         """The length of the way to a goal from where the agent stands [m]."""
         (met, _), *_ = self.problem.travel.meetings(self.problem.travel.start, 0.0, [goal])
         return max(met - TURNING, 0.0) / WALK
+
+    def way_to_cart(self, cart: int) -> float:
+        """The length of the way to one of `carts`, by its number, from where the agent stands [m]."""
+        travel = self.problem.travel
+        return max(travel.to_carts(travel.start)[cart] - TURNING, 0.0) / WALK
 
     def is_search(self, goal: int) -> bool:
         """Whether a goal is a place to search."""
@@ -179,7 +184,7 @@ def _frames(
     start = decision.agent_position
     frames = frames_between(decision.map, start, np.array(goals), np.array(near), radius)
     for number, name in enumerate(names):
-        if decision.last_action == Action(WALK_TO, name):
+        if decision.last_action in (Action(WALK_TO, name), Action(WALK_ONE_STEP, name)):
             frames[-1, number] *= 1.0 - loyalty
     return frames
 

@@ -9,12 +9,14 @@ from hazard_ms.agents.base import Agent, distance, known, open_targets
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook, Weights, outlook
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import TOO_FAR
+from hazard_ms.skills.motor.walking import MIDPOINT
 from hazard_ms.spec.checks import whole
 
 FARTHEST = 2.2  # distance from the base at which a pick-up surely may begin: 2.5 m from the shoulder [m]
 REACH = 0.2  # way to a target from which it is picked up without walking up to it first [m]
+DROP_WAY = 0.7  # way left to a cart from which a drop drives on by itself, while the arm unfolds [m] [ours]
 GIVE_UP = 4  # failures with one thing, after which it is given up [ours]
 MOST_FAILURES = 100  # any larger number to give up at must be a mistake [ours]
 
@@ -81,13 +83,23 @@ class Searcher(Agent):
         if begin is None:
             return self._without_plan(decision, ahead)
         if decision.held is not None:
-            return self._say(begin.why, Action(WALK_TO, ahead.carts[begin.cart]))
+            return self._say(begin.why, self._towards(decision, ahead.carts[begin.cart], ahead.way_to_cart(begin.cart)))
         name = ahead.name(begin.goal)
         if ahead.is_search(begin.goal):
             return self._search(decision, name, begin.why)
         near = distance(decision, decision.map.objects[decision.index(name)]) < FARTHEST
         near &= ahead.way(begin.goal) <= self._reach and not self._memory.failures.get(name)
         return self._say(begin.why, Action(PICK_UP if near else WALK_TO, name))
+
+    def _towards(self, decision: Decision, cart: str, way: float) -> Action:
+        """The next action with what is for a `cart` at the end of a `way` [m]: a drop drives on by itself."""
+        away = distance(decision, decision.map.objects[decision.index(cart)])
+        if self._memory.failures.get(cart):
+            return Action(WALK_TO, cart)
+        if away <= FARTHEST and way <= DROP_WAY:
+            return Action(DROP, cart)
+        step = Action(WALK_ONE_STEP, cart)
+        return step if way <= DROP_WAY + MIDPOINT and decision.last_action != step else Action(WALK_TO, cart)
 
     def _search(self, decision: Decision, name: str, why: str) -> Action:
         """Begin to walk to a place from which to look around."""

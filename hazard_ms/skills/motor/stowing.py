@@ -33,10 +33,12 @@ SUNK = 0.03  # depth below the rim to which the middle of a thing, or its base, 
 OFF = 0.06  # most that a posture may bring a thing off its place in the basket [m] [ours]
 RAISED = 0.2  # height above its place in the basket to which a thing is brought first [m] [ours]
 ABOVE = 0.15  # that posture is reached when every joint is this close [rad] [ours]
+LOWERED = 0.02  # and the one in the basket, where the thing is not in it before [rad] [ours]
 DRAW_BACK = 0.3  # how much farther than for a table the base may draw back [m] [ours]
 FALL = 0.3  # most that a thing may fall into a basket [m] [ours]
 MARGIN = 0.06  # least distance from the walls of the basket to what falls into it [m] [ours]
 FALL_FRAMES = 10  # frames in which it falls in [ours]
+DRIVE_ON = 0.9  # most that the base drives straight on while the arm unfolds: the arm takes as long [m] [ours]
 HIT_COST = 20.0  # what a point of the arm in a cart counts as much as: carts do not give way [frames] [ours]
 TRIES = 2  # number of postures that are tried
 SIDES = tuple(np.deg2rad([75.0, 45.0, 15.0, -15.0]).tolist())  # how far down the fingers point [rad] [ours]
@@ -84,20 +86,23 @@ def _into_bag(stage: Stage) -> Skill:
 
 
 def _into_cart(stage: Stage, cart: int, held: int) -> Skill:
-    """Come near, lower the thing into the basket, open the hand, fold the arm back."""
+    """Unfold the arm over the basket while the base drives on, lower the thing, open the hand, fold the arm back.
+
+    Where the arm is too short even so, the base comes near first.
+    """
     if not known(stage, cart):
         return Result(False, failures.UNKNOWN)
     if float(np.linalg.norm(stage.position(cart) - stage.robot.shoulder())) > LIMIT:
         return Result(False, failures.CART_UNREACHABLE)
-    used = 0
-    spot = _basket(stage, cart).spots[-1]
-    if float(np.hypot(*(spot[:2] - stage.robot.base()[:2]))) > stage.robot.build.span(float(spot[2]))[1]:
-        used += (yield from come_near(stage, stage.position(cart))).frames
-    basket = _basket(stage, cart)
-    used += (yield from turn_to(stage, basket.spots[0][:2])).frames
-    tried = set[int]()
+    used, tried, came_near = 0, set[int](), False
     while len(tried) < TRIES:
-        way = _way(stage, basket, held, tried)
+        basket = _basket(stage, cart)
+        used += (yield from turn_to(stage, basket.spots[0][:2])).frames
+        way = _way(stage, basket, held, tried) if came_near or _ahead(stage, basket) else None
+        if way is None and not came_near:
+            used += (yield from come_near(stage, stage.position(cart))).frames
+            came_near = True
+            continue
         if way is None:
             break
         tried.add(way.number)
@@ -109,6 +114,13 @@ def _into_cart(stage: Stage, cart: int, held: int) -> Skill:
     return Result(False, failures.CART_UNREACHABLE, used)
 
 
+def _ahead(stage: Stage, basket: Basket) -> bool:
+    """Whether the arm is long enough for the basket, if the base drives straight on while it unfolds."""
+    spot = basket.spots[-1]
+    far = float(np.hypot(*(spot[:2] - stage.robot.base()[:2])))
+    return far - min(standings(stage, spot)[-1], DRIVE_ON) <= stage.robot.build.span(float(spot[2]))[1]
+
+
 def _lower_into(stage: Stage, cart: int, held: int, way: Way) -> Skill:
     """Bring the `held` thing above the basket, lower it, open the hand if it is in, and raise the hand again."""
 
@@ -116,7 +128,7 @@ def _lower_into(stage: Stage, cart: int, held: int, way: Way) -> Skill:
         return _inside(stage, cart, held)
 
     used = (yield from follow(stage, way.route, close=ABOVE)).frames
-    used += (yield from go(stage, way.arm, REACH_FRAMES, inside)).frames
+    used += (yield from go(stage, way.arm, REACH_FRAMES, inside, LOWERED)).frames
     placed = inside() or _inside(stage, cart, held, falling=True)
     if placed:
         used += (yield from _open(stage, stage.robot.arm(), held)).frames
@@ -125,22 +137,22 @@ def _lower_into(stage: Stage, cart: int, held: int, way: Way) -> Skill:
 
 
 def _way(stage: Stage, basket: Basket, held: int, tried: set[int]) -> Way | None:
-    """The quickest way to bring the `held` thing into the `basket`.
+    """The quickest way to bring the `held` thing into the `basket`; the base may drive straight on meanwhile.
 
     None if the arm is too short for all postures that are not in `tried`.
     """
     surface, back, heading = Surface(stage, basket.place), lacking(stage) + DRAW_BACK, stage.robot.base()[2]
     carried = _carried(stage, held)
     best: Way | None = None
-    ends = ((spot, ahead) for spot in basket.spots for ahead in standings(stage, spot))
+    ends = ((spot, min(ahead, DRIVE_ON)) for spot in basket.spots for ahead in standings(stage, spot))
     for number, ((spot, ahead), down) in enumerate(itertools.product(ends, SIDES)):
-        if best is not None and best.route.hits == 0:
-            break
         if number in tried:
             continue
         moved = ahead * np.array([np.cos(heading), np.sin(heading), 0.0])
         for posture in _postures(stage, spot - moved, carried, down):
             above = lifted(stage.robot, posture.arm, RAISED)
+            if best is not None and stage.arm_gap(above) / stage.robot.build.arm_step >= best.route.cost:
+                continue
             route = quickest(stage, [Leg(above, ahead)], surface, back, hit_cost=HIT_COST)
             if best is None or route.cost < best.route.cost:
                 best = Way(number, route, posture.arm)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from hazard_ms.agents.search.memory import LEGS, SAME_AGAIN, Memory
+from hazard_ms.agents.search.memory import DRIFTED, LEGS, SAME_AGAIN, Memory
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action, Decision, Result
 from hazard_ms.skills.failures import TOO_FAR
 from tests.worlds.playground import Playground
@@ -58,6 +58,16 @@ def test_a_second_try_is_worth_half_from_elsewhere_and_hardly_any_from_there() -
     assert memory.chance(ground.decision(), "a") == pytest.approx(SAME_AGAIN / 2)
     assert memory.chance(replace(ground.decision(), agent_position=(3.0, 1.0)), "a") == pytest.approx(1 / 2)
     assert memory.chance(ground.decision(), "b") == 1.0
+
+
+@pytest.mark.parametrize(("drift", "chance"), [(0.9 * DRIFTED, SAME_AGAIN / 2), (1.1 * DRIFTED, 1 / 2)])
+def test_a_second_try_is_worth_half_from_there_too_where_the_thing_has_drifted(drift: float, chance: float) -> None:
+    ground, memory, pick = looked(), Memory(0), Action(PICK_UP, "a")
+    memory.chose(ground.decision(), pick)
+    ground.places["a"] = (2.0, drift)
+    ground.look()
+    memory.note(after(ground, pick, False))
+    assert memory.chance(ground.decision(), "a") == pytest.approx(chance)
 
 
 def test_a_thing_that_went_away_is_as_easy_to_pick_up_as_before() -> None:

@@ -21,15 +21,16 @@ from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import PlannedRescue, Problem
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
-from hazard_ms.skills.motor.walking import ARRIVED
+from hazard_ms.skills.motor.walking import ARRIVED, MIDPOINT
 from hazard_ms.skills.options.landmarks import landmarks
 from hazard_ms.skills.options.macros import Macro, play
 from hazard_ms.skills.options.options import LANDMARK, LOOK, Option
 
 MOST_REACH = 2.0  # distance up to which it reaches for a thing after a walk has arrived [m] [ours]
 NEAR = 0.2  # beyond where a walk arrives, from which it reaches for a thing without walking [m] [ours]
+NEAR_CART = 0.7  # beyond where a walk arrives, from which a drop drives on while the arm unfolds [m] [ours]
 PROGRESS = 0.2  # a walk that got it this far is not a failure [m]
 GIVE_UP = 3  # failures after which a target is left for the end [ours]
 AGAIN = 0.7  # chance of a pick-up after one that failed, begun elsewhere: 9 of 12 in 75 episodes of honest agents
@@ -103,7 +104,9 @@ class Oracle(PrivilegedAgent):
         met = truth.future().position_at(step.met)[index]
         moves = float(np.linalg.norm(met - truth.position(index))) > MOVED
         truth.aim = {index: met} if moves and decision.walked_up_to != name else {}
-        return Action(WALK_TO, name)
+        one_step = Action(WALK_ONE_STEP, name)
+        nearly = holding and decision.last_action != one_step and self._is_near(decision, truth, index, MIDPOINT)
+        return one_step if nearly else Action(WALK_TO, name)
 
     def _next_rescue(self, decision: Decision, truth: Truth) -> PlannedRescue | None:
         """The first step of the best plan, with indices along B for targets; None where nothing can be rescued."""
@@ -160,13 +163,14 @@ class Oracle(PrivilegedAgent):
         """Whether a thing is part of the plan: it failed fewer than `most` times and, if that counts, it is known."""
         return truth.knows(index) and self._attempts.failures.get(name, 0) < most
 
-    def _is_near(self, decision: Decision, truth: Truth, index: int) -> bool:
-        """Whether to reach for a thing from here: a walk has arrived, or would at once and nothing failed before."""
+    def _is_near(self, decision: Decision, truth: Truth, index: int, ahead: float = 0.0) -> bool:
+        """Whether to reach for a thing from `ahead` [m] of here: a walk has arrived, or soon would; nothing failed."""
         away = float(np.hypot(*(truth.position(index)[:2] - decision.agent_position)))
         name = decision.names[index]
         if decision.walked_up_to == name:
             return away <= MOST_REACH
-        return not self._attempts.failures.get(name, 0) and away <= ARRIVED + self._scene.edges[index] + NEAR
+        near = ARRIVED + self._scene.edges[index] + (NEAR if decision.held is None else NEAR_CART)
+        return not self._attempts.failures.get(name, 0) and away - ahead <= near
 
     def _arrived_at(self, decision: Decision, truth: Truth, planned: int) -> int:
         """The target that it has just walked up to, since it is there now, else the planned one; indices along B."""
@@ -185,7 +189,7 @@ class Oracle(PrivilegedAgent):
         if decision.last_result.ok and not (stuck and decision.walked_up_to is not None and truth.aim):
             return
         moved = float(np.hypot(*np.subtract(decision.agent_position, start)))
-        if action.target is None or (action.verb == WALK_TO and moved > PROGRESS):
+        if action.target is None or (action.verb in (WALK_TO, WALK_ONE_STEP) and moved > PROGRESS):
             return
         failures = self._attempts.failures
         failures[action.target] = failures.get(action.target, 0) + 1

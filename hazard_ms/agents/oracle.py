@@ -12,17 +12,20 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.agents.search.memory import ELSEWHERE, SAME_AGAIN
 from hazard_ms.agents.search.outlook import SPREAD
+from hazard_ms.agents.search.walks import detours
 from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import PlannedRescue, Problem
+from hazard_ms.planning.problem import PlannedRescue, soonest
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.failures import NO_PATH
 from hazard_ms.skills.motor.walking import ARRIVED, MIDPOINT
 from hazard_ms.skills.options.landmarks import landmarks
 from hazard_ms.skills.options.macros import Macro, play
@@ -38,6 +41,7 @@ CART_FAILURES = 3  # after which a cart is no longer used [ours]
 FADING = 2e-4  # share of a target's value that is at risk in each frame until it is safe: skills fail [ours]
 MOVED = 0.2  # a thing that will be met farther than this from where it is now is moving [m] [ours]
 LOYALTY = 20.0  # frames that it deducts for the target that it is on its way to, so that it does not waver [ours]
+ENCLOSED = 2  # targets to which there is no path, from which it is the robot that cannot get away [ours]
 ROUNDS = 2  # number of times that it tries again what it had given up [ours]
 MOST_LABELS = 20_000  # of the exact search: rarely needed [ours]
 BEAM = 2_000  # labels of a layer beyond that [ours]
@@ -77,6 +81,7 @@ class Oracle(PrivilegedAgent):
         self._goal: str | None = None
         self._before: tuple[Action, tuple[float, float]] | None = None  # the last action, and where it began [m]
         self._search: Macro | None = None
+        self._no_path: set[str] = set()  # targets to which there was no path, one after another
 
     def act(self, decision: Decision) -> Action:
         """The next action: the first step of the best plan from here on."""
@@ -84,10 +89,23 @@ class Oracle(PrivilegedAgent):
         if self._before is None:  # not earlier: who records the episode begins with the map of an honest agent
             self._truth.furnish()
         self._judge(decision, self._truth)
-        action = self._choose(decision, self._truth)
+        action = Action(EXPLORE) if self._enclosed(decision) else self._choose(decision, self._truth)
         self._before = (action, decision.agent_position)
         self._truth.reveal()
         return action
+
+    def _enclosed(self, decision: Decision) -> bool:
+        """Whether there is no way to one target after another: not they are to blame, but where the robot stands."""
+        last, result = decision.last_action, decision.last_result
+        if last is None or result is None or last.target is None or result.reason != NO_PATH or result.frames:
+            self._no_path.clear()
+            return False
+        self._no_path.add(last.target)
+        if len(self._no_path) < ENCLOSED:
+            return False
+        self._no_path.clear()
+        self.note = "no way leads anywhere: look around"
+        return True
 
     def _choose(self, decision: Decision, truth: Truth) -> Action:
         if decision.held is not None and not decision.containers:
@@ -122,28 +140,26 @@ class Oracle(PrivilegedAgent):
             np.array([t.value * self._chance(t.name, decision) for t in targets]),
             np.array(carts, np.int64),
             Outset(decision.agent_position, decision.agent_heading, decision.frame, self._held(decision)),
-            np.array([-LOYALTY * (t.name == self._goal) for t in targets]),
+            self._detours(decision, truth, [t.index for t in targets])
+            - [LOYALTY * (t.name == self._goal) for t in targets],
             FADING,
             SPREAD,
         )
         plan = solve(problem, MOST_LABELS, BEAM)
         self.note = f"plan of {plan.value:g} in {len(plan.rescues)} rescues by frame {plan.frame:.0f}"
-        first = plan.rescues[0] if plan.rescues else self._nearest(problem)
+        first = plan.rescues[0] if plan.rescues else soonest(problem)
         if first is None:
             return None
+        self.note = self.note if plan.rescues else "too late by any plan, but the nearest"
         cart = int(np.flatnonzero(self._carts == carts[first.cart])[0]) if decision.containers else -1
         return first._replace(target=targets[first.target].index, cart=cart)
 
-    def _nearest(self, problem: Problem) -> PlannedRescue | None:
-        """The rescue that begins first, although it is unlikely to be safe in time; None where none begins in time."""
-        self.note = "too late by any plan, but the nearest"
-        travel, held = problem.travel, problem.holding
-        if held is not None:
-            carts = travel.to_carts(travel.start)
-            return PlannedRescue(held, problem.frame, problem.limit, 0.0, int(np.argmin(carts)) if carts else -1)
-        met = [frame for frame, _ in travel.meetings(travel.start, problem.frame, range(travel.targets))]
-        first = int(np.argmin(met))
-        return PlannedRescue(first, met[first], problem.limit, 0.0, 0) if met[first] < problem.limit else None
+    def _detours(self, decision: Decision, truth: Truth, targets: list[int]) -> NDArray[np.float64]:
+        """Frames by which the walk to each of `targets`, [T], is longer now, past what floats or was pushed about."""
+        goals, edges = np.stack([truth.position(i)[:2] for i in targets]), self._scene.edges[targets]
+        plain = self._scene.ways.frames(np.array([decision.agent_position]), goals, edge=edges)
+        seen, here, radius = decision.map, decision.agent_position, truth.env.base.agent.build.radius
+        return detours(seen, here, goals.astype(float), ARRIVED + edges, radius, plain)
 
     def _chance(self, name: str, decision: Decision) -> float:
         """The chance that it gets hold of a thing, as a share of that of a first attempt."""

@@ -111,3 +111,14 @@ class Plan:
     exact: bool  # proven: no plan is worth more, and none that is worth as much is done earlier
     gap: float  # at most this much more value could be rescued
     labels: int  # partial plans that were kept
+
+
+def soonest(problem: Problem) -> PlannedRescue | None:
+    """The rescue that begins first, although it is unlikely to be safe in time; None where none begins in time."""
+    travel, held = problem.travel, problem.holding
+    if held is not None:
+        carts = travel.to_carts(travel.start)
+        return PlannedRescue(held, problem.frame, problem.limit, 0.0, int(np.argmin(carts)) if carts else -1)
+    met = [frame for frame, _ in travel.meetings(travel.start, problem.frame, range(travel.targets))]
+    first = int(np.argmin(met))
+    return PlannedRescue(first, met[first], problem.limit, 0.0, 0) if met[first] < problem.limit else None

@@ -14,6 +14,8 @@ from hazard_ms.skills.motor.navigation import AT_MOST, BORDER, OBSTACLE_COST, SH
 Array = NDArray[np.float64]
 STEPS = 1.05  # length of a way by steps to the eight neighbours, over that of straight pieces: mean of all directions
 TURNING = 20.0  # frames of a walk that go into turns, starts and stops: about 120 degrees of turns [ours]
+NO_DETOUR = 40.0  # frames by which two ways of telling the length of a walk may differ [ours]
+LONGEST_DETOUR = 400.0  # frames that count where there is no way now: what floats about may free it [ours]
 MOST_CELLS = 16_000  # of a grid that is searched cell by cell; larger ones by squares of four [ours]
 
 
@@ -30,6 +32,18 @@ def frames_between(seen: SemanticMap, start: tuple[float, float], goals: Array, 
     frames = WALK / STEPS * lengths + TURNING
     np.fill_diagonal(frames, 0.0)
     return frames
+
+
+def detours(
+    seen: SemanticMap, start: tuple[float, float], goals: Array, near: Array, radius: float, plain: Array
+) -> Array:
+    """Frames by which walks from `start` to each of G `goals`, [G], take longer over the map than `plain`, [G].
+
+    Arguments as for `frames_between`. At most LONGEST_DETOUR; 0 where there is no plain way either.
+    """
+    walks = frames_between(seen, start, goals, near, radius)[-1, :-1]
+    longer = np.subtract(walks, plain, out=np.zeros(len(walks)), where=np.isfinite(plain))
+    return np.clip(longer - NO_DETOUR, 0.0, LONGEST_DETOUR)
 
 
 class _Grid:

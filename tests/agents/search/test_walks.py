@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hazard_ms.agents.search import walks
-from hazard_ms.agents.search.walks import TURNING, frames_between
+from hazard_ms.agents.search.walks import LONGEST_DETOUR, NO_DETOUR, TURNING, detours, frames_between
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sketch.ways import RADIUS, WALK
 
@@ -69,3 +69,16 @@ def test_coarse_cells_give_the_same_lengths_where_gaps_are_wide(monkeypatch: pyt
     fine = metres(seen, (-1.5, 0.0), (1.5, 0.0), (1.5, 3.0))
     monkeypatch.setattr(walks, "MOST_CELLS", 1000)
     assert metres(seen, (-1.5, 0.0), (1.5, 0.0), (1.5, 3.0)) == pytest.approx(fine, abs=0.45)
+
+
+def test_a_detour_is_what_a_walk_takes_longer_than_told() -> None:
+    goal, plain = np.array([[3.0, 0.0]]), np.array([WALK * 2.5 + TURNING])
+    near, seen = np.array([0.5]), open_floor()
+    assert detours(seen, (0.0, 0.0), goal, near, RADIUS, plain).tolist() == [0.0]
+    build(seen, (1.4, -2.0), (1.6, 2.0))
+    around = frames_between(seen, (0.0, 0.0), goal, near, RADIUS)[-1, 0]
+    longer = detours(seen, (0.0, 0.0), goal, near, RADIUS, plain)
+    assert longer == pytest.approx(around - plain - NO_DETOUR) and longer > 60.0  # 2.3 m to the side and back: 140
+    assert detours(seen, (0.0, 0.0), goal, near, RADIUS, np.array([np.inf])).tolist() == [0.0]
+    build(seen, (1.4, -4.5), (1.6, 4.5))
+    assert detours(seen, (0.0, 0.0), goal, near, RADIUS, plain).tolist() == [LONGEST_DETOUR]

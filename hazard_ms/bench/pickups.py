@@ -134,13 +134,12 @@ def _handled(
 
 
 def _floor(env: SkillEnv) -> NDArray[np.float64]:
-    """Middles of the cells on which the robot can stand and that it can get to [m], [C, 2]."""
+    """Middles of the cells that the robot can get to, and where it can stand with MARGIN if possible [m], [C, 2]."""
     spec = env.base.specs[0]
     radius = env.stage.robot.build.radius
-    free = connected(free_floor(spec, radius + MARGIN), spec.agent_start.position)
-    if not free.any():
-        free = connected(free_floor(spec, radius), spec.agent_start.position)
-    return np.asarray((np.argwhere(free) + 0.5) * FLOOR_CELL, dtype=np.float64)
+    free = connected(free_floor(spec, radius), spec.agent_start.position)
+    roomy = free & free_floor(spec, radius + MARGIN)  # a walk may pass a gap in which it would not end
+    return np.asarray((np.argwhere(roomy if roomy.any() else free) + 0.5) * FLOOR_CELL, dtype=np.float64)
 
 
 def _end_of_walk(env: SkillEnv, index: int, floor: NDArray[np.float64]) -> NDArray[np.float64] | None:

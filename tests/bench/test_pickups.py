@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
-from hazard_ms.bench.pickups import Handling, handlings, lines, report
+from hazard_ms.bench.pickups import Handling, _floor, handlings, lines, report
+from hazard_ms.robots.fetch import HazardFetch
+from hazard_ms.scenes.splits import scene
 
 ROW = Handling("fetch", "pick_up", "HazardFire-v1", "kitchen_a/00", "mug_1", 0.8, 0.5, 0.6, 40, True, "", True)
 
@@ -49,6 +53,17 @@ def test_unknown_names_and_no_pick_ups_are_refused(env_id: str, robot: str, coun
         next(handlings(env_id, robot, count, 0))
     with pytest.raises(ValueError, match="count must be"):
         next(handlings("HazardFire-v1", "fetch", 0, 0))
+
+
+def test_the_floor_goes_on_behind_gaps_in_which_there_is_no_room_to_spare() -> None:
+    """Of all targets of this scene, `hazard-ms scenes reach` says that Fetch can get at them."""
+    spec = scene("kitchen_a/06")
+    env = SimpleNamespace(
+        base=SimpleNamespace(specs=[spec]), stage=SimpleNamespace(robot=SimpleNamespace(build=HazardFetch.build))
+    )
+    floor = _floor(env)
+    away = [float(np.hypot(*(floor - body.position[:2]).T).min()) for body in spec.targets]
+    assert max(away) < HazardFetch.build.reach
 
 
 @pytest.mark.long

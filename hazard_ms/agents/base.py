@@ -9,14 +9,17 @@ from __future__ import annotations
 import abc
 import inspect
 import os
+import re
 import sys
 import typing
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from hazard_ms.agents.thinking import Thought
 from hazard_ms.registry import AGENTS, load, load_plugin
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.brief import Brief
@@ -28,6 +31,7 @@ if TYPE_CHECKING:
 
 FLAGS = {"true": True, "false": False}
 LONGEST_NOTE = 2000  # characters of a note that are kept [ours]
+PARAMETERS = re.compile(r":(?=\w+=)")  # what stands between an agent and its parameters; values may hold colons
 
 
 class Agent(abc.ABC):
@@ -40,6 +44,9 @@ class Agent(abc.ABC):
 
     note: str | None = ""
     fallback: bool = False  # whether its last action stands in for an answer that could not be read
+    ending: str = "stopped"  # how an episode ends that it stops
+    thought: Thought | None = None  # what its last decision took, where it knows better than a watch
+    counters: Mapping[str, float] = MappingProxyType({})  # its own counts of the episode, kept with the result
     privileged: ClassVar[bool] = False  # whether it may see what is hidden: only subclasses of PrivilegedAgent do
 
     @abc.abstractmethod
@@ -109,12 +116,11 @@ def agent(text: str) -> Agent:
 
 
 def _made(text: str) -> Agent:
-    words = text.split(":")
-    given = words.pop() if len(words) > 1 and "=" in words[-1] else ""
-    made = _class(":".join(words))
+    name, *given = PARAMETERS.split(text, maxsplit=1)
+    made = _class(name)
     if not (isinstance(made, type) and issubclass(made, Agent)):
         raise ValueError(f"agent must be a subclass of hazard_ms.agents.base.Agent, got {text!r}, which is {made!r}")
-    return made(**_parameters(made, given))
+    return made(**_parameters(made, "".join(given)))
 
 
 def _class(name: str) -> Any:

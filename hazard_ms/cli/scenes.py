@@ -130,7 +130,7 @@ def reach(
         family: indoor or outdoor; empty for both.
         all: All scenes.
     """
-    from hazard_ms.cli.scene_reach import print_reach
+    from hazard_ms.cli.scene_checks import print_reach
 
     _only_one_of(bool(names), bool(split or family), all)
     print_reach(names or names_of(split, family), robots)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from hazard_ms.agents.thinking import OFF
 from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.options import SweepOptions
 from hazard_ms.evaluation.result import EpisodeResult, machine, versions
 from hazard_ms.skills.failures import UNFINISHED
 
+MOST_FALLBACKS = 0.05  # share of a model's decisions taken in its place, beyond which its scores are marked [ours]
 HEADINGS = f"{'agent':16s} {'Value':>22s} {'Step':>26s} {'Damage':>22s} {'rescued':>8s} {'s/episode':>10s}"
 
 
@@ -21,6 +23,7 @@ def report(options: SweepOptions, results: Sequence[EpisodeResult], failed: Sequ
     own = {agent: [r for r in results if r.agent == agent] for agent in options.agents}
     lines = [title(options), HEADINGS, *(score_line(agent, made) for agent, made in own.items())]
     lines += [failure_line(agent, made, list(failed).count(agent)) for agent, made in own.items()]
+    lines += [line for agent, made in own.items() if (line := model_line(agent, made))]
     return "\n".join([*lines, machine_line()])
 
 
@@ -30,6 +33,7 @@ def title(options: SweepOptions) -> str:
     settings = [f"split {env.split}", f"physics {env.physics}", f"robot {env.robot_uids}"]
     settings += ["agent affected"] * env.affects_agent
     settings += [f"{name} {env.settings[name]}" for name in ("lighting", "effects") if name in env.settings]
+    settings += [] if options.clock == OFF else [f"clock {options.clock}"]
     what = ", ".join([env.env_id, *env.hazards, *settings])
     return f"{what}, {options.count} episodes each, seeds from {options.seed}"
 
@@ -58,6 +62,31 @@ def failure_line(agent: str, results: Sequence[EpisodeResult], failed: int = 0) 
     failures = Counter(f"{d.verb} {d.reason}" for d in left if d.reason not in UNFINISHED)
     under_way = f"unfinished: {_counted(unfinished)}; " if unfinished else ""
     return f"{agent}: ended by {_counted(ends)}; {under_way}failures: {_counted(failures) or 'none'}"
+
+
+def model_line(agent: str, results: Sequence[EpisodeResult]) -> str:
+    """The line that says what a language model was asked, and how long agents thought; empty where neither counts.
+
+    Scores to which other rules contributed much are marked.
+    """
+    counted: Counter[str] = Counter()
+    for result in results:
+        counted.update(result.counters)
+    parts = []
+    if asked := counted["decisions"]:
+        share = counted["fallbacks"] / asked
+        mark = ": NOT THE MODEL'S OWN SCORE" if share > MOST_FALLBACKS else ""
+        parts.append(f"asked for {asked:.0f} decisions, {100 * share:.1f} % of them taken in its place{mark}")
+        parts.append(f"{counted['calls']:.0f} calls, {counted['lost']:.0f} without an answer")
+        parts.append(f"{counted['tokens_in']:.0f} tokens read, {counted['tokens_out']:.0f} written")
+        parts += [f"{counted['cost']:.2f} USD"] if counted["cost"] else []
+    decisions = [d for r in results if r.clock != OFF for d in r.decisions]
+    if frames := sum(d.waited + d.frames for d in decisions):
+        thought = sum(d.thought for d in decisions) / len(decisions)
+        parts.append(
+            f"{thought:.2f} s a decision, {100 * sum(d.waited for d in decisions) / frames:.1f} % of the frames"
+        )
+    return f"{agent}: {'; '.join(parts)}" if parts else ""
 
 
 def machine_line() -> str:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_type_hints
 
+from hazard_ms.agents.thinking import OFF
 from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
 from hazard_ms.machine.files import write
 from hazard_ms.registry.version import __version__
@@ -26,7 +27,7 @@ FAILED = (ERROR, TOO_SLOW, DIED)  # how an episode ends that its agent, or the p
 PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "warp-lang", "numpy")  # whose versions can change an episode
 
 # fields that hold more data
-PLAIN = ("settings", "targets", "decisions", "links", "phase_seconds", "versions", "machine")
+PLAIN = ("settings", "targets", "decisions", "links", "phase_seconds", "counters", "versions", "machine")
 
 
 class DamagedResultError(ValueError):
@@ -48,6 +49,7 @@ class DecisionRecord:
     value: float = 0.0  # rescued by then, as a share of all
     waited: int = 0  # frames that passed while the agent chose
     fallback: bool = False  # whether it stands in for an answer that could not be read
+    thought: float = 0.0  # time that the agent took to choose, by the clock of the episode [s]; 0 without one
 
 
 REGRET = ".regret.json"  # end of the names of the files that `hazard-ms regret` writes beside results
@@ -73,6 +75,7 @@ class Played:
     decisions: tuple[DecisionRecord, ...]
     links: tuple[Link, ...]
     phase_seconds: dict[str, float]
+    counters: dict[str, float] = field(default_factory=dict)  # the agent's own
 
 
 @dataclass(frozen=True)
@@ -80,11 +83,11 @@ class EpisodeResult:
     """Everything about one episode that is worth keeping; it is written with the scores of the episode under "score".
 
     `ended` is one of: what the task's goal says when it is achieved ("all rescued"); "failed", when it never can be;
-    "stopped", by the agent; "time", when the last frame has passed; "simulation error"; "too many decisions", for an
-    agent whose actions take no time; "frame reached", for a run that was asked to end at a frame; "error", when the
-    agent raised an error or chose what is not an action; "too slow", when a decision took it longer than allowed;
-    "worker died", when the process that played it died twice. After the last three all is as it was at the last
-    decision, and scored as it was then.
+    "stopped", by the agent, or the word that it has for that ("budget"); "time", when the last frame has passed;
+    "simulation error"; "too many decisions", for an agent whose actions take no time; "frame reached", for a run that
+    was asked to end at a frame; "error", when the agent raised an error or chose what is not an action; "too slow",
+    when a decision took it longer than allowed; "worker died", when the process that played it died twice. After the
+    last three all is as it was at the last decision, and scored as it was then.
     """
 
     env_id: str
@@ -102,6 +105,8 @@ class EpisodeResult:
     error: str = ""  # the agent's, or why there was no answer
     wall_seconds: float = 0.0
     phase_seconds: dict[str, float] = field(default_factory=dict)  # wall time by phase, as in `Played` [s]
+    clock: str = OFF  # by which hazards went on while the agent thought
+    counters: dict[str, Any] = field(default_factory=dict)  # the agent's own counts, such as calls of a model
     versions: dict[str, str] = field(default_factory=lambda: versions())
     machine: dict[str, Any] = field(default_factory=lambda: machine())
     format: int = FORMAT
@@ -111,10 +116,23 @@ class EpisodeResult:
         """The part of the episode in the scores."""
         return Tally.of(self.targets)
 
+    @property
+    def latency(self) -> float | None:
+        """Mean time that the agent took to choose, by the clock [s]: Respond Latency; None without decisions."""
+        return sum(d.thought for d in self.decisions) / len(self.decisions) if self.decisions else None
+
+    @property
+    def latency_share(self) -> float | None:
+        """Share of the frames of all decisions in which the agent was thinking: LAR; None where none passed."""
+        waited = sum(d.waited for d in self.decisions)
+        return waited / frames if (frames := waited + sum(d.frames for d in self.decisions)) else None
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data, with the scores of this one episode."""
         tallies = [self.tally]
         score = {"value": value(tallies), "step": step(tallies), "damage": damage(tallies)}
+        if self.clock != OFF:
+            score |= {"latency": self.latency, "latency_share": self.latency_share}
         return {"score": score, **dataclasses.asdict(self)}
 
     def to_json(self) -> str:

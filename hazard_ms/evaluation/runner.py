@@ -9,11 +9,13 @@ from dataclasses import replace
 from typing import Any
 
 from hazard_ms.agents.base import Agent, PrivilegedAgent, agent, note_of, staying
+from hazard_ms.agents.thinking import OFF, frames_of, seconds_of
 from hazard_ms.evaluation.hashes import EVERY, extended
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import BROKEN, DecisionRecord, EpisodeResult, Link, Played
 from hazard_ms.evaluation.watchers import Watcher
+from hazard_ms.skills.actions import wait
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import STOP, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
@@ -23,10 +25,10 @@ RUNNING = "running"  # of an episode that has not ended
 
 
 class Runner:
-    """Plays episodes of one agent in one environment."""
+    """Plays episodes of one agent in one environment; by a `clock`, hazards go on while the agent thinks."""
 
-    def __init__(self, env: SkillEnv, agent: Agent, watchers: Sequence[Watcher] = ()) -> None:
-        self.env, self.agent, self.watchers = env, agent, tuple(watchers)
+    def __init__(self, env: SkillEnv, agent: Agent, watchers: Sequence[Watcher] = (), clock: str = OFF) -> None:
+        self.env, self.agent, self.watchers, self.clock = env, agent, tuple(watchers), clock
         self._start()
 
     def _start(self) -> None:
@@ -36,7 +38,8 @@ class Runner:
 
     def played(self, ended: str = RUNNING) -> Played:
         """The course of the episode up to now."""
-        return Played(ended, tuple(self._records), tuple(self._links), dict(self._seconds))
+        counters = dict(self.agent.counters)
+        return Played(ended, tuple(self._records), tuple(self._links), dict(self._seconds), counters)
 
     @contextmanager
     def _timed(self, phase: str) -> Iterator[None]:
@@ -79,18 +82,23 @@ class Runner:
                 return FRAME_REACHED
             for watcher in self.watchers:
                 watcher.asked(self.played())
+            begun = time.perf_counter()
             with self._timed("agent"), staying("act of the agent"):
                 action = self.agent.act(decision)
+            thought = seconds_of(self.clock, self.agent.thought, time.perf_counter() - begun)
             note, value = note_of(self.agent), Tally.of(fates(self.env)).value
-            waited = self.env.frame - decision.frame
             for watcher in self.watchers:
                 watcher.decided(decision, action, note)
             with self._timed("physics"):
+                if frames := frames_of(thought, float(self.env.base.control_timestep)):
+                    self.env.run(wait(self.env.stage, frames))
+                waited = self.env.frame - decision.frame
                 following, _, terminated, truncated, info = self.env.step(action)
             result: Result = info["result"]
             for watcher in self.watchers:
                 watcher.ended(result)
-            self._records.append(self._record(decision, action, result, note, value, waited))
+            record = self._record(decision, action, result, note, value)
+            self._records.append(replace(record, waited=waited, thought=thought))
             if terminated or truncated:
                 extended(self._links, self.env)
                 return self._reason(action, info)
@@ -103,9 +111,7 @@ class Runner:
         for watcher in self.watchers:
             watcher.frame(action)
 
-    def _record(
-        self, decision: Decision, action: Action, result: Result, note: str, value: float, waited: int
-    ) -> DecisionRecord:
+    def _record(self, decision: Decision, action: Action, result: Result, note: str, value: float) -> DecisionRecord:
         return DecisionRecord(
             frame=decision.frame,
             verb=action.verb,
@@ -116,7 +122,6 @@ class Runner:
             note=note,
             held=decision.held,
             value=value,
-            waited=waited,
             fallback=bool(self.agent.fallback),
         )
 
@@ -128,7 +133,7 @@ class Runner:
         if bool(info["fail"][0]):
             return "failed"
         if action.verb == STOP:
-            return "stopped"
+            return self.agent.ending
         return "time" if self.env.frame >= self.env.max_frames else FRAME_REACHED
 
 
@@ -157,7 +162,7 @@ def play(
     env = SkillEnv.make(options.env_id, **{**options.settings, **keywords})
     made = time.perf_counter()
     try:
-        played = Runner(env, player, watchers).run(options.seed, options.reset_options)
+        played = Runner(env, player, watchers, options.clock).run(options.seed, options.reset_options)
         result = result_of(options, env, played)
         played.phase_seconds["build"] += made - start
         return replace(result, wall_seconds=time.perf_counter() - start)
@@ -181,6 +186,8 @@ def result_of(options: EpisodeOptions, env: SkillEnv, played: Played) -> Episode
         command=options.command,
         links=played.links,
         phase_seconds=played.phase_seconds,
+        clock=options.clock,
+        counters=played.counters,
     )
 
 
@@ -191,7 +198,7 @@ def played_to(options: EpisodeOptions, frame: int, **keywords: Any) -> SkillEnv:
     """
     player = agent(options.agent)
     env = SkillEnv.make(options.env_id, **{**options.settings, **keywords})
-    Runner(env, player).run(options.seed, options.reset_options, until_frame=frame)
+    Runner(env, player, clock=options.clock).run(options.seed, options.reset_options, until_frame=frame)
     return env
 
 

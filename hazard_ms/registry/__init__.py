@@ -115,10 +115,7 @@ def register_hazard(name: str, maker: Any, looks: Any = None, cases: Any = (), c
 
 
 def register_robot(name: str, robot: Any, uid: str | None = None) -> None:
-    """Add a robot; `uid`: by default that of the class, or hazard_NAME where it is given as text.
-
-    Raises ValueError for a name that is taken.
-    """
+    """Add a robot; `uid`: by default that of its class, else hazard_NAME. Raises ValueError for a taken name."""
     _add(_robots, RobotEntry(name, robot, uid or getattr(robot, "uid", None) or f"hazard_{name}"))
 
 
@@ -244,6 +241,7 @@ register_agent("rule", "hazard_ms.agents.rule:Rule")
 register_agent("oracle", "hazard_ms.agents.oracle:Oracle")
 register_agent("planner", "hazard_ms.agents.planner:Planner")
 register_agent("mcts", "hazard_ms.agents.mcts:Mcts")
+register_agent("llm", "hazard_ms.agents.llm.agent:Llm")
 register_agent("paper/greedy", "hazard_ms.agents.paper.greedy:Greedy")
 register_agent("paper/rule", "hazard_ms.agents.paper.rule:Rule")
 register_agent("paper/mcts", "hazard_ms.agents.paper.mcts:Mcts")

@@ -23,6 +23,8 @@ from tests.worlds.files.checkout import (
     small_checkout,
 )
 
+LOCKS = ("requirements.lock", "requirements-uv.txt", "requirements-local-llm.txt")
+
 pytestmark = pytest.mark.setup
 LOCKED_EXTRAS = ("rl", "pictures", "demos", "docs", "test")  # the others serve users, not our own checks
 HASH = re.compile(r"--hash=sha256:[0-9a-f]{64}")
@@ -36,13 +38,13 @@ def setup_argument(name: str) -> object:
     return ast.literal_eval(next(keyword.value for keyword in call.keywords if keyword.arg == name))
 
 
-@pytest.mark.parametrize("name", ["requirements.lock", "requirements-uv.txt"])
+@pytest.mark.parametrize("name", LOCKS)
 def test_locks_name_no_hosts_and_no_folders(name: str) -> None:
     text = (ROOT / name).read_text()
     assert not re.search(r"https?:|file:|@|/|^-", text, re.MULTILINE)
 
 
-@pytest.mark.parametrize("name", ["requirements.lock", "requirements-uv.txt"])
+@pytest.mark.parametrize("name", LOCKS)
 def test_every_pin_has_hashes(name: str) -> None:
     found = pins((ROOT / name).read_text())
     assert found

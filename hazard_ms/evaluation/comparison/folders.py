@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from hazard_ms.agents.thinking import OFF
 from hazard_ms.evaluation.comparison.pairing import Episode
 from hazard_ms.evaluation.metrics import value
 from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult, result_files
@@ -92,4 +93,5 @@ def _title(result: EpisodeResult) -> str:
         else:
             shown = " and ".join(map(str, setting)) if isinstance(setting, (list, tuple)) else str(setting)
             words.append(f"{name.removesuffix('_uids').replace('_', ' ')} {shown}")
+    words += [] if result.clock == OFF else [f"clock {result.clock}"]
     return ", ".join(words)

@@ -1,0 +1,55 @@
+"""The commands `hazard-ms llm ...`."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import urllib.request
+
+import pytest
+
+from hazard_ms.cli.__main__ import main
+
+
+@pytest.mark.parametrize(("model", "code", "told"), [("greedy", 0, "way=json"), ("letter-in-prose", 0, "way=letter")])
+def test_a_model_that_can_play_is_recommended_a_way(
+    model: str, code: int, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """1,500 decisions of 900 tokens at 2 USD a million are 2.70 USD, and a little for what is written."""
+    assert main(["llm", "check", "--base-url", "scripted", "--model", model, "--price-in", "2"]) == code
+    out = capsys.readouterr().out
+    assert f"It can play: --agent llm:{told}" in out and "1.35 million tokens read" in out and "2.70 USD" in out
+    assert out.count("4/4") >= 4, "read, and as greedy"
+
+
+@pytest.mark.parametrize("model", ["not-json", "401", "500"])
+def test_a_model_that_cannot_play_is_said_to(model: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["llm", "check", "--base-url", "scripted", "--model", model, "--deadline", "0.3"]) == 1
+    assert "It cannot play" in capsys.readouterr().out
+
+
+def test_a_check_without_an_address_says_what_is_missing(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("HAZARD_MS_LLM_BASE_URL", raising=False)
+    assert main(["llm", "check"]) == 2
+    assert "base_url must be the address of a server" in capsys.readouterr().err
+    assert main(["llm", "check", "--base-url", "http://127.0.0.1:1/v1", "--model", "m"]) == 2
+    assert "must be the address of a running server" in capsys.readouterr().err
+
+
+def test_the_scripted_server_serves_until_it_is_interrupted() -> None:
+    command = [sys.executable, "-m", "hazard_ms.cli", "llm", "serve-scripted"]
+    server = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert server.stdout is not None
+    address = server.stdout.readline().removeprefix("address: ").strip()
+    with urllib.request.urlopen(f"{address}/models") as answer:
+        assert "greedy" in [model["id"] for model in json.load(answer)["data"]]
+    port = address.split(":")[2].split("/")[0]
+    taken = subprocess.run([*command, "--port", port], capture_output=True, text=True)
+    assert taken.returncode == 2 and f"port must be free, got {port}" in taken.stderr
+    server.send_signal(signal.SIGINT)
+    out, err = server.communicate(timeout=60)
+    assert server.returncode == 0 and out.endswith("stopped\n") and "Traceback" not in err

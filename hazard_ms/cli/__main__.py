@@ -20,9 +20,10 @@ from hazard_ms.cli.bench import bench
 from hazard_ms.cli.demos import DemosCommand
 from hazard_ms.cli.describe import describe
 from hazard_ms.cli.episodes import evaluate, play, replay
+from hazard_ms.cli.llm import LlmCommand
+from hazard_ms.cli.perception import PerceptionCommand
 from hazard_ms.cli.pictures import gallery, render
-from hazard_ms.cli.regret import regret
-from hazard_ms.cli.report import report
+from hazard_ms.cli.report import regret, report
 from hazard_ms.cli.scenes import SceneCommand
 from hazard_ms.cli.sketch import SketchCommand
 from hazard_ms.cli.train import TrainCommand
@@ -81,6 +82,16 @@ def demos(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[Demos
     return int(done)
 
 
+def llm(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[LlmCommand]]) -> int:
+    """Language models: check whether one can play, show its decisions, serve scripted ones for tests."""
+    return int(done)
+
+
+def perception(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[PerceptionCommand]]) -> int:
+    """Labelled pictures of hazards for computer vision: capture, check, show, score a detector."""
+    return int(done)
+
+
 def train(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[TrainCommand]]) -> int:
     """Policies: train bc, score one in the sketch."""
     return int(done)
@@ -103,6 +114,8 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "assets": assets,
     "sketch": sketch,
     "demos": demos,
+    "llm": llm,
+    "perception": perception,
     "train": train,
 }
 

@@ -25,7 +25,7 @@ from tests.worlds.files.documents import DOCUMENTS, blocks, command_lines, name_
 
 RUN = ("README.md", "docs/usage.md", "docs/agents.md", "docs/scenes.md", "docs/adding.md")
 LONGEST_README = 80  # lines: about a screen
-NESTED = ("scenes", "assets", "demos")  # commands that have commands of their own
+NESTED = ("scenes", "assets", "demos", "perception", "llm")  # commands that have commands of their own
 OTHERS = ("pip", "uv", "cd", "export")  # commands that are not ours
 
 

@@ -1,0 +1,71 @@
+"""The commands `hazard-ms perception ...`; each imports what it needs when it is called, so that help is quick."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from hazard_ms.evaluation.choices import flag
+from hazard_ms.perception.options import CaptureOptions
+
+Folder = tyro.conf.Positional[Path]
+
+
+def capture(options: Annotated[tyro.conf.OmitArgPrefixes[CaptureOptions], tyro.conf.arg(name="")]) -> int:
+    """Take labelled pictures of burning, flooded or wind-blown scenes, as COCO data with the state of every thing.
+
+    Resumes an interrupted run. Pictures depend on task, split, scene and seed alone. Ends with 1 if a scene failed.
+    """
+    from hazard_ms.perception.capture import capture as run
+
+    return run(options)
+
+
+def check(folder: Folder) -> int:
+    """Verify every promise of the format: files, checksums, masks, boxes, splits. Ends with 1 if one is broken.
+
+    Args:
+        folder: A dataset, OUTPUT/TASK.
+    """
+    from hazard_ms.perception.check import check as run
+
+    return run(folder)
+
+
+def show(folder: Folder, output: Annotated[Path, flag("-o")] = Path("perception.html"), pictures: int = 24) -> int:
+    """Write a page about a dataset: pictures with masks and states, and statistics.
+
+    Args:
+        folder: A dataset, OUTPUT/TASK.
+        output: Page to write, NAME.html; NAME.png or NAME.jpg gets the pictures alone.
+        pictures: Pictures of each split that are shown.
+    """
+    from hazard_ms.perception.show import show as run
+
+    print(f"page: {run(folder, output, pictures).resolve()}")
+    return 0
+
+
+def score(folder: Folder, results: tyro.conf.Positional[Path], split: str = "test") -> int:
+    """Print the average precision of a detector, overall and by hazard state, pixel area and distance.
+
+    Args:
+        folder: A dataset, OUTPUT/TASK.
+        results: What the detector found, in COCO's results format: a list of image_id, category_id, score, and bbox or
+            segmentation or both.
+        split: Split on which it is scored.
+    """
+    from hazard_ms.perception.score import score as run
+
+    print(run(folder, results, split))
+    return 0
+
+
+PerceptionCommand = (
+    Annotated[int, tyro.conf.subcommand(name="capture", constructor=capture)]
+    | Annotated[int, tyro.conf.subcommand(name="check", constructor=check)]
+    | Annotated[int, tyro.conf.subcommand(name="show", constructor=show)]
+    | Annotated[int, tyro.conf.subcommand(name="score", constructor=score)]
+)

@@ -1,0 +1,79 @@
+"""Options of `hazard-ms perception capture` as plain data: loading them for a help text imports nothing heavy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from hazard_ms.evaluation.choices import EFFECTS, LIGHTINGS, flag, offer
+from hazard_ms.evaluation.options import MOST, MOST_WORKERS, EnvOptions, EpisodeOptions
+
+VARIED = "varied"  # light or effects are drawn anew for every stop or picture
+SMALLEST, LARGEST = 64, 4096  # edge of a picture [pixels] [ours]
+MOST_SAMPLES = 65536  # samples per pixel [ours]
+
+
+@dataclass(frozen=True)
+class CaptureOptions:
+    """Options of `hazard-ms perception capture`."""
+
+    env: EnvOptions = EnvOptions()
+    per_scene: int = 200
+    """Pictures of each scene."""
+    scenes: tuple[str, ...] = ()
+    """Names of scenes; all of the split if not given."""
+    size: int = 512
+    """Width and height of a picture in pixels."""
+    shader: Literal["default", "rt-fast", "rt"] = "default"
+    """Raster (default), or ray-traced, which takes seconds a picture."""
+    spp: int = 4
+    """Samples per pixel, ray-traced."""
+    lights: Annotated[str, offer((VARIED, *LIGHTINGS))] = VARIED
+    """Light of the scenes; varied draws one for each stop."""
+    looks: Annotated[str, offer((VARIED, *EFFECTS))] = VARIED
+    """Look of the hazards; varied takes 80 % full, 10 % fast and 10 % off (raster only)."""
+    amodal: bool = False
+    """Add the masks of targets as they would be seen with nothing in front of them (slow)."""
+    seed: Annotated[int, flag("-s")] = 0
+    """Seed of all episodes, viewpoints and lights."""
+    workers: int = 1
+    """Processes; 0: one for each core."""
+    output: Annotated[Path, flag("-o")] = Path("perception")
+    """Folder for datasets; that of this task is OUTPUT/TASK."""
+
+    def check(self) -> None:
+        """Check all options. Raises ValueError for what cannot be captured."""
+        from hazard_ms.spec.checks import one_of, whole  # loads torch
+
+        self.env.check()
+        whole(self.per_scene, 1, MOST, "per_scene")
+        whole(self.size, SMALLEST, LARGEST, "size")
+        whole(self.spp, 1, MOST_SAMPLES, "spp")
+        whole(self.seed, 0, MOST, "seed")
+        whole(self.workers, 0, MOST_WORKERS, "workers")
+        one_of(self.lights, (VARIED, *LIGHTINGS), "lights")
+        one_of(self.looks, (VARIED, *EFFECTS), "looks")
+        usual = EnvOptions()
+        for name in ("lighting", "effects"):
+            if getattr(self.env, name) != getattr(usual, name):
+                other = {"lighting": "lights", "effects": "looks"}[name]
+                raise ValueError(f"{name} must be left out, got {getattr(self.env, name)!r}; use --{other}")
+
+    @property
+    def dataset(self) -> Path:
+        """Folder of the dataset."""
+        return self.output / self.env.env_id
+
+    @property
+    def recipe(self) -> dict[str, Any]:
+        """The settings that all pictures of a split have in common."""
+        names = ("per_scene", "size", "shader", "lights", "looks", "amodal", "seed")
+        made = {"env_id": self.env.env_id, "settings": self.env.settings}
+        made |= {name: getattr(self, name) for name in names}
+        return made if self.shader == "default" else {**made, "spp": self.spp}
+
+    def episode(self, scene: str, seed: int) -> EpisodeOptions:
+        """The episode of `scene` in which nobody acts."""
+        env = {f.name: getattr(self.env, f.name) for f in fields(EnvOptions)}
+        return EpisodeOptions(**env, scene=scene, seed=seed)

@@ -1,0 +1,162 @@
+"""`hazard-ms perception score`: average precision of any detector, overall and by hazard state, area and distance."""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import io
+import json
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from hazard_ms.perception import coco, layout
+from hazard_ms.perception.states import MOVING
+
+Row = Mapping[str, Any]
+STATES: dict[str, Callable[[Row], bool]] = {  # of an annotation's attributes
+    "dry, not burnt": lambda a: a["status"] == "normal" and not a["wet"],
+    "burning": lambda a: a["status"] == "burning",
+    "burnt": lambda a: a["status"] == "burnt",
+    "wet": lambda a: a["wet"],
+    "more than half under water": lambda a: a["submerged"] > 0.5,
+    "floating": lambda a: a["floating"],
+    "moving": lambda a: a["speed_mps"] > MOVING,
+    "damaged": lambda a: a["damaged"],
+}
+AREAS = (0, 256, 1024, 4096, math.inf)  # ends of the groups by visible area [pixels] [ours]
+DISTANCES = (0, 1, 2, 4, math.inf)  # ends of the groups by distance from the camera [m] [ours]
+MOST_FOUND = 100  # detections of a picture that count, as in COCO
+KINDS = {"bbox": "boxes", "segm": "masks"}
+
+
+def score(dataset: Path, results: Path, split: str) -> str:
+    """Tables of the average precision of what a detector found in a split, as text.
+
+    `results`: a file in COCO's results format. Raises ValueError for a dataset or results that cannot be read, and for
+    detections of unknown pictures or categories.
+    """
+    coco.tools()
+    path = dataset / layout.instances(split)
+    if not path.is_file():
+        known = ", ".join(p.stem.removeprefix("instances_") for p in layout.splits_of(dataset))
+        raise ValueError(f"split must be one of {known} in {dataset}, got {split!r}")
+    truth = layout.read_instances(path)
+    found = read_results(results, truth)
+    kinds = [kind for kind, key in (("bbox", "bbox"), ("segm", "segmentation")) if all(key in row for row in found)]
+    return "\n".join(f"{KINDS[kind]}\n\n{_table(truth, found, kind)}" for kind in kinds)
+
+
+def read_results(path: Path, truth: Row) -> list[dict[str, Any]]:
+    """The detections in a file, checked against the COCO data `truth`.
+
+    Raises ValueError that names the entry and what is wrong with it.
+    """
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ValueError(f"results must be a JSON file in COCO's results format, got {path}: {error}") from None
+    if not isinstance(found, list) or not found:
+        raise ValueError(f"results must be a list of detections, got {type(found).__name__} in {path}")
+    sizes = {image["id"]: (image["height"], image["width"]) for image in truth["images"]}
+    categories = {row["id"] for row in truth["categories"]}
+    for number, row in enumerate(found):
+        fault = _fault(row, sizes, categories)
+        if fault:
+            raise ValueError(f"{fault}, in entry {number} of {path}")
+    for key in ("bbox", "segmentation"):
+        if any(key in row for row in found) and not all(key in row for row in found):
+            raise ValueError(f"{key} must be in all entries or in none, got some without in {path}")
+    return found
+
+
+def _fault(row: Any, sizes: Mapping[Any, tuple[int, int]], categories: set[int]) -> str:
+    """What is wrong with a detection; empty if nothing is."""
+    if not isinstance(row, dict):
+        return f"a detection must be an object, got {row!r:.100}"
+    if row.get("image_id") not in sizes:
+        return f"image_id must be that of a picture of the split, got {row.get('image_id')!r:.100}"
+    if row.get("category_id") not in categories:
+        return f"category_id must be one of the dataset's categories, got {row.get('category_id')!r:.100}"
+    if not _finite([row.get("score")]):
+        return f"score must be a finite number, got {row.get('score')!r:.100}"
+    if "bbox" not in row and "segmentation" not in row:
+        return "bbox or segmentation must be given, got neither"
+    box = row.get("bbox", [0, 0, 0, 0])
+    if not isinstance(box, list) or len(box) != 4 or not _finite(box) or min(box[2:]) < 0:
+        return f"bbox must be left, top, width and height, got {box!r:.100}"
+    if "segmentation" in row:
+        mask, (height, width) = row["segmentation"], sizes[row["image_id"]]
+        if not isinstance(mask, dict) or "counts" not in mask or mask.get("size") != [height, width]:
+            return f"segmentation must be run lengths of size {[height, width]}, got {mask!r:.100}"
+    return ""
+
+
+def _finite(numbers: list[Any]) -> bool:
+    """Whether all of these are finite numbers."""
+    return all(isinstance(n, (int, float)) and not isinstance(n, bool) and math.isfinite(n) for n in numbers)
+
+
+def _table(truth: Row, found: list[dict[str, Any]], kind: str) -> str:
+    """A table in Markdown: one line for all things, and one for each group that has any."""
+    every: dict[str, Callable[[Row], bool]] = {"all": lambda a: True, **STATES}
+    every |= {f"{name} pixels": rule for name, rule in _between("pixels", AREAS).items()}
+    every |= {f"{name} m away": rule for name, rule in _between("distance_m", DISTANCES).items()}
+    lines = ["| things | number | AP | AP50 | AR |", "| --- | --- | --- | --- | --- |"]
+    for name, rule in every.items():
+        count = sum(rule(row["attributes"]) for row in truth["annotations"])
+        if count:
+            numbers = average_precision(truth, found, kind, rule)
+            lines.append(f"| {name} | {count} | " + " | ".join(f"{number:.3f}" for number in numbers) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def _between(key: str, ends: tuple[float, ...]) -> dict[str, Callable[[Row], bool]]:
+    """Groups of things whose attribute `key` lies between neighbouring `ends`, the lower one included."""
+
+    def rule(low: float, high: float) -> Callable[[Row], bool]:
+        return lambda a: low <= a[key] < high
+
+    pairs = zip(ends[:-1], ends[1:], strict=True)
+    return {f"{low} or more" if high == math.inf else f"{low} to {high}": rule(low, high) for low, high in pairs}
+
+
+def average_precision(
+    truth: Row, found: list[dict[str, Any]], kind: str, counts: Callable[[Row], bool] = lambda a: True
+) -> tuple[float, float, float]:
+    """AP, AP50 and AR of `found` (bbox or segm, `kind`) for the things whose attributes `counts` accepts.
+
+    Other things are neither missed nor found: detections of them are left out. Detections of nothing count in all
+    groups.
+    """
+    from pycocotools.coco import COCO
+    from pycocotools.cocoeval import COCOeval
+
+    class Grouped(COCOeval):
+        """COCO's evaluation, in which the things of other groups are ignored."""
+
+        def _prepare(self) -> None:
+            super()._prepare()
+            for things in self._gts.values():
+                for thing in things:
+                    thing["ignore"] = not counts(thing["attributes"])
+
+    with contextlib.redirect_stdout(io.StringIO()):
+        real = COCO()
+        real.dataset = copy.deepcopy({"info": {}, **truth})
+        real.createIndex()
+        key = {"bbox": "segmentation", "segm": "bbox"}[kind]  # pycocotools looks at the first key that it finds
+        run = Grouped(real, real.loadRes([{k: v for k, v in row.items() if k != key} for row in found]), kind)
+        run.params.areaRng, run.params.areaRngLbl = [[0, 1e10]], ["all"]
+        run.params.maxDets = [MOST_FOUND]
+        run.evaluate()
+        run.accumulate()
+    precision, recall = run.eval["precision"][:, :, :, 0, 0], run.eval["recall"][:, :, 0, 0]
+    return _mean(precision), _mean(precision[:1]), _mean(recall)
+
+
+def _mean(numbers: Any) -> float:
+    """The mean of those that are known; pycocotools writes -1 for categories without things."""
+    known = numbers[numbers > -1]
+    return float(known.mean()) if known.size else 0.0

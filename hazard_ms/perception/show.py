@@ -1,0 +1,134 @@
+"""`hazard-ms perception show`: pictures of a dataset with their masks and states, and its numbers, as one page."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.machine.files import make_folder, write
+from hazard_ms.perception import coco, layout
+from hazard_ms.perception.card import numbers
+from hazard_ms.perception.states import MOVING
+from hazard_ms.spec.checks import whole
+
+MOST_PICTURES = 500  # of a page [ours]
+EDGE = 384  # of a picture on the page [pixels] [ours]
+PIXELS = 80  # of a thing whose name is written [pixels], on EDGE [ours]
+QUALITY = 82  # of the page's JPEG pictures, of 100 [ours]
+COVER = 0.35  # share of the colour of a mask [ours]
+COLUMNS = 4  # of a sheet [ours]
+COLOURS = {  # red, green, blue of a thing by its state [ours]
+    "burning": (255, 90, 40),
+    "burnt": (150, 90, 200),
+    "under water": (60, 150, 255),
+    "moving": (255, 220, 60),
+    "target": (90, 220, 120),
+    "other": (170, 170, 170),
+}
+PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>{title}</title>
+<style>body{{font:15px system-ui,sans-serif;margin:24px;background:#0f1115;color:#eceff4}}
+td,th{{padding:3px 12px 3px 0;text-align:left;vertical-align:top}}
+figure{{display:inline-block;margin:0 10px 14px 0;width:{edge}px;vertical-align:top}}
+figcaption{{color:#949dab;font-size:13px}}img{{border-radius:6px;width:100%}}
+b{{padding:1px 8px;border-radius:4px;color:#000;margin-right:6px}}</style>
+<h1>{title}</h1><p>{legend}</p>{body}</html>
+"""
+
+
+def show(dataset: Path, output: Path, pictures: int) -> Path:
+    """Write the page, NAME.html, or only its pictures as one sheet, NAME.png or NAME.jpg. Returns its path.
+
+    `pictures` of each split are shown, evenly spread. Raises ValueError for a folder that is no dataset, and for a page
+    that cannot be written.
+    """
+    whole(pictures, 1, MOST_PICTURES, "pictures")
+    splits = layout.splits_of(dataset)
+    endings = (".html", ".png", ".jpg")
+    if output.suffix not in endings:
+        raise ValueError(f"output must be a name that ends in {' or '.join(endings)}, got {output.name!r}")
+    make_folder(output.parent)
+    if output.suffix != ".html":
+        shown = [drawn for path in splits for drawn, _ in _some(dataset, layout.read_instances(path), pictures)]
+        write(output, _encoded(sheet(shown), output.suffix))
+        return output
+    parts = []
+    for path in splits:
+        rows = layout.read_instances(path)
+        table = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in numbers(rows))
+        figures = "".join(_figure(drawn, image) for drawn, image in _some(dataset, rows, pictures))
+        parts.append(f"<h2>{escape(path.stem)}</h2><table>{table}</table><p>{figures}</p>")
+    legend = "".join(f'<b style="background:rgb{colour}">{name}</b>' for name, colour in COLOURS.items())
+    write(output, PAGE.format(title=escape(dataset.name), legend=legend, body="".join(parts), edge=EDGE))
+    return output
+
+
+def sheet(pictures: list[NDArray[np.uint8]]) -> NDArray[np.uint8]:
+    """Pictures of EDGE pixels as one, COLUMNS in a row, [H, W, 3]."""
+    blank = np.zeros((EDGE, EDGE, 3), np.uint8)
+    columns = min(COLUMNS, len(pictures))
+    rest = [*pictures, *[blank] * (-len(pictures) % columns)]
+    rows = [np.hstack(rest[k : k + columns]) for k in range(0, len(rest), columns)]
+    whole_sheet: NDArray[np.uint8] = np.vstack(rows)
+    return whole_sheet
+
+
+def _some(dataset: Path, rows: Mapping[str, Any], count: int) -> list[tuple[NDArray[np.uint8], Mapping[str, Any]]]:
+    """So many pictures of a split, drawn over, evenly spread, each with its row of images."""
+    images = rows["images"]
+    chosen = [images[k] for k in np.unique(np.linspace(0, len(images) - 1, min(count, len(images))).astype(int))]
+    of_image: dict[int, list[Mapping[str, Any]]] = {image["id"]: [] for image in chosen}
+    for annotation in rows["annotations"]:
+        if annotation["image_id"] in of_image:
+            of_image[annotation["image_id"]].append(annotation)
+    return [(drawn(dataset / image["file_name"], of_image[image["id"]]), image) for image in chosen]
+
+
+def drawn(picture: Path, annotations: list[Mapping[str, Any]]) -> NDArray[np.uint8]:
+    """A picture of EDGE pixels, [H, W, 3], RGB, with its masks, boxes and names in the colours of their states.
+
+    Raises ValueError for a file that is no picture.
+    """
+    read = cv2.imread(str(picture))
+    if read is None:
+        raise ValueError(f"{picture} must be a picture, got a file that cannot be read; see `perception check`")
+    shown = cv2.resize(read[..., ::-1], (EDGE, EDGE), interpolation=cv2.INTER_AREA)
+    scale = EDGE / read.shape[0]
+    for annotation in sorted(annotations, key=lambda row: -row["area"]):
+        colour = COLOURS[state_of(annotation["attributes"])]
+        mask = cv2.resize(coco.tools().decode(annotation["segmentation"]), (EDGE, EDGE)).astype(bool)
+        shown[mask] = ((1.0 - COVER) * shown[mask] + COVER * np.asarray(colour)).astype(np.uint8)
+        x, y, width, height = (round(scale * n) for n in annotation["bbox"])
+        cv2.rectangle(shown, (x, y), (x + width, y + height), colour, 1)
+        if annotation["area"] * scale**2 >= PIXELS:
+            at = (min(max(x, 2), EDGE - 60), max(y - 3, 9))
+            cv2.putText(shown, annotation["name"], at, cv2.FONT_HERSHEY_SIMPLEX, 0.32, colour, 1, cv2.LINE_AA)
+    return np.ascontiguousarray(shown)
+
+
+def state_of(attributes: Mapping[str, Any]) -> str:
+    """The one of COLOURS that says most about a thing."""
+    if attributes["status"] != "normal":
+        return str(attributes["status"])
+    if attributes["submerged"] > 0.0:
+        return "under water"
+    if attributes["speed_mps"] > MOVING:
+        return "moving"
+    return "target" if attributes["target"] else "other"
+
+
+def _figure(picture: NDArray[np.uint8], image: Mapping[str, Any]) -> str:
+    data = base64.b64encode(_encoded(picture, ".jpg")).decode()
+    words = f"{image['scene']}, frame {image['frame']}, {image['lighting']}, effects {image['effects']}"
+    return f'<figure><img src="data:image/jpeg;base64,{data}"><figcaption>{escape(words)}</figcaption></figure>'
+
+
+def _encoded(picture: NDArray[np.uint8], ending: str) -> bytes:
+    settings = [cv2.IMWRITE_JPEG_QUALITY, QUALITY] if ending == ".jpg" else []
+    return cv2.imencode(ending, picture[..., ::-1], settings)[1].tobytes()

@@ -1,0 +1,119 @@
+"""Average precision: of the truth itself, of boxes beside it, by groups; and files that are refused."""
+
+from __future__ import annotations
+
+import copy
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hazard_ms.perception import layout
+from hazard_ms.perception.coco import box_of, run_lengths
+from hazard_ms.perception.score import average_precision, read_results, score
+
+SIDE = 64  # of a picture [pixels]
+
+
+def thing(number: int, image: int, category: int, corner: tuple[int, int], edge: int, **state: Any) -> dict[str, Any]:
+    """The annotation of a square."""
+    mask = np.zeros((SIDE, SIDE), bool)
+    mask[corner[1] : corner[1] + edge, corner[0] : corner[0] + edge] = True
+    usual = {"status": "normal", "wet": False, "submerged": 0.0, "floating": False, "speed_mps": 0.0, "damaged": False}
+    told = {**usual, "distance_m": 1.5, "pixels": edge**2, **state}
+    return {
+        "id": number,
+        "image_id": image,
+        "category_id": category,
+        "segmentation": run_lengths(mask),
+        "area": edge**2,
+        "bbox": box_of(mask),
+        "iscrowd": 0,
+        "attributes": told,
+    }
+
+
+@pytest.fixture
+def truth() -> dict[str, Any]:
+    rows = [
+        thing(1, 1, 1, (4, 4), 20),
+        thing(2, 1, 2, (34, 30), 16, status="burning"),
+        thing(3, 2, 1, (10, 10), 10, wet=True, submerged=0.75, distance_m=3.0),
+        thing(4, 2, 1, (40, 40), 20),
+    ]
+    images = [{"id": k, "file_name": f"{k}.jpg", "width": SIDE, "height": SIDE} for k in (1, 2)]
+    return {"info": {}, "images": images, "annotations": rows, "categories": layout.categories()}
+
+
+def found_in(truth: dict[str, Any], shift: float = 0.0) -> list[dict[str, Any]]:
+    """What a detector would find that knows the truth, its boxes moved by a `shift` of their width."""
+    kept = ("image_id", "category_id", "segmentation")
+    moved = [[r["bbox"][0] + shift * r["bbox"][2], *r["bbox"][1:]] for r in truth["annotations"]]
+    rows = zip(truth["annotations"], moved, strict=True)
+    return [{**{k: r[k] for k in kept}, "bbox": box, "score": 0.9} for r, box in rows]
+
+
+@pytest.mark.parametrize("kind", ["bbox", "segm"])
+def test_the_truth_as_detections_is_perfect(truth: dict[str, Any], kind: str) -> None:
+    assert average_precision(truth, found_in(truth), kind) == pytest.approx((1.0, 1.0, 1.0))
+
+
+def test_boxes_beside_things_find_nothing(truth: dict[str, Any]) -> None:
+    """By half their width: they share a third of what both cover, less than the half that AP50 asks for."""
+    assert average_precision(truth, found_in(truth, 0.5), "bbox") == (0.0, 0.0, 0.0)
+    assert average_precision(truth, found_in(truth, 0.25), "bbox")[1] == pytest.approx(1.0), "three fifths are enough"
+
+
+def test_only_the_things_of_a_group_count_in_it(truth: dict[str, Any]) -> None:
+    """A detector that misses what burns is perfect for all the rest."""
+    found = [row for row in found_in(truth) if row["category_id"] != 2]
+    assert average_precision(truth, found, "segm", lambda a: a["status"] == "burning") == (0.0, 0.0, 0.0)
+    assert average_precision(truth, found, "segm", lambda a: a["wet"])[0] == pytest.approx(1.0)
+    assert average_precision(truth, found, "segm")[0] == pytest.approx(0.5), "of two categories, one is found"
+
+
+def test_a_detection_of_nothing_lowers_the_precision(truth: dict[str, Any]) -> None:
+    wrong = {**found_in(truth)[0], "bbox": [50, 2, 8, 8], "score": 0.99}
+    assert average_precision(truth, [*found_in(truth), wrong], "bbox")[0] < 1.0
+
+
+def test_the_tables_have_the_groups_that_there_are(truth: dict[str, Any], tmp_path: Path) -> None:
+    (tmp_path / layout.instances("test")).write_text(json.dumps(truth))
+    results = tmp_path / "found.json"
+    results.write_text(json.dumps(found_in(truth)))
+    told = score(tmp_path, results, "test")
+    assert told.count("| all | 4 | 1.000 | 1.000 | 1.000 |") == 2, "boxes and masks"
+    assert "| burning | 1 | 1.000" in told and "| more than half under water | 1 |" in told
+    assert "| 2 to 4 m away | 1 |" in told and "| 256 to 1024 pixels | 3 |" in told and "| burnt |" not in told
+    with pytest.raises(ValueError, match="split must be one of test"):
+        score(tmp_path, results, "train")
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "told"),
+    [
+        ({"image_id": 77}, "image_id must be that of a picture"),
+        ({"category_id": -5}, "category_id must be one of"),
+        ({"score": float("nan")}, "score must be a finite number"),
+        ({"bbox": [1, 2, 3]}, "bbox must be left, top"),
+        ({"bbox": [1, 2, -3, 4]}, "bbox must be left, top"),
+        ({"segmentation": {"size": [9, 9], "counts": "0"}}, "segmentation must be run lengths of size"),
+    ],
+)
+def test_bad_detections_are_named(truth: dict[str, Any], tmp_path: Path, spoilt: dict[str, Any], told: str) -> None:
+    found = copy.deepcopy(found_in(truth))
+    found[2] |= spoilt
+    path = tmp_path / "found.json"
+    path.write_text(json.dumps(found))
+    with pytest.raises(ValueError, match=f"{told}.*in entry 2 of"):
+        read_results(path, truth)
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[]", "[1]", '[{"image_id": 1}]'])
+def test_files_that_hold_no_detections_are_refused(truth: dict[str, Any], tmp_path: Path, text: str) -> None:
+    path = tmp_path / "found.json"
+    path.write_text(text)
+    with pytest.raises(ValueError, match="must be"):
+        read_results(path, truth)

@@ -1,0 +1,56 @@
+"""The page and the sheet of a dataset."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from hazard_ms.perception import layout
+from hazard_ms.perception.show import COLUMNS, EDGE, drawn, show, state_of
+
+pytestmark = pytest.mark.render
+
+
+def test_the_page_has_pictures_and_numbers(dataset: Path, tmp_path: Path) -> None:
+    page = show(dataset, tmp_path / "page.html", 5).read_text()
+    assert page.count("data:image/jpeg;base64,") == 5
+    assert "<th>pictures</th><td>12</td>" in page and "burning" in page
+
+
+def test_the_sheet_has_its_pictures_side_by_side(dataset: Path, tmp_path: Path) -> None:
+    sheet = cv2.imread(str(show(dataset, tmp_path / "sheet.png", 6)))
+    assert sheet is not None
+    assert sheet.shape == (2 * EDGE, COLUMNS * EDGE, 3)
+    assert not sheet[EDGE:, 2 * EDGE :].any(), "the last places stay empty"
+
+
+def test_masks_are_drawn_where_things_are(dataset: Path) -> None:
+    rows = json.loads((dataset / layout.instances("train")).read_text())
+    largest = max(rows["annotations"], key=lambda row: row["area"])
+    image = next(image for image in rows["images"] if image["id"] == largest["image_id"])
+    plain, over = drawn(dataset / image["file_name"], []), drawn(dataset / image["file_name"], [largest])
+    changed = (plain != over).any(-1).mean()
+    assert changed == pytest.approx(largest["area"] / (image["width"] * image["height"]), abs=0.05)
+
+
+def test_what_says_most_about_a_thing_gives_its_colour() -> None:
+    plain = {"status": "normal", "submerged": 0.0, "speed_mps": 0.0, "target": False}
+    assert state_of(plain) == "other" and state_of(plain | {"target": True}) == "target"
+    assert state_of(plain | {"submerged": 0.1, "target": True}) == "under water"
+    assert state_of(plain | {"submerged": 0.1, "status": "burnt"}) == "burnt"
+
+
+@pytest.mark.parametrize("name", ["page.txt", "page"])
+def test_other_endings_are_refused(dataset: Path, tmp_path: Path, name: str) -> None:
+    with pytest.raises(ValueError, match="output must be a name that ends in"):
+        show(dataset, tmp_path / name, 5)
+
+
+def test_a_file_that_is_no_picture_is_refused(tmp_path: Path) -> None:
+    np.save(tmp_path / "picture.npy", np.zeros(3))
+    with pytest.raises(ValueError, match="must be a picture"):
+        drawn(tmp_path / "picture.npy", [])

@@ -35,6 +35,7 @@ from hazard_ms.demonstrations.layout import (
 )
 from hazard_ms.demonstrations.reading import read_episode
 from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.machine.files import flush
 
 CHECKSUM = "checksum"  # key of episode.json: the hash of everything else in it
 
@@ -104,11 +105,11 @@ def publish(part: Path, dataset: Path, entry: Entry) -> Path:
     shelf = dataset / FAILURES if entry.reason else dataset
     shelf.mkdir(exist_ok=True)
     for path in [*files_of(part).values(), *(p for p in part.rglob("*") if p.is_dir()), part]:
-        _flush(path)
+        flush(path)
     with publishing(dataset):
         place = shelf / entry.name
         os.replace(part, place)
-        _flush(shelf)
+        flush(shelf)
         append(shelf, entry)
     return place
 
@@ -128,17 +129,8 @@ def append(shelf: Path, entry: Entry) -> None:
         os.fsync(opened)
     finally:
         os.close(opened)
-    _flush(shelf)
+    flush(shelf)
 
 
 def _checksum(row: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(row, sort_keys=True).encode()).hexdigest()
-
-
-def _flush(path: Path) -> None:
-    """Bring a file, or the names in a folder, to the disk."""
-    opened = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(opened)
-    finally:
-        os.close(opened)

@@ -111,6 +111,15 @@ def make_folder(path: Path) -> None:
         path.mkdir(parents=True, exist_ok=True)
 
 
+def flush(path: Path) -> None:
+    """Bring a file, or the names in a folder, to the disk. Raises OSError where that fails."""
+    opened = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(opened)
+    finally:
+        os.close(opened)
+
+
 def _publish(made: list[Draft]) -> None:
     """Give all drafts their names; where one cannot have its name, give all names back to the older files."""
     older: dict[Path, Path | None] = {}

@@ -20,7 +20,7 @@ import torch
 from tqdm import tqdm
 
 from hazard_ms.evaluation.workers import SILENCE, Crew, Job, Outcome, Say, Word, ending
-from hazard_ms.machine.files import make_folder, write, write_together
+from hazard_ms.machine.files import flush, make_folder, write, write_together
 from hazard_ms.perception import coco, layout
 from hazard_ms.perception.card import card, licences
 from hazard_ms.perception.options import CaptureOptions
@@ -121,18 +121,9 @@ def _publish(part: Path, place: Path) -> None:
     names = [path.relative_to(part).as_posix() for path in part.rglob("*") if path.is_file()]
     (part / layout.SUMS).write_text(layout.sums_of(part, names), encoding="utf-8")
     for path in [*(p for p in part.rglob("*")), part]:
-        _flush(path)
+        flush(path)
     os.replace(part, place)
-    _flush(place.parent)
-
-
-def _flush(path: Path) -> None:
-    """Bring a file, or the names in a folder, to the disk."""
-    opened = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(opened)
-    finally:
-        os.close(opened)
+    flush(place.parent)
 
 
 def _whole(place: Path, options: CaptureOptions) -> bool:

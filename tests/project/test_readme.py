@@ -25,7 +25,8 @@ from tests.worlds.files.documents import DOCUMENTS, blocks, command_lines, name_
 
 RUN = ("README.md", "docs/usage.md", "docs/agents.md", "docs/scenes.md", "docs/adding.md")
 LONGEST_README = 80  # lines: about a screen
-NESTED = ("scenes", "assets", "demos", "perception", "llm")  # commands that have commands of their own
+# commands that have commands of their own: to parse their words is to run them
+NESTED = [name for name, command in cli.COMMANDS.items() if "done" in inspect.signature(command).parameters]
 OTHERS = ("pip", "uv", "cd", "export")  # commands that are not ours
 
 

@@ -29,6 +29,7 @@ from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.spec.checks import one_of
 
 HERE = Path(__file__).parent
+RAW = HERE.parent / "build" / "hostile"  # the table of each task
 TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
 KEY = "sk-SENTINEL-0123456789abcdef"
 SEEDS = range(25)
@@ -116,30 +117,36 @@ def check(holds: bool, told: str) -> None:
         raise AssertionError(told)
 
 
+def section(task: str) -> str:
+    """Play a task. Returns its table, Markdown."""
+    env = SkillEnv.make(TASKS[task], **EpisodeOptions(env_id=TASKS[task], agent="llm").settings)
+    server, rows = ScriptedServer().start(), {model: Row() for model in BEHAVIOURS}
+    with tempfile.TemporaryDirectory() as name:
+        for seed, (model, row) in itertools.product(SEEDS, rows.items()):
+            ended, counters, longest = hostile(env, server, model, seed, Path(name))
+            row.ended[ended] += 1
+            row.counts.update({fault: int(counters[fault]) for fault in FAULTS})
+            row.longest = max(row.longest, longest)
+            print(f"{task}, seed {seed}, {model}: {ended}, {counters}", flush=True)
+        files = [path for path in Path(name).rglob("*") if path.is_file()]
+        for path in files:
+            check(KEY.encode() not in path.read_bytes(), f"{path.name} holds the key")
+    server.stop()
+    env.close()
+    lines = [f"## {task.capitalize()}\n", f"| model | ended | {' | '.join(FAULTS)} | longest decision [s] |"]
+    lines += ["|---" * (len(FAULTS) + 3) + "|", *(row.text(model) for model, row in rows.items())]
+    return "\n".join([*lines, f"\nThe key stands in none of {len(files)} files of answers and traces.\n"])
+
+
 def main(wanted: list[str]) -> None:
-    """Play the tasks `wanted`, or all, and write the table. Raises ValueError for unknown names."""
+    """Play the tasks `wanted`, or all, and write the tables. Raises ValueError for unknown names."""
     os.environ["HAZARD_MS_LLM_KEY"] = KEY
-    lines = [HEAD]
+    RAW.mkdir(parents=True, exist_ok=True)
     for task in [one_of(name, TASKS, "a task") for name in wanted] or [*TASKS]:
-        lines += [f"## {task.capitalize()}\n", f"| model | ended | {' | '.join(FAULTS)} | longest decision [s] |"]
-        lines += ["|---" * (len(FAULTS) + 3) + "|"]
-        env = SkillEnv.make(TASKS[task], **EpisodeOptions(env_id=TASKS[task], agent="llm").settings)
-        server, rows = ScriptedServer().start(), {model: Row() for model in BEHAVIOURS}
-        with tempfile.TemporaryDirectory() as name:
-            for seed, (model, row) in itertools.product(SEEDS, rows.items()):
-                ended, counters, longest = hostile(env, server, model, seed, Path(name))
-                row.ended[ended] += 1
-                row.counts.update({fault: int(counters[fault]) for fault in FAULTS})
-                row.longest = max(row.longest, longest)
-                print(f"{task}, seed {seed}, {model}: {ended}, {counters}", flush=True)
-            lines += [row.text(model) for model, row in rows.items()]
-            files = [path for path in Path(name).rglob("*") if path.is_file()]
-            for path in files:
-                check(KEY.encode() not in path.read_bytes(), f"{path.name} holds the key")
-            lines.append(f"\nThe key stands in none of {len(files)} files of answers and traces.\n")
-        server.stop()
-        env.close()
-    (HERE / "hostile.md").write_text("\n".join(lines), encoding="utf-8")
+        (RAW / f"{task}.md").write_text(section(task), encoding="utf-8")
+    made = [RAW / f"{task}.md" for task in TASKS]
+    told = [path.read_text(encoding="utf-8") for path in made if path.exists()]
+    (HERE / "hostile.md").write_text("\n".join([HEAD, *told]), encoding="utf-8")
 
 
 if __name__ == "__main__":

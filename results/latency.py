@@ -29,7 +29,6 @@ TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind
 PLAYERS = {"planner": "planner", "model": "llm:base_url=scripted,model=greedy"}
 LABELS = {"planner": "planner", "model": "llm, scripted model"}  # in the chart
 DELAYS = (0, 1, 2, 5, 10)  # time for a decision [s]
-LINEAR = 1.0  # delay up to which the axis is linear; beyond, it is logarithmic [s]
 
 
 class Slow(Agent):
@@ -116,7 +115,6 @@ def chart(episodes: Sequence[tuple[str, str, int, EpisodeResult]]) -> None:
                 below.append(mean - low)
                 above.append(high - mean)
             ax.errorbar(delays, means, [below, above], marker="o", capsize=3, label=name)
-        ax.set_xscale("symlog", linthresh=LINEAR)
         ax.set_xticks(DELAYS, [str(delay) for delay in DELAYS])
         ax.set(title=task, xlabel="time for a decision [s]", ylim=(0, 100))
         ax.grid(alpha=0.3)

@@ -78,15 +78,19 @@ def page(
     trace: tyro.conf.Positional[Path],
     result: Path | None = None,
     output: Annotated[Path, flag("-o")] = Path("decisions.html"),
+    pictures: bool = False,
+    load: tuple[str, ...] = (),
 ) -> int:
     """Write a page with all that a model was asked in an episode, what it answered, and what was done.
 
-    Raises ValueError for files that are not a trace and a result.
+    Raises ValueError for files that are not a trace and a result, and for pictures without a result.
 
     Args:
         trace: File that the agent llm:trace=FOLDER wrote.
         result: Result of the same episode; what `hazard-ms regret` wrote beside it is shown, too.
         output: Page to write, NAME.html.
+        pictures: Play the result again, for a picture of the head camera and a map at each decision.
+        load: Modules, or files NAME.py, that register what the episode needs for pictures.
     """
     from hazard_ms.evaluation.decision_page import decision_page, read_trace
     from hazard_ms.evaluation.regret.causes import beside
@@ -95,11 +99,19 @@ def page(
 
     if output.suffix != ".html":
         raise ValueError(f"output must be a name that ends in .html, got {output.name!r}")
+    if pictures and result is None:
+        raise ValueError("result must be given for --pictures, got none: the episode is played again from it")
     rows = read_trace(trace)
     read = None if result is None else EpisodeResult.read(result)
     judged = None if result is None else beside(result)
     make_folder(output.parent)
-    write(output, decision_page(rows, trace.stem, read, judged))
+    views: dict[int, tuple[str, str]] = {}
+    if pictures and read is not None:
+        from hazard_ms.pictures.decision_pictures import decision_pictures
+
+        views = decision_pictures(read, {row["frame"] for row in rows}, load)
+        print(f"pictures: of {sum(row['frame'] in views for row in rows)} of {len(rows)} decisions")
+    write(output, decision_page(rows, trace.stem, read, judged, views))
     print(f"page: {output.resolve()}")
     return 0
 

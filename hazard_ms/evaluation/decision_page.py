@@ -1,13 +1,15 @@
 """The decisions of a language model as one web page: what it was asked, what it said, and what was done.
 
 With the result of the episode it shows the outcome, too, and with what `hazard-ms regret` wrote, what each choice gave
-away and what the best plan would have done.
+away and what the best plan would have done; with pictures, what could be seen at each decision.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from hazard_ms.evaluation.page import COLOURS, rendered, rescue_curve
@@ -17,20 +19,33 @@ from hazard_ms.skills.failures import UNFINISHED
 
 TEMPLATE = Path(__file__).with_name("decision_page.html")
 NEEDED = ("frame", "asked", "options", "replies", "letter", "action", "note", "fallback")  # of a line of a trace
+NO_VIEWS: Mapping[int, tuple[str, str]] = MappingProxyType({})
 FREE = 0.0005  # share of the value that a choice may give away and still count as the best
 
 
 def decision_page(
-    trace: list[dict[str, Any]], title: str, result: EpisodeResult | None = None, regret: EpisodeRegret | None = None
+    trace: list[dict[str, Any]],
+    title: str,
+    result: EpisodeResult | None = None,
+    regret: EpisodeRegret | None = None,
+    views: Mapping[int, tuple[str, str]] = NO_VIEWS,
 ) -> str:
-    """The page of a trace, HTML."""
+    """The page of a trace, HTML; `views`: by frame, the head camera's picture and a map, as data URLs."""
     done = {} if result is None else {record.frame: record for record in result.decisions}
     judged = {} if regret is None else {each.frame: each for each in regret.decisions}
     calls = [reply for row in trace for reply in row["replies"]]
     return rendered(
         TEMPLATE,
         title=title,
-        rows=[{**row, "record": done.get(row["frame"]), "judged": judged.get(row["frame"])} for row in trace],
+        rows=[
+            {
+                **row,
+                "record": done.get(row["frame"]),
+                "judged": judged.get(row["frame"]),
+                "views": views.get(row["frame"]),
+            }
+            for row in trace
+        ],
         calls=len(calls),
         seconds=sum(reply["seconds"] for reply in calls),
         tokens=[sum(reply["tokens"][k] for reply in calls) for k in (0, 1)],

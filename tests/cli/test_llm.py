@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import urllib.request
+from pathlib import Path
 
 import pytest
 
@@ -38,6 +39,27 @@ def test_a_check_without_an_address_says_what_is_missing(
     assert "base_url must be the address of a server" in capsys.readouterr().err
     assert main(["llm", "check", "--base-url", "http://127.0.0.1:1/v1", "--model", "m"]) == 2
     assert "must be the address of a running server" in capsys.readouterr().err
+
+
+def test_pictures_of_decisions_need_a_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "t.jsonl").write_text("")
+    assert main(["llm", "page", str(tmp_path / "t.jsonl"), "-o", str(tmp_path / "a.html"), "--pictures"]) == 2
+    assert "result must be given for --pictures, got none" in capsys.readouterr().err
+    assert not (tmp_path / "a.html").exists()
+
+
+@pytest.mark.render
+@pytest.mark.long
+def test_a_page_shows_what_could_be_seen(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    agent = f"llm:base_url=scripted,model=refuse,most_calls=2,trace={tmp_path}"
+    assert main(["play", "-a", agent, "-s", "1", "-o", str(tmp_path / "out.mp4")]) == 0
+    (trace,) = tmp_path.glob("*.jsonl")
+    words = ["llm", "page", str(trace), "--result", str(tmp_path / "out.json"), "-o", str(tmp_path / "a.html")]
+    assert main(words) == 0 and "<img" not in (tmp_path / "a.html").read_text()
+    assert main([*words, "--pictures"]) == 0
+    asked = len(trace.read_text().splitlines())
+    assert f"pictures: of {asked} of {asked} decisions" in capsys.readouterr().out
+    assert (tmp_path / "a.html").read_text().count('<img src="data:image/jpeg;base64,') == 2 * asked
 
 
 def test_the_scripted_server_serves_until_it_is_interrupted() -> None:

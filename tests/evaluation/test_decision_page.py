@@ -75,6 +75,16 @@ def test_without_a_result_it_shows_the_trace_alone() -> None:
     assert "Answer: A" in text and "Timeline" not in text and "best plan" not in text
 
 
+def test_pictures_stand_with_their_decision_alone() -> None:
+    views = {60: ("data:image/jpeg;base64,SGVhZA==", "data:image/jpeg;base64,TWFw"), 90: ("data:a", "data:b")}
+    shown(None, None, views)
+    with_pictures = decision_page([{**ROW, "frame": 30}, ROW], "a trace", views=views)
+    assert with_pictures.count("<img") == 2 and "data:a" not in with_pictures
+    after = with_pictures.partition("Frame 60")[2]
+    assert after.index(views[60][0]) < after.index(views[60][1]) and "map of what was seen until frame 60" in after
+    assert "<img" not in decision_page([ROW], "a trace", RESULT, REGRET)
+
+
 def test_a_trace_is_read(tmp_path: Path) -> None:
     (tmp_path / "t.jsonl").write_text(f"{json.dumps(ROW)}\n{json.dumps(ROW)}\n")
     assert read_trace(tmp_path / "t.jsonl") == [ROW, ROW]

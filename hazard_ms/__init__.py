@@ -6,8 +6,8 @@ nothing heavy:
     import gymnasium as gym, hazard_ms
     env = gym.make("HazardFire-v1")
 
-Third parties add tasks, hazards, robots and agents with `register_task`, `register_hazard`, `register_robot` and
-`register_agent`; see `hazard_ms.registry`.
+Third parties add tasks, hazards, robots, agents and detectors with `register_task`, `register_hazard`,
+`register_robot`, `register_agent` and `register_detector`; see `hazard_ms.registry`.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import Any
 
 from hazard_ms.registry import load, register_agent, register_hazard, register_robot, register_task
 from hazard_ms.registry.announce import announce
+from hazard_ms.registry.detectors import register_detector
 from hazard_ms.registry.version import __version__
 
 _LAZY = {  # imported when they are first asked for: they need torch, SAPIEN and ManiSkill
@@ -46,7 +47,15 @@ _LAZY = {  # imported when they are first asked for: they need torch, SAPIEN and
     "quantity": "hazard_ms.hazards.base:quantity",
     "rescue": "hazard_ms.tasks.rescue:rescue",
 }
-__all__ = ["__version__", "register_agent", "register_hazard", "register_robot", "register_task", *_LAZY]  # noqa: PLE0604
+__all__ = [  # noqa: PLE0604
+    "__version__",
+    "register_agent",
+    "register_detector",
+    "register_hazard",
+    "register_robot",
+    "register_task",
+    *_LAZY,
+]
 
 
 def __getattr__(name: str) -> Any:

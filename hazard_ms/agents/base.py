@@ -7,11 +7,9 @@ imports it. Parameters follow the name: `agent("greedy:give_up=3")`.
 from __future__ import annotations
 
 import abc
-import inspect
 import os
 import re
 import sys
-import typing
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from types import MappingProxyType
@@ -25,11 +23,11 @@ from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.parameters import parameters
 
 if TYPE_CHECKING:
     from hazard_ms.skills.executor import SkillEnv
 
-FLAGS = {"true": True, "false": False}
 LONGEST_NOTE = 2000  # characters of a note that are kept [ours]
 PARAMETERS = re.compile(r":(?=\w+=)")  # what stands between an agent and its parameters; values may hold colons
 
@@ -120,7 +118,7 @@ def _made(text: str) -> Agent:
     made = _class(name)
     if not (isinstance(made, type) and issubclass(made, Agent)):
         raise ValueError(f"agent must be a subclass of hazard_ms.agents.base.Agent, got {text!r}, which is {made!r}")
-    return made(**_parameters(made, "".join(given)))
+    return made(**parameters(made, "".join(given).split(",")))
 
 
 def _class(name: str) -> Any:
@@ -133,35 +131,6 @@ def _class(name: str) -> Any:
     if found is None:
         raise ValueError(f"agent must be a class of {module}, got {attribute!r}")
     return found
-
-
-def _parameters(made: type[Agent], given: str) -> dict[str, Any]:
-    """The keywords `key=value,key=value` for an agent, converted as its `__init__` annotates them."""
-    known = [] if made.__init__ is object.__init__ else [*inspect.signature(made.__init__).parameters][1:]
-    kinds = typing.get_type_hints(made.__init__) if known else {}
-    keywords = {}
-    for part in filter(None, given.split(",")):
-        key, equals, value = part.partition("=")
-        if not equals or key not in known:
-            allowed = ", ".join(f"{name}=..." for name in known) or "(none)"
-            raise ValueError(f"a parameter of {made.__name__} must be one of {allowed}, got {part!r}")
-        keywords[key] = _converted(value, kinds.get(key, str), key)
-    return keywords
-
-
-def _converted(value: str, kind: Any, key: str) -> Any:
-    """`value` as `kind`: int, float, bool, str, or one of several such types."""
-    for each in typing.get_args(kind) or (kind,):
-        if each is bool and value.lower() in FLAGS:
-            return FLAGS[value.lower()]
-        if each is type(None) and value.lower() == "none":
-            return None
-        if each in (int, float, str):
-            try:
-                return each(value)
-            except ValueError:
-                continue
-    raise ValueError(f"{key} must be {getattr(kind, '__name__', kind)}, got {value!r}")
 
 
 def distance(decision: Decision, sighting: Sighting) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,6 +13,7 @@ import tyro
 from hazard_ms import registry
 from hazard_ms.agents.thinking import CLOCKS, OFF
 from hazard_ms.evaluation.choices import BACKENDS, EFFECTS, LIGHTINGS, PRESETS, SPLITS, flag, offer
+from hazard_ms.registry.detectors import DETECTORS, TRUTH
 from hazard_ms.spec.order import natural
 
 SCENE_FILE = ".json"  # how names of scene files end
@@ -96,13 +97,17 @@ class EpisodeOptions(EnvOptions):
     """Scene, a name or a file NAME.json; chosen by the seed if not given."""
     clock: Annotated[str, offer(CLOCKS)] = OFF
     """Clock by which hazards go on while the agent thinks: tokens of its model, wall time, or none."""
+    perception: Annotated[str, offer((TRUTH, *DETECTORS))] = TRUTH
+    """What tells the agent of things: truth, or a detector; its file and parameters follow, NAME:FILE,key=value."""
 
     def check(self) -> None:
-        """Check the environment and the clock. Raises ValueError for what cannot be played."""
+        """Check the environment, clock and perception. Raises ValueError for what cannot be played."""
+        from hazard_ms.sensing.detection.perception import parts
         from hazard_ms.spec.checks import one_of
 
         super().check()
         one_of(self.clock, CLOCKS, "clock")
+        parts(self.perception)
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -123,7 +128,8 @@ class EpisodeOptions(EnvOptions):
         """The command that plays the episode again."""
         words = ["hazard-ms", "play", *self.words, "--agent", self.agent, "-s", str(self.seed)]
         words += [] if self.scene is None else ["--scene", self.scene]
-        words += [] if self.clock == OFF else ["--clock", self.clock]
+        words += ["--clock", self.clock] * (self.clock != OFF)
+        words += ["--perception", self.perception] * (self.perception != TRUTH)
         return shlex.join(words)
 
 
@@ -183,6 +189,8 @@ class SweepOptions:
     """Part i/N of the episodes that is played here, such as 2/3; by default that of the Slurm array job."""
     clock: Annotated[str, offer(CLOCKS)] = OFF
     """Clock by which hazards go on while an agent thinks: tokens of its model, wall time, or none."""
+    perception: Annotated[str, offer((TRUTH, *DETECTORS))] = TRUTH
+    """What tells agents of things: truth, or a detector; its file and parameters follow, NAME:FILE,key=value."""
     timeout: float = 60.0
     """Wall time that an agent has for a decision [s]; one that takes longer loses the rest of its episode."""
     output: Annotated[Path, flag("-o", "--output", old="out")] = Path("evaluation")
@@ -196,18 +204,15 @@ class SweepOptions:
         whole(self.seed, 0, MOST, "seed")
         whole(self.workers, 0, MOST_WORKERS, "workers")
         one_of(self.backend, BACKENDS, "backend")
-        one_of(self.clock, CLOCKS, "clock")
         if not 0.0 < self.timeout <= LONGEST_DECISION:
             raise ValueError(f"timeout must be more than 0 and at most {LONGEST_DECISION:g} s, got {self.timeout}")
-        self.env.check()
-        first = EpisodeOptions(**{f.name: getattr(self.env, f.name) for f in fields(EnvOptions)})
+        first = EpisodeOptions(**vars(self.env), clock=self.clock, perception=self.perception)
+        first.check()
         files = self._files()
         seeds = range(self.seed, self.seed + self.count)
         scenes = [files[s % len(files)] if files else None for s in seeds]
         return [
-            replace(first, agent=a, seed=s, scene=f, clock=self.clock)
-            for s, f in zip(seeds, scenes, strict=True)
-            for a in self.agents
+            replace(first, agent=a, seed=s, scene=f) for s, f in zip(seeds, scenes, strict=True) for a in self.agents
         ]
 
     @property
@@ -230,9 +235,9 @@ class SweepOptions:
         scenes = e.split if e.scene is None else re.sub(r"[^\w.-]+", ".", Path(e.scene).stem)
         setting = [e.env_id, *e.hazards, scenes, e.physics, e.robot_uids] + ["affected"] * e.affects_agent
         setting += [getattr(e, name) for name in ("lighting", "effects") if getattr(e, name) != _default(name)]
-        setting += [] if e.clock == OFF else [f"clock.{e.clock}"]
-        agent = re.sub(r"[^\w.-]+", ".", e.agent)
-        return self.output / f"{'-'.join(setting)}-{agent}-{e.seed:04d}.json"
+        setting += [f"clock.{e.clock}"] * (e.clock != OFF) + [e.perception] * (e.perception != TRUTH)
+        name = re.sub(r"[^\w.-]+", ".", "-".join([*setting, e.agent]))
+        return self.output / f"{name}-{e.seed:04d}.json"
 
 
 def _default(name: str) -> Any:

@@ -51,6 +51,7 @@ def episode_of(record: EpisodeResult, load: tuple[str, ...] = ()) -> EpisodeOpti
             agent=record.agent,
             seed=record.seed,
             scene=scene,
+            perception=record.perception,
         )
     except TypeError as error:
         raise ValueError(f"settings must be those of an episode, got {record.settings!r:.200}: {error}") from None

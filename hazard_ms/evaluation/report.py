@@ -9,6 +9,7 @@ from hazard_ms.agents.thinking import OFF
 from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.options import SweepOptions
 from hazard_ms.evaluation.result import EpisodeResult, machine, versions
+from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.skills.failures import UNFINISHED
 
 MOST_FALLBACKS = 0.05  # share of a model's decisions taken in its place, beyond which its scores are marked [ours]
@@ -34,6 +35,7 @@ def title(options: SweepOptions) -> str:
     settings += ["agent affected"] * env.affects_agent
     settings += [f"{name} {env.settings[name]}" for name in ("lighting", "effects") if name in env.settings]
     settings += [] if options.clock == OFF else [f"clock {options.clock}"]
+    settings += [] if options.perception == TRUTH else [f"perception {options.perception}"]
     what = ", ".join([env.env_id, *env.hazards, *settings])
     return f"{what}, {options.count} episodes each, seeds from {options.seed}"
 

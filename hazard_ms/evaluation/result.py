@@ -18,6 +18,7 @@ from typing import Any, get_type_hints
 from hazard_ms.agents.thinking import OFF
 from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
 from hazard_ms.machine.files import write
+from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.registry.version import __version__
 
 FORMAT = 2  # goes up when a field changes its meaning
@@ -106,6 +107,7 @@ class EpisodeResult:
     wall_seconds: float = 0.0
     phase_seconds: dict[str, float] = field(default_factory=dict)  # wall time by phase, as in `Played` [s]
     clock: str = OFF  # by which hazards went on while the agent thought
+    perception: str = TRUTH  # what told the agent of things
     counters: dict[str, Any] = field(default_factory=dict)  # the agent's own counts, such as calls of a model
     versions: dict[str, str] = field(default_factory=lambda: versions())
     machine: dict[str, Any] = field(default_factory=lambda: machine())

@@ -15,6 +15,7 @@ from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import BROKEN, DecisionRecord, EpisodeResult, Link, Played
 from hazard_ms.evaluation.watchers import Watcher
+from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.skills.actions import wait
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import STOP, Action, Decision, Result
@@ -158,8 +159,8 @@ def play(
     """
     start = time.perf_counter()
     options.check()
-    player = player or agent(options.agent)
-    env = SkillEnv.make(options.env_id, **{**options.settings, **keywords})
+    player = player or agent_of(options)
+    env = SkillEnv.make(options.env_id, options.perception, **{**options.settings, **keywords})
     made = time.perf_counter()
     try:
         played = Runner(env, player, watchers, options.clock).run(options.seed, options.reset_options)
@@ -168,6 +169,17 @@ def play(
         return replace(result, wall_seconds=time.perf_counter() - start)
     finally:
         env.close()
+
+
+def agent_of(options: EpisodeOptions) -> Agent:
+    """A new agent for the episode of `options`.
+
+    Raises ValueError for one that cannot be found, and for a privileged one where things are not told as they are.
+    """
+    made = agent(options.agent)
+    if isinstance(made, PrivilegedAgent) and options.perception != TRUTH:
+        raise ValueError(f"perception must be {TRUTH} for {options.agent}, which sees what is hidden")
+    return made
 
 
 def result_of(options: EpisodeOptions, env: SkillEnv, played: Played) -> EpisodeResult:
@@ -187,6 +199,7 @@ def result_of(options: EpisodeOptions, env: SkillEnv, played: Played) -> Episode
         links=played.links,
         phase_seconds=played.phase_seconds,
         clock=options.clock,
+        perception=options.perception,
         counters=played.counters,
     )
 
@@ -196,8 +209,8 @@ def played_to(options: EpisodeOptions, frame: int, **keywords: Any) -> SkillEnv:
 
     `keywords` are those of gym.make besides those of `options`. Raises ValueError for what cannot be played.
     """
-    player = agent(options.agent)
-    env = SkillEnv.make(options.env_id, **{**options.settings, **keywords})
+    player = agent_of(options)
+    env = SkillEnv.make(options.env_id, options.perception, **{**options.settings, **keywords})
     Runner(env, player, clock=options.clock).run(options.seed, options.reset_options, until_frame=frame)
     return env
 

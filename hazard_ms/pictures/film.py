@@ -96,14 +96,13 @@ class Film(Watcher):
         self._tell_rescues(now)
         shown = self._news if self._news_left > 0 else ""
         self._news_left -= 1
-        held = env.stage.held
         picture = self._compositor.compose(
             Shot(
                 third_person=room,
                 head=rgb.cpu().numpy(),
                 level=view.level,
                 map=env.seen,
-                names=base.world.names[0],
+                names=env.labeller.names,
                 targets=self._targets(now),
                 frame=env.frame,
                 max_frames=env.max_frames,
@@ -112,7 +111,7 @@ class Film(Watcher):
                 verb=self._action.verb,
                 target=self._action.target,
                 note=self._note,
-                held=base.world.names[0][held] if held >= 0 else None,
+                held=env.labeller.held,
                 value=Tally.of(now).value,
                 news=shown,
                 good_news=self._good,
@@ -133,9 +132,9 @@ class Film(Watcher):
 
         The audience is told of all damage, the agent only of what it sees.
         """
-        world = self._env.base.world
-        damaged = {world.names[0].index(f.name) for f in now if f.damaged}
-        return self._env.base.observer.table.rows(world, 0, damaged)
+        labeller = self._env.labeller
+        damaged = (labeller.names.index(f.name) for f in now if f.damaged and f.name in labeller.names)
+        return labeller.targets(frozenset(damaged))
 
     def _tell(self, news: str, good: bool) -> None:
         self._news, self._good, self._news_left = news, good, NEWS_SHOTS

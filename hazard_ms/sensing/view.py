@@ -53,6 +53,17 @@ class View:
         up = (row.astype(np.float32) + (0.5 - k[1, 2])) / -k[1, 1] * far
         return np.stack([right, up, -far], axis=-1) @ pose[:3, :3].T + pose[:3, 3]
 
+    def pixel_of(self, point: NDArray[np.floating]) -> tuple[int, int, float] | None:
+        """Row and column of the pixel in which `point` [m], [3], world frame, lies, and its depth [m]; None outside."""
+        k, pose = self.intrinsic, self.cam2world
+        right, up, back = (np.asarray(point) - pose[:3, 3]) @ pose[:3, :3]
+        if back >= 0.0:
+            return None
+        column = int(np.floor(k[0, 2] + k[0, 0] * right / -back))
+        row = int(np.floor(k[1, 2] - k[1, 1] * up / -back))
+        inside = 0 <= row < self.depth.shape[0] and 0 <= column < self.depth.shape[1]
+        return (row, column, float(-back)) if inside else None
+
     def level_at(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> NDArray[np.float32] | None:
         """Levels of the hazards at pixels, [P] each: [K, P], in their units; those of the sample to the top left."""
         if self.level is None:

@@ -40,7 +40,7 @@ def stop(stage: Stage) -> Skill:
 
 def skill(stage: Stage, action: Action) -> Skill:
     """The generator that does `action`. Raises ValueError if it names a thing that the scene does not have."""
-    index = None if action.target is None else stage.world.index(0, action.target)
+    index = None if action.target is None else stage.labeller.index(action.target)
     if action.verb == EXPLORE:
         return explore(stage)
     if action.verb == STOP:

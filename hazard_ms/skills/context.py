@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.episode.grasp import Hand, distance_to_boxes, graspable
 from hazard_ms.robots.robot import Robot
+from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.simulation.world import World
 from hazard_ms.skills.decision import Result
@@ -34,9 +35,15 @@ class Stage:
     The arm moves towards where it should be whenever an action is made.
     """
 
-    def __init__(self, env: Rescuer, seen: SemanticMap, look: Callable[[], None]) -> None:
-        """Begin an episode in `env` with the map `seen`, which `look` updates."""
+    def __init__(
+        self, env: Rescuer, seen: SemanticMap, look: Callable[[], None], labeller: Labeller | None = None
+    ) -> None:
+        """Begin an episode in `env` with the map `seen`, which `look` updates.
+
+        `labeller` knows the things by which actions and the map mean them; None: they are meant as along B.
+        """
         self.env = env
+        self.labeller = labeller or Labeller(env.world)
         self.seen = seen
         self.look = look
         self.bumps: list[tuple[float, float, int]] = []  # x, y [m], frame

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.target_table import Target
 
@@ -96,3 +98,17 @@ class Decision:
             if row.name == name:
                 return row
         raise ValueError(f"a target must be one of {', '.join(t.name for t in self.targets)}, got {name!r}")
+
+
+def available(labeller: Labeller, known: Collection[int], targets: tuple[Target, ...]) -> tuple[Action, ...]:
+    """The actions that make sense with the `known` things, by index; of these only `targets` can be picked up."""
+    open_ones, held = {t.index for t in targets if not t.rescued}, labeller.held
+    made = [Action(EXPLORE), Action(STOP)]
+    if held is not None:
+        made += [Action(DROP), *(Action(DROP, c) for c in labeller.containers if labeller.index(c) in known)]
+    for index in sorted(known):
+        name = labeller.names[index]
+        made += [Action(WALK_TO, name), Action(WALK_ONE_STEP, name)]
+        if held is None and index in open_ones:
+            made.append(Action(PICK_UP, name))
+    return tuple(made)

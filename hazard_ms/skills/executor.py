@@ -13,6 +13,9 @@ import torch
 from hazard_ms.env import HazardEnv
 from hazard_ms.env.time_limit import is_bare
 from hazard_ms.robots import robot_name, skill_control_mode
+from hazard_ms.sensing.detection.labeller import Labeller
+from hazard_ms.sensing.detection.perception import TRUTH
+from hazard_ms.sensing.detection.perception import perception as perception_of
 from hazard_ms.sensing.semantic_map import SemanticMap, cells_for
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.brief import Brief, HazardBrief, random_seed
@@ -22,12 +25,11 @@ from hazard_ms.skills.decision import (
     EXPLORE,
     PICK_UP,
     STOP,
-    WALK_ONE_STEP,
-    WALK_TO,
     Action,
     Decision,
     Images,
     Result,
+    available,
 )
 from hazard_ms.skills.failures import EPISODE_OVER
 
@@ -43,7 +45,11 @@ class SkillEnv:
     `maps`, of which the first is `seen`: privileged agents write into that one, so recorders may add their own.
     """
 
-    def __init__(self, env: gym.Env, watch: Callable[[LowLevel], None] | None = None) -> None:
+    def __init__(self, env: gym.Env, watch: Callable[[LowLevel], None] | None = None, perception: str = TRUTH) -> None:
+        """Wrap `env`; `perception`: what tells agents of things, see `hazard_ms.sensing.detection.perception`.
+
+        Raises ValueError for environments in which skills cannot act, and for a perception that cannot be.
+        """
         base = env.unwrapped
         if not isinstance(base, HazardEnv):
             raise ValueError(f"the environment of skills must be a HazardEnv, got {type(base).__name__}")
@@ -62,21 +68,22 @@ class SkillEnv:
         self._limit = None if env.spec is None else env.spec.max_episode_steps
         self.base = base
         self.watch = watch
+        self._perception = perception_of(perception)
         self.until_frame: int | None = None
         self.look_seconds = 0.0  # wall time spent in looks since it was made
         self.stage: Stage
         self._over = True
 
     @classmethod
-    def make(cls, env_id: str, **keywords: Any) -> SkillEnv:
+    def make(cls, env_id: str, perception: str = TRUTH, **keywords: Any) -> SkillEnv:
         """A new environment for skills, made with `keywords` of gym.make, in the control mode that skills need.
 
-        Raises ValueError for keywords that are not allowed, and where nothing renders.
+        Raises ValueError for keywords and a `perception` that are not allowed, and where nothing renders.
         """
         mode = skill_control_mode(keywords.get("robot_uids", "fetch"))
         made = gym.make(env_id, **{"obs_mode": "none", "control_mode": mode, **keywords})
         try:
-            return cls(made)
+            return cls(made, perception=perception)
         except ValueError:
             made.close()
             raise
@@ -96,14 +103,19 @@ class SkillEnv:
         """The map of what has been seen so far; every look brings it up to date."""
         return self._seen
 
+    @property
+    def labeller(self) -> Labeller:
+        """The things of the episode as its agent knows them; the map refers to them by their index there."""
+        return self._labeller
+
     def brief(self) -> Brief:
         """Everything that an agent is told before the episode: nothing that shows which scene it is."""
         base = self.base
         return Brief(
             task=base.task.name,
             text=base.task.text,
-            targets=base.observer.table.rows(base.world),
-            containers=self._containers(),
+            targets=self._labeller.targets(),
+            containers=self._labeller.containers,
             safe_place=base.task.safe_place.name,
             hazards=tuple(HazardBrief(h.name, h.level.title, h.level.unit, h.threatens) for h in base.task.hazards),
             max_frames=self.max_frames,
@@ -119,9 +131,11 @@ class SkillEnv:
         world = self.base.world
         start = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))
         cells, hazards = cells_for(self.base.specs[0].room.size), len(self.base.task.hazards)
-        self._seen = SemanticMap(start, world.movable[0].cpu().numpy(), cells=cells, hazards=hazards)
+        carts = [t.name for t in self.base.specs[0].things if t.category in self.base.task.safe_place.containers]
+        self._labeller = self._perception.labeller(world, carts)
+        self._seen = SemanticMap(start, self._labeller.loose, cells=cells, hazards=hazards)
         self.maps = [self._seen]
-        self.stage = Stage(self.base, self._seen, self.look)
+        self.stage = Stage(self.base, self._seen, self.look, self._labeller)
         self._images: Images | None = None
         self._last: tuple[Action | None, Result | None] = (None, None)
         self._reward, self._over = 0.0, False
@@ -144,8 +158,10 @@ class SkillEnv:
         self._reward, doing = 0.0, skill(self.stage, action)
         result = self.run(doing)
         if action.verb == PICK_UP and result.ok and action.target is not None:
+            index = self._labeller.index(action.target)
+            self._labeller.took(index)
             for seen in self.maps:
-                seen.forget(self.base.world.index(0, action.target))
+                seen.forget(index)
         self._last = (action, result)
         info = self.base.get_info()
         terminated = action.verb == STOP or bool(info["success"][0]) or bool(info["fail"][0])
@@ -159,8 +175,8 @@ class SkillEnv:
     def _check(self, action: Action) -> None:
         if action.verb in (EXPLORE, STOP) and action.target is not None:
             raise ValueError(f"the target of {action.verb} must be None, got {action.target!r}")
-        if action.verb == DROP and action.target not in (None, *self._containers()):
-            allowed = ", ".join(["None", *self._containers()])
+        if action.verb == DROP and action.target not in (None, *self._labeller.containers):
+            allowed = ", ".join(["None", *self._labeller.containers])
             raise ValueError(f"the target of drop must be one of {allowed}, got {action.target!r}")
 
     def close(self) -> None:
@@ -197,54 +213,38 @@ class SkillEnv:
 
     def look(self) -> None:
         """Look through the head camera and enter what is seen into the map."""
-        start, world, base = time.perf_counter(), self.base.world, self.base
-        rgb, view = base.observer.look()
-        gone = torch.nonzero(world.held[0] | world.away[0]).flatten().tolist()
+        start, world, base, labeller = time.perf_counter(), self.base.world, self.base, self._labeller
+        picture, true = base.observer.look()
+        rgb = picture.cpu().numpy().copy()
+        view = labeller.view(rgb, true, self.frame)
+        gone, damaged = labeller.unmapped(), labeller.damaged(base.episode.damage.damaged[0].cpu().numpy())
         where = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))
         for seen in self.maps:
             for index in gone:
                 seen.forget(index)
-            seen.update(view, self.frame, where, gone, base.episode.damage.damaged[0].cpu().numpy())
+            seen.update(view, self.frame, where, gone, damaged)
             seen.mark_free(where, base.agent.build.radius)
         hazard = np.zeros((len(base.task.hazards), 1, 1), np.float32) if view.level is None else view.level
-        self._images = Images(rgb.cpu().numpy().copy(), view.depth, view.labels, hazard)
+        self._images = Images(rgb, view.depth, None if labeller.withheld else view.labels, hazard)
         self.look_seconds += time.perf_counter() - start
 
     def decision(self) -> Decision:
         """All that an agent may know now; the map is a copy that cannot be written to."""
-        world, stage = self.base.world, self.stage
-        x, y, heading = stage.robot.base()
-        held = world.names[0][stage.held] if stage.held >= 0 else None
-        containers = self._containers()
+        labeller = self._labeller
+        x, y, heading = self.stage.robot.base()
+        targets = labeller.targets(self._seen.seen_damaged)
         return Decision(
             frame=self.frame,
             max_frames=self.max_frames,
             agent_position=(x, y),
             agent_heading=heading,
-            held=held,
-            targets=self.base.observer.table.rows(world, 0, self._seen.seen_damaged),
-            containers=containers,
+            held=labeller.held,
+            targets=targets,
+            containers=labeller.containers,
             map=self._seen.frozen(),
             images=self._images,
-            available=self._available(held, containers),
-            names=world.names[0],
+            available=available(labeller, self._seen.objects, targets),
+            names=labeller.names,
             last_action=self._last[0],
             last_result=self._last[1],
         )
-
-    def _containers(self) -> tuple[str, ...]:
-        categories = self.base.task.safe_place.containers
-        return tuple(thing.name for thing in self.base.specs[0].things if thing.category in categories)
-
-    def _available(self, held: str | None, containers: tuple[str, ...]) -> tuple[Action, ...]:
-        """What makes sense to try: things that are known, and of these only targets can be picked up."""
-        world = self.base.world
-        made = [Action(EXPLORE), Action(STOP)]
-        if held is not None:
-            made += [Action(DROP), *(Action(DROP, c) for c in containers if world.index(0, c) in self._seen.objects)]
-        for index in sorted(self._seen.objects):
-            name = world.names[0][index]
-            made += [Action(WALK_TO, name), Action(WALK_ONE_STEP, name)]
-            if held is None and bool(world.target[0, index] & ~world.safe[0, index]):
-                made.append(Action(PICK_UP, name))
-        return tuple(made)

@@ -27,6 +27,7 @@ OPTIONS = st.builds(
     agent=st.sampled_from(["greedy", "random", "own.py:Mine:depth=3"]),
     seed=st.integers(0, 10**6),
     scene=st.sampled_from([None, "kitchen_a/03"]),
+    perception=st.sampled_from(["truth", "noisy:miss=0.2,erode=1", "mask_rcnn:my folder/net.pth"]),
 )
 
 

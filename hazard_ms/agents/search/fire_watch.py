@@ -56,7 +56,7 @@ def _things(decision: Decision) -> tuple[list[int], Things]:
         sighting = decision.map.objects[index]
         x, y, z = sighting.position.tolist()
         base.append((x, y, max(2 * z - sighting.top, 0.0)))  # as far below its middle as its top is above
-        kind = CATEGORIES.get(decision.names[index].rpartition("_")[0])
+        kind = CATEGORIES.get(decision.names[index].replace("#", "_").rpartition("_")[0])  # mug_3, or a track, mug#3
         threshold.append(kind.ignition_temperature if kind is not None and kind.flammable else np.inf)
         warmth = sighting.hazard if np.isfinite(sighting.hazard) else ROOM
         believed = FLAME if sighting.damaged else min(ROOM + WARMED * (warmth - ROOM), threshold[-1] - 1.0)

@@ -10,6 +10,7 @@ from hazard_ms.agents.thinking import OFF
 from hazard_ms.evaluation.comparison.pairing import Episode
 from hazard_ms.evaluation.metrics import value
 from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult, result_files
+from hazard_ms.registry.detectors import TRUTH
 
 
 @dataclass(frozen=True)
@@ -94,4 +95,5 @@ def _title(result: EpisodeResult) -> str:
             shown = " and ".join(map(str, setting)) if isinstance(setting, (list, tuple)) else str(setting)
             words.append(f"{name.removesuffix('_uids').replace('_', ' ')} {shown}")
     words += [] if result.clock == OFF else [f"clock {result.clock}"]
+    words += [] if result.perception == TRUTH else [f"perception {result.perception}"]
     return ", ".join(words)

@@ -17,6 +17,7 @@ from hazard_ms.evaluation.replay import DIFFERENT, compare, job_of
 from hazard_ms.evaluation.result import FAILED, DamagedResultError, EpisodeResult, result_files
 from hazard_ms.evaluation.runner import play
 from hazard_ms.evaluation.workers import Crew, Job, Outcome, Say, ending
+from hazard_ms.registry.detectors import TRUTH
 
 
 @dataclass(frozen=True)
@@ -105,13 +106,18 @@ def _job(path: Path, result: EpisodeResult, load: tuple[str, ...]) -> RegretJob:
 
 
 def _records(folders: Sequence[Path]) -> dict[Path, EpisodeResult]:
-    """The results in `folders` by their files; a file that holds none is named and left out."""
+    """The results in `folders` by their files; a file that holds none, or whose agent saw no truth, is left out."""
     found = {}
     for path in result_files(folders):
         try:
-            found[path] = EpisodeResult.read(path)
+            result = EpisodeResult.read(path)
         except DamagedResultError as damaged:
             print(f"left out: {damaged}")
+            continue
+        if result.perception == TRUTH:
+            found[path] = result
+        else:
+            print(f"left out: the perception of {path} must be {TRUTH} for a regret, got {result.perception}")
     return found
 
 

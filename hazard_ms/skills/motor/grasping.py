@@ -58,34 +58,35 @@ class Way:
 
 
 def pick_up(stage: Stage, index: int) -> Skill:
-    """Take the thing `index` into the hand.
-
-    Turn to it, come nearer if the arm is too short, reach, grasp, fold the arm back.
-    """
-    reason = _refusal(stage, index)
+    """Take what lies where the map has the thing `index`: turn to it, come nearer, reach, grasp, fold the arm back."""
+    thing = stage.labeller.thing(index)
+    reason = _refusal(stage, index, thing)
+    if reason == failures.UNREACHABLE:  # nothing lies there: it only turns to the place
+        x, y, _ = stage.seen.objects[index].position.tolist()
+        return Result(False, reason, (yield from turn_to(stage, (x, y))).frames)
     if reason:
         return Result(False, reason)
-    used = 0
-    if not _within_span(stage, stage.position(index)):
-        used += (yield from come_near(stage, stage.position(index))).frames
-    used += (yield from turn_to(stage, stage.position(index)[:2])).frames
-    taken = yield from _take(stage, index)
+    place = stage.position(thing)
+    used = 0 if _within_span(stage, place) else (yield from come_near(stage, place)).frames
+    used += (yield from turn_to(stage, stage.position(thing)[:2])).frames
+    taken = yield from _take(stage, thing)
     return Result(taken.ok, taken.reason, used + taken.frames)
 
 
-def _refusal(stage: Stage, index: int) -> str:
-    """The reason why a pick-up cannot begin; empty if it can."""
+def _refusal(stage: Stage, index: int, thing: int) -> str:
+    """The reason why a pick-up of `index`, which is `thing` along B, cannot begin; empty if it can."""
     if stage.held >= 0:
         return failures.ALREADY_HOLDING
-    if not bool(stage.world.target[0, index]):
+    if thing >= 0 and not bool(stage.world.target[0, thing]):
         return failures.NOT_A_TARGET
-    if bool(stage.world.safe[0, index]):
+    if thing >= 0 and bool(stage.world.safe[0, thing]):
         return failures.ALREADY_RESCUED
     if not known(stage, index):
         return failures.UNKNOWN
-    if float(np.linalg.norm(stage.position(index) - stage.robot.shoulder())) > LIMIT:
+    place = stage.position(thing) if thing >= 0 else stage.seen.objects[index].position
+    if float(np.linalg.norm(place - stage.robot.shoulder())) > LIMIT:
         return failures.TOO_FAR
-    return ""
+    return "" if thing >= 0 else failures.UNREACHABLE
 
 
 def _within_span(stage: Stage, thing: NDArray[np.float64]) -> bool:

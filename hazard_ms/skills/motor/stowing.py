@@ -63,7 +63,7 @@ class Way:
 
 
 def drop(stage: Stage, cart: int | None = None) -> Skill:
-    """Let go of what the hand holds: into the bag, or in the basket of the thing `cart`.
+    """Let go of what the hand holds: into the bag, or in the basket of the cart that the map knows as `cart`.
 
     It fails as CART_UNREACHABLE, with the thing still in the hand, if it cannot be brought over the basket.
     """
@@ -85,14 +85,15 @@ def _into_bag(stage: Stage) -> Skill:
     return Result(True, frames=moved.frames + opened.frames)
 
 
-def _into_cart(stage: Stage, cart: int, held: int) -> Skill:
+def _into_cart(stage: Stage, index: int, held: int) -> Skill:
     """Unfold the arm over the basket while the base drives on, lower the thing, open the hand, fold the arm back.
 
     Where the arm is too short even so, the base comes near first.
     """
-    if not known(stage, cart):
+    if not known(stage, index):
         return Result(False, failures.UNKNOWN)
-    if float(np.linalg.norm(stage.position(cart) - stage.robot.shoulder())) > LIMIT:
+    cart = stage.labeller.thing(index)
+    if cart < 0 or float(np.linalg.norm(stage.position(cart) - stage.robot.shoulder())) > LIMIT:
         return Result(False, failures.CART_UNREACHABLE)
     used, tried, came_near = 0, set[int](), False
     while len(tried) < TRIES:

@@ -43,7 +43,7 @@ def walk_to(stage: Stage, index: int, frames: int = WALK_FRAMES, whole: bool = T
             return Result(False, UNKNOWN, used)
         thing = stage.seen.objects[index]
         goal = (float(thing.position[0]), float(thing.position[1]))
-        edge = min(thing.radius, float(stage.world.extent[0, index, :2].norm()) / 2)
+        edge = min(thing.radius, stage.labeller.half_width(index))
         path = _path(stage, goal, edge, float(thing.position[2]))
         if path is None:
             return Result(False, NO_PATH, used)

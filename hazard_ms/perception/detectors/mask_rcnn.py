@@ -1,0 +1,97 @@
+"""Mask R-CNN as torchvision builds it, with weights from a file of the user's.
+
+Beside the weights FILE.pth or FILE.safetensors stands FILE.json with the network and its classes:
+
+    {"network": "maskrcnn_resnet50_fpn_v2", "classes": ["bowl", "mug", ...]}
+
+Classes are the catalogue's categories, in the order in which the network numbers them from 1; 0 is the background.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from hazard_ms.sensing.detection.detector import Detection, Detector
+from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.checks import one_of
+
+RESNET18 = "resnet18_fpn"  # smaller, for pictures of 192 pixels
+NETWORKS = ("maskrcnn_resnet50_fpn_v2", "maskrcnn_resnet50_fpn", RESNET18)
+INSIDE = 0.5  # of a mask: a pixel with at least this much belongs to the thing [-]
+
+
+class MaskRcnn(Detector):
+    """A trained Mask R-CNN; it looks at colours only."""
+
+    def __init__(self, path: str) -> None:
+        """Load the weights at `path`. Raises ValueError for files that are missing or do not fit each other."""
+        file = Path(path)
+        recipe = read_recipe(file.with_suffix(".json"))
+        self._classes: list[str] = recipe["classes"]
+        self._network = network(recipe["network"], 1 + len(self._classes))
+        try:
+            self._network.load_state_dict(read_weights(file))
+        except RuntimeError as error:
+            told = str(error).splitlines()[0]
+            raise ValueError(f"weights must fit the network {recipe['network']}, got {file}: {told:.200}") from None
+        self._device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+        self._network.to(self._device).eval()
+
+    @torch.inference_mode()
+    def detect(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> list[Detection]:
+        """Find things in the colours `rgb`, [H, W, 3]; the `depth`, [H, W] [m], is not looked at."""
+        picture = torch.from_numpy(rgb).to(self._device).permute(2, 0, 1).float() / 255.0
+        (found,) = self._network([picture])
+        names = [self._classes[number - 1] for number in found["labels"].tolist()]
+        masks = (found["masks"][:, 0] >= INSIDE).cpu().numpy()
+        boxes = [tuple(box) for box in found["boxes"].tolist()]
+        every = zip(names, found["scores"].tolist(), boxes, masks, strict=True)
+        return [Detection(name, score, box, mask) for name, score, box, mask in every]
+
+
+def read_recipe(path: Path) -> dict[str, Any]:
+    """The network and its classes from the file beside the weights. Raises ValueError for one that is not as above."""
+    try:
+        recipe: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        classes = recipe["classes"]
+        one_of(recipe["network"], NETWORKS, "network")
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ValueError(f"{path} must hold the network and its classes, got {error!r:.200}") from None
+    if not isinstance(classes, list) or not classes or len(set(map(str, classes))) < len(classes):
+        raise ValueError(f"classes in {path} must be a list of different categories, got {classes!r:.100}")
+    for name in classes:
+        one_of(name, CATEGORIES, f"a class in {path}")
+    return recipe
+
+
+def read_weights(path: Path) -> dict[str, torch.Tensor]:
+    """The weights in a file .pth or .safetensors, [...] [-], by name. Raises ValueError for other files."""
+    try:
+        if path.suffix == ".safetensors":
+            from safetensors.torch import load_file
+
+            return load_file(path)
+        weights = torch.load(path, map_location="cpu", weights_only=True)
+    except Exception as error:  # torch raises many kinds for what is no file of weights
+        raise ValueError(f"weights must be a file .pth or .safetensors, got {path}: {error!r:.200}") from None
+    if not isinstance(weights, dict) or not all(isinstance(value, torch.Tensor) for value in weights.values()):
+        raise ValueError(f"weights must be tensors by name, got {type(weights).__name__} in {path}")
+    return weights
+
+
+def network(name: str, classes: int) -> Any:
+    """An untrained network called `name` for so many `classes`, the background included."""
+    from torchvision.models import detection
+
+    if name != RESNET18:
+        return getattr(detection, name)(weights=None, weights_backbone=None, num_classes=classes)
+    backbone = detection.backbone_utils.resnet_fpn_backbone(
+        backbone_name="resnet18", weights=None, trainable_layers=5, norm_layer=torch.nn.BatchNorm2d
+    )
+    return detection.MaskRCNN(backbone, classes, min_size=192, max_size=320)

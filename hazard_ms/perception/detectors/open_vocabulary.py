@@ -1,0 +1,110 @@
+"""Detectors that are asked in words, from models that the user has on disk: they know things nobody trained them on.
+
+FOLDER holds either an OWLv2 model, whose boxes are filled where the depth is about that of their middle, or two
+folders, `grounding_dino` and `sam`: boxes from words, and masks from boxes. Each is a folder that `save_pretrained` of
+Hugging Face's transformers wrote; nothing is downloaded.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from hazard_ms.sensing.detection.detector import Box, Detection, Detector
+from hazard_ms.spec.catalogue import CATEGORIES
+
+BOX_SCORE, TEXT_SCORE = 0.3, 0.25  # least scores of boxes and of their words, as GroundingDINO's authors use them
+SLAB = 0.3  # difference in depth from the middle of a box within which pixels belong to its thing [m] [ours]
+DINO, SAM = "grounding_dino", "sam"  # folders
+
+
+class OpenVocabulary(Detector):
+    """OWLv2, or GroundingDINO with SAM. Scores are from BOX_SCORE on, so give `threshold` with it."""
+
+    def __init__(self, path: str) -> None:
+        """Load the models in the folder `path`. Raises ValueError where they, or transformers, are missing."""
+        try:
+            import transformers
+        except ImportError:
+            raise ValueError(
+                "transformers must be installed for perception open, got none: pip install transformers"
+            ) from None
+        folder = Path(path)
+        both = (folder / DINO).is_dir() and (folder / SAM).is_dir()
+        if not both and not (folder / "config.json").is_file():
+            raise ValueError(f"path must be a folder with an OWLv2 model, or with {DINO} and {SAM}, got {folder}")
+        self._device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+        finder = transformers.AutoModelForZeroShotObjectDetection
+        self._finder, self._asking = self._loaded(finder, transformers.AutoProcessor, folder / DINO if both else folder)
+        self._masker: Any = None
+        self._cutting: Any = None
+        if both:
+            self._masker, self._cutting = self._loaded(transformers.SamModel, transformers.SamProcessor, folder / SAM)
+        self._words: dict[str, str] = {}  # in words: the category
+
+    def _loaded(self, model: Any, processor: Any, folder: Path) -> tuple[Any, Any]:
+        """A model and its processor from a folder. Raises ValueError for a folder that does not hold them."""
+        try:
+            made = model.from_pretrained(folder, local_files_only=True).to(self._device).eval()
+            return made, processor.from_pretrained(folder, local_files_only=True)
+        except (OSError, ValueError, KeyError) as error:
+            raise ValueError(f"{folder} must hold a model of transformers, got {error!r:.200}") from None
+
+    def begin(self, categories: tuple[str, ...]) -> None:
+        """Look for things of `categories`, in words."""
+        self._words = {CATEGORIES[name].label: name for name in categories}
+
+    @torch.inference_mode()
+    def detect(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> list[Detection]:
+        """Find things of the episode's categories in the colours `rgb`, [H, W, 3], and the `depth`, [H, W] [m]."""
+        words = list(self._words)
+        given = self._asking(images=rgb, text=[words], return_tensors="pt").to(self._device)
+        sizes = torch.tensor([rgb.shape[:2]])
+        output = self._finder(**given)
+        if self._masker is None:
+            (found,) = self._asking.post_process_grounded_object_detection(
+                output, threshold=BOX_SCORE, target_sizes=sizes, text_labels=[words]
+            )
+        else:
+            (found,) = self._asking.post_process_grounded_object_detection(
+                output, given["input_ids"], threshold=BOX_SCORE, text_threshold=TEXT_SCORE, target_sizes=sizes
+            )
+        named = [self._words.get(text or "") for text in found["text_labels"]]
+        every = zip(named, found["scores"].tolist(), found["boxes"].tolist(), strict=True)
+        kept = [(name, score, inside(box, depth.shape)) for name, score, box in every if name is not None]
+        kept = [(name, score, box) for name, score, box in kept if box[2] > box[0] and box[3] > box[1]]
+        masks = self._masks(rgb, depth, [box for _, _, box in kept])
+        return [Detection(name, score, box, mask) for (name, score, box), mask in zip(kept, masks, strict=True)]
+
+    def _masks(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32], boxes: list[Box]) -> list[NDArray[np.bool_]]:
+        """A mask, [H, W], for each of `boxes` [pixels]."""
+        if self._masker is None or not boxes:
+            return [slab(depth, box) for box in boxes]
+        given = self._cutting(rgb, input_boxes=[[list(box) for box in boxes]], return_tensors="pt").to(self._device)
+        output = self._masker(**given, multimask_output=False)
+        (masks,) = self._cutting.image_processor.post_process_masks(
+            output.pred_masks.cpu(), given["original_sizes"].cpu(), given["reshaped_input_sizes"].cpu()
+        )
+        return list(masks[:, 0].numpy())
+
+
+def inside(box: list[float], shape: tuple[int, ...]) -> Box:
+    """The part of a box [pixels] that lies in a picture of the shape (H, W)."""
+    height, width = shape
+    left, right = np.clip([box[0], box[2]], 0.0, width).tolist()
+    top, bottom = np.clip([box[1], box[3]], 0.0, height).tolist()
+    return left, top, right, bottom
+
+
+def slab(depth: NDArray[np.float32], box: Box) -> NDArray[np.bool_]:
+    """The pixels in a box whose `depth`, [H, W] [m], is within SLAB of the median of the middle of the box: [H, W]."""
+    left, top, right, bottom = int(box[0]), int(box[1]), int(np.ceil(box[2])), int(np.ceil(box[3]))
+    quarter_x, quarter_y = (right - left) // 4, (bottom - top) // 4
+    middle = depth[top + quarter_y : bottom - quarter_y, left + quarter_x : right - quarter_x]
+    mask = np.zeros(depth.shape, bool)
+    mask[top:bottom, left:right] = np.abs(depth[top:bottom, left:right] - np.median(middle)) < SLAB
+    return mask

@@ -1,0 +1,180 @@
+"""Things as an agent finds them by itself: tracks of detections, named in the order in which they were found.
+
+The agent is told before what there is to rescue: two bowls are `bowl#1` and `bowl#2`. The first bowl that is found is
+`bowl#1`, whichever it is in truth. Where more are found than there are, or other things, they get names and indices
+behind these. What a hand takes at a track is what lies there in truth.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.sensing.camera import STRUCTURE
+from hazard_ms.sensing.detection.detector import Detector
+from hazard_ms.sensing.detection.labeller import DetectingLabeller, blank
+from hazard_ms.sensing.detection.tracks import ENOUGH, Track, Tracker, surroundings
+from hazard_ms.sensing.observations import SLOTS
+from hazard_ms.sensing.sighting import sightings
+from hazard_ms.sensing.target_table import Target
+from hazard_ms.sensing.view import View
+from hazard_ms.simulation.world import World
+from hazard_ms.spec.checks import one_of
+
+WITHIN = 0.35  # distance from where a thing is believed to be within which a hand finds what is there [m] [ours]
+CART_WITHIN = 1.0  # the same for carts, by their middles [m] [ours]
+WIDEST = 0.3  # half the width of what can be carried: a mask that is wider shows more than the thing [m] [ours]
+MOST_THINGS = 512  # that are given names; scenes have up to 200 things [ours]
+UNSURE = MOST_THINGS  # label of pixels that may be of something that can move
+
+
+class OwnLabeller(DetectingLabeller):
+    """An agent's own tracks; truth only tells what a hand meets, what it holds, and whether that is safe."""
+
+    def __init__(self, world: World, containers: Sequence[str], detector: Detector, threshold: float) -> None:
+        """Begin an episode in `world`; detections of `detector` with a score below `threshold` do not count."""
+        super().__init__(world, containers, detector, threshold)
+        self._carts = [world.index(0, name) for name in containers]
+        rows, count = self._table.rows(world), Counter[str]()
+        self._told: list[Target] = []
+        names = []
+        for category in [*(row.category for row in rows), *(self._categories[cart] for cart in self._carts)]:
+            count[category] += 1
+            names.append(f"{category}#{count[category]}")
+        for index, row in enumerate(rows):
+            self._told.append(replace(row, index=index, name=names[index], rescued=False, held=False))
+        self.names, self.containers = tuple(names), tuple(names[len(rows) :])
+        self._count = count
+        self._kinds = [name.partition("#")[0] for name in names]
+        self.loose = np.ones(MOST_THINGS + 1, bool)
+        self.loose[len(rows) : len(names)] = False  # carts stay where they are
+        self._tracker = Tracker()
+        self._by_index: dict[int, Track] = {}
+        self._taken: tuple[Track, int] | None = None  # the track in the hand, and the index along B of what it is
+        self._stowed: list[Track] = []  # in the bag
+        self._lost: list[int] = []
+        self._frame = 0  # of the last look
+
+    def view(self, rgb: NDArray[np.uint8], true: View, frame: int) -> View:
+        assert true.labels is not None
+        self._frame, own = frame, self._own(true.labels)
+        found = self._detect(rgb, true, frame)
+        numbers = blank(own, true.depth)
+        for number, detection in enumerate(found):
+            numbers[detection.mask & ~own] = number
+        view = replace(true, labels=numbers)
+        seen = sightings(view, frame, len(found), frozenset(), None)
+        self._let_go()
+        out_of_sight = [*self._stowed, *([self._taken[0]] if self._taken else [])]
+        named = {n: (found[n].category, sighting) for n, sighting in seen.items()}
+        tracks, lost = self._tracker.update(view, frame, named, out_of_sight)
+        self._lost = [track.index for track in lost if track.index >= 0]
+        for track in lost:
+            self._by_index.pop(track.index, None)
+        for track in tracks.values():
+            self._introduce(track)
+        return replace(true, labels=self._labels(view, tracks, out_of_sight))
+
+    def _labels(self, view: View, tracks: Mapping[int, Track], out_of_sight: Sequence[Track]) -> NDArray[np.int64]:
+        """The agent's labels, [H, W], of a `view` whose labels are numbers of detections, of which these are `tracks`.
+
+        What may be a thing that can move, but is not believed or was not detected, is UNSURE and not mapped: else it
+        would be an obstacle for ever.
+        """
+        assert view.labels is not None
+        index = np.full(int(view.labels.max(initial=0)) + 1, UNSURE)
+        for number, track in tracks.items():
+            index[number] = track.index if track.index >= 0 else UNSURE if track.loose else STRUCTURE
+        labels = np.where(view.labels >= 0, index[np.maximum(view.labels, 0)], view.labels)
+        for track in self._tracker.tracks:
+            if track.loose and track not in out_of_sight and track.sighting.frame < self._frame:
+                window, near = surroundings(view, track.sighting)
+                labels[window] = np.where(near & (labels[window] == STRUCTURE), UNSURE, labels[window])
+        return labels
+
+    def _introduce(self, track: Track) -> None:
+        """Give a track that was seen often enough its index: one of what was told if that is free, else a new one."""
+        if track.index >= 0 or track.frames < ENOUGH:
+            return
+        free = [i for i, kind in enumerate(self._kinds) if kind == track.category and i not in self._by_index]
+        if free:
+            track.index = free[0]
+        elif len(self.names) < MOST_THINGS:
+            track.index = len(self.names)
+            self._count[track.category] += 1
+            self.names = (*self.names, f"{track.category}#{self._count[track.category]}")
+            self._kinds.append(track.category)
+            self.loose[track.index] = track.loose
+            same = next((row for row in self._told if row.category == track.category), None)
+            if same is not None and len(self._told) < SLOTS:
+                self._told.append(replace(same, index=track.index, name=self.names[track.index]))
+        if track.index >= 0:
+            self._by_index[track.index] = track
+
+    def _let_go(self) -> None:
+        """Note what has become of the thing that was in the hand, once it is not there any more."""
+        if self._taken is None or bool(self._world.held[0, self._taken[1]]):
+            return
+        track, thing = self._taken
+        self._taken = None
+        track.rescued = bool(self._world.safe[0, thing])
+        if bool(self._world.away[0, thing]):
+            self._stowed.append(track)
+        else:  # the hand knows where it let go of it
+            place = self._world.position[0, thing].cpu().numpy().astype(np.float32)
+            track.sighting = replace(track.sighting, position=place, pixels=0)
+
+    def index(self, name: str) -> int:
+        return self.names.index(one_of(name, self.names, "a thing"))
+
+    def thing(self, index: int) -> int:
+        if index not in self._by_index:
+            return -1
+        place = self._by_index[index].sighting.position
+        world = self._world
+        cart = self.names[index] in self.containers
+        there = self._carts if cart else np.flatnonzero((world.movable & world.exists & ~world.away)[0].cpu().numpy())
+        if not len(there):
+            return -1
+        axes = 2 if cart else 3
+        far = np.linalg.norm(world.position[0, there].cpu().numpy()[:, :axes] - place[:axes], axis=-1)
+        nearest = int(np.argmin(far))
+        return int(there[nearest]) if far[nearest] < (CART_WITHIN if cart else WITHIN) else -1
+
+    def half_width(self, index: int) -> float:
+        return WIDEST if self.loose[index] else float("inf")
+
+    def targets(self, damaged: frozenset[int] = frozenset()) -> tuple[Target, ...]:
+        held = self._held_track()
+        made = []
+        for row in self._told:
+            track = self._by_index.get(row.index)
+            rescued, in_hand = track is not None and track.rescued, track is not None and track is held
+            made.append(replace(row, rescued=rescued, held=in_hand, damaged=row.index in damaged))
+        return tuple(made)
+
+    def damaged(self, true: NDArray[np.bool_]) -> NDArray[np.bool_] | None:
+        return None
+
+    def unmapped(self) -> list[int]:
+        held = self._held_track()
+        gone = [*self._stowed, *([held] if held else [])]
+        return [*(track.index for track in gone), *self._lost, UNSURE]
+
+    @property
+    def held(self) -> str | None:
+        track = self._held_track()
+        return None if track is None else self.names[track.index]
+
+    def _held_track(self) -> Track | None:
+        """The track in the hand."""
+        self._let_go()
+        return self._taken[0] if self._taken else None
+
+    def took(self, index: int) -> None:
+        held = np.flatnonzero(self._world.held[0].cpu().numpy())
+        self._taken = self._by_index[index], int(held[0])

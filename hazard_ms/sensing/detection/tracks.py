@@ -1,0 +1,122 @@
+"""Tracks of things that are detected again and again, matched by category and place.
+
+A detection goes on with a track of its category within GATE of where that was seen last, and a little farther while it
+is out of sight. Where that place is in view and empty, the thing has moved, and may be as far as it can drift. Of all
+ways to pair detections with tracks the one of the least summed distance is taken (Hungarian method).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from hazard_ms.sensing.sighting import Sighting, merged
+from hazard_ms.sensing.view import View
+from hazard_ms.spec.catalogue import CATEGORIES
+
+GATE = 0.3  # distance within which a thing of the same category is the same one [m] [ours]
+DRIFT = 0.016  # by which that grows for a thing that has moved: what a robot walks in a frame [m/frame] [ours]
+UNSEEN_DRIFT, UNSEEN_MOST = 0.004, 1.0  # the same for one out of sight [m/frame], and at most [m] [ours]
+BEHIND = 0.15  # what is this far behind where a thing was shows that it is gone [m] [ours]
+AROUND = 0.05  # by which a thing may reach beyond what was seen of it [m] [ours]
+ENOUGH = 2  # frames in which a thing must be seen before it is believed [ours]
+GONE = 2  # frames in which its place must be seen empty before it is forgotten [ours]
+UNPAIRED = 1e6  # cost of a pair that cannot be: more than all distances of a scene together [m]
+
+
+@dataclass(eq=False)
+class Track:
+    """One thing that was detected, perhaps more than once."""
+
+    category: str
+    sighting: Sighting
+    frames: int = 1  # in which it was seen
+    empty: int = 0  # frames since then in which its place was seen empty
+    index: int = -1  # by which the agent knows it; -1: not yet
+    rescued: bool = False
+
+    @property
+    def loose(self) -> bool:
+        """Whether it can move."""
+        return CATEGORIES[self.category].kind == "object"
+
+    def reach(self, frame: int) -> float:
+        """Distance from where it was seen last within which it may be at `frame` [m]."""
+        age = frame - self.sighting.frame
+        if not self.loose:
+            return GATE + self.sighting.radius
+        return GATE + (DRIFT * age if self.empty else min(UNSEEN_DRIFT * age, UNSEEN_MOST))
+
+
+def seen_through(view: View, place: NDArray[np.floating]) -> bool:
+    """Whether `view` shows what is behind `place` [m], [3], world frame: nothing is there any more."""
+    pixel = view.pixel_of(place)
+    if pixel is None:
+        return False
+    row, column, far = pixel
+    return bool(view.depth[row, column] == 0.0 or view.depth[row, column] > far + BEHIND)
+
+
+def surroundings(view: View, sighting: Sighting) -> tuple[tuple[slice, slice], NDArray[np.bool_]]:
+    """The part of `view` around a thing where it was seen last, and which of its pixels, [R, C], may be of it."""
+    pixel = view.pixel_of(sighting.position)
+    if pixel is None:
+        return (slice(0), slice(0)), np.zeros((0, 0), bool)
+    row, column, far = pixel
+    reach = sighting.radius + AROUND
+    pixels = int(np.ceil(reach * max(view.intrinsic[0, 0], view.intrinsic[1, 1]) / far))
+    window = slice(max(row - pixels, 0), row + pixels + 1), slice(max(column - pixels, 0), column + pixels + 1)
+    return window, np.abs(view.depth[window] - far) < reach
+
+
+def pairs(tracks: Sequence[Track], found: Sequence[tuple[str, Sighting]], frame: int) -> list[tuple[int, int]]:
+    """The pairs (track, detection) of the least summed distance, as indices; `found`: category and sighting each."""
+    if not tracks or not found:
+        return []
+    old = np.array([track.sighting.position for track in tracks], np.float64)
+    new = np.array([sighting.position for _, sighting in found], np.float64)
+    cost = np.linalg.norm(old[:, None] - new[None], axis=-1)
+    same = np.array([[track.category == category for category, _ in found] for track in tracks])
+    reach = np.array([track.reach(frame) for track in tracks])
+    cost[~same | (cost >= reach[:, None])] = UNPAIRED
+    rows, columns = linear_sum_assignment(cost)
+    return [(int(r), int(c)) for r, c in zip(rows, columns, strict=True) if cost[r, c] < UNPAIRED]
+
+
+class Tracker:
+    """The tracks of an episode."""
+
+    def __init__(self) -> None:
+        """Begin without any."""
+        self.tracks: list[Track] = []
+
+    def update(
+        self, view: View, frame: int, found: Mapping[int, tuple[str, Sighting]], still: Sequence[Track] = ()
+    ) -> tuple[dict[int, Track], list[Track]]:
+        """Enter what was `found` in a `view`: by number of a detection, its category and sighting.
+
+        Returns the track of each detection, and the tracks that are given up because their places are empty. Those in
+        `still` are left alone: the hand has them, or they are rescued and out of sight.
+        """
+        known = [track for track in self.tracks if track not in still]
+        for track in known:
+            if track.sighting.frame < frame and seen_through(view, track.sighting.position):
+                track.empty += 1
+        numbers = list(found)
+        matched: dict[int, Track] = {}
+        for row, column in pairs(known, [found[n] for n in numbers], frame):
+            track, seen = known[row], found[numbers[column]][1]
+            track.frames += track.sighting.frame < frame
+            track.sighting, track.empty = merged(track.sighting, seen), 0
+            matched[numbers[column]] = track
+        for number in numbers:
+            if number not in matched:
+                matched[number] = Track(*found[number])
+                self.tracks.append(matched[number])
+        lost = [track for track in known if track.empty >= GONE and track.loose]
+        self.tracks = [track for track in self.tracks if track not in lost]
+        return matched, lost

@@ -1,0 +1,94 @@
+"""Detectors that are asked in words: real loading code on tiny models with random weights, and masks from depth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hazard_ms.perception.detectors.open_vocabulary import SLAB, OpenVocabulary, inside, slab
+
+HEIGHT, WIDTH = 48, 64  # of a picture [pixels]
+LONGEST = 16  # tokens of a name, as in OWLv2
+WORDS = ("apple", "coffee_maker", "table")
+
+
+def letters() -> list[str]:
+    return [*"abcdefghijklmnopqrstuvwxyz"]
+
+
+def owl(folder: Path) -> None:
+    """An OWLv2 with two layers that reads single letters."""
+    transformers: Any = pytest.importorskip("transformers")
+    import json
+
+    folder.mkdir(parents=True)
+    signs = ["!", "<|startoftext|>", "<|endoftext|>", *letters(), *(f"{c}</w>" for c in letters())]
+    (folder / "vocab.json").write_text(json.dumps({sign: i for i, sign in enumerate(signs)}))
+    (folder / "merges.txt").write_text("#version: 0.2\n")
+    files = [str(folder / name) for name in ("vocab.json", "merges.txt")]
+    tokenizer = transformers.CLIPTokenizer(*files, pad_token="!", model_max_length=LONGEST)
+    images = transformers.Owlv2ImageProcessor(size={"height": 64, "width": 64})
+    small = {"hidden_size": 32, "intermediate_size": 32, "num_hidden_layers": 2, "num_attention_heads": 2}
+    text = {**small, "vocab_size": len(signs), "max_position_embeddings": LONGEST}
+    config = transformers.Owlv2Config(
+        text_config={**text, "bos_token_id": 1, "eos_token_id": 2, "pad_token_id": 0},
+        vision_config={**small, "image_size": 64, "patch_size": 16},
+        projection_dim=32,
+    )
+    transformers.Owlv2ForObjectDetection(config).save_pretrained(folder)
+    transformers.Owlv2Processor(image_processor=images, tokenizer=tokenizer).save_pretrained(folder)
+
+
+def test_what_an_owl_finds_is_of_the_categories_that_were_asked_for(tmp_path: Path) -> None:
+    import torch
+
+    owl(tmp_path / "owl")
+    made = OpenVocabulary(str(tmp_path / "owl"))
+    torch.manual_seed(0)
+    torch.nn.init.normal_(made._finder.class_head.dense0.weight)
+    last = (made._finder.class_head.logit_shift, made._finder.class_head.logit_scale, made._finder.box_head.dense2)
+    for layer in last:  # so that scores are likenesses alone, and boxes are where they begin
+        torch.nn.init.zeros_(layer.weight)
+        torch.nn.init.zeros_(layer.bias)
+    made.begin(WORDS)
+    rgb = np.random.default_rng(0).integers(0, 255, (HEIGHT, WIDTH, 3)).astype(np.uint8)
+    found = made.detect(rgb, np.full((HEIGHT, WIDTH), 2.0, np.float32))
+    assert found and {d.category for d in found} <= set(WORDS)
+    for detection in found:
+        left, top, right, bottom = detection.box
+        assert detection.score >= 0.3 and 0 <= left < right <= WIDTH and 0 <= top < bottom <= HEIGHT
+        assert detection.mask.shape == (HEIGHT, WIDTH) and detection.mask.any()
+
+
+def test_folders_without_models_are_refused(tmp_path: Path) -> None:
+    pytest.importorskip("transformers")
+    with pytest.raises(ValueError, match="path must be a folder with an OWLv2 model, or with grounding_dino and sam"):
+        OpenVocabulary(str(tmp_path))
+    (tmp_path / "config.json").write_text("{}")
+    with pytest.raises(ValueError, match="must hold a model of transformers"):
+        OpenVocabulary(str(tmp_path))
+
+
+def test_without_transformers_it_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "transformers", None)
+    with pytest.raises(ValueError, match="transformers must be installed for perception open, got none: pip install"):
+        OpenVocabulary(str(tmp_path))
+
+
+def test_a_mask_is_what_is_as_far_as_the_middle_of_the_box() -> None:
+    depth = np.full((HEIGHT, WIDTH), 3.0, np.float32)
+    depth[10:20, 10:20] = 2.0
+    depth[12, 12], depth[13, 13] = 2.0 + SLAB - 0.01, 2.0 + SLAB + 0.01
+    mask = slab(depth, (8.0, 8.0, 22.0, 22.0))
+    expected = np.zeros((HEIGHT, WIDTH), bool)
+    expected[10:20, 10:20] = True
+    expected[13, 13] = False
+    assert (mask == expected).all()
+    assert slab(depth, (30.2, 30.2, 30.9, 30.9)).sum() == 1  # a single pixel
+
+
+def test_boxes_are_cut_to_the_picture() -> None:
+    assert inside([-3.0, 5.0, 70.0, 50.0], (HEIGHT, WIDTH)) == (0.0, 5.0, 64.0, 48.0)

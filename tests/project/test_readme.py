@@ -27,6 +27,7 @@ RUN = ("README.md", "docs/usage.md", "docs/agents.md", "docs/scenes.md", "docs/a
 LONGEST_README = 80  # lines: about a screen
 # commands that have commands of their own: to parse their words is to run them
 NESTED = [name for name, command in cli.COMMANDS.items() if "done" in inspect.signature(command).parameters]
+INTERPRETERS = ("python", "inspect")  # which are given files of ours
 OTHERS = ("pip", "uv", "cd", "export")  # commands that are not ours
 
 
@@ -73,6 +74,8 @@ def check_line(line: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytes
         words = words[1:]
     if words[0] == "hazard-ms":
         check_command(words[1:], capsys, monkeypatch)
+    elif named := [word for word in words[1:3] if word.startswith("examples/")]:
+        assert words[0] in INTERPRETERS and (ROOT / named[0]).is_file(), line
     else:
         assert line.startswith("./run") or words[0] in OTHERS or words[:2] == ["python", "-m"], line
 

@@ -11,7 +11,6 @@ from hazard_ms import registry
 from hazard_ms.evaluation.choices import PRESETS, flag, offer
 from hazard_ms.registry.version import __version__
 
-AGENT = "hazard_ms.agents.learned.bc:Bc"  # which asks these policies [ours]
 VALIDATION = 1000  # number of the first scene whose Value chooses the best round; training stays below it [ours]
 VALIDATION_SCENES = 24  # of that sort: 192 rescues, whose mean is known to 0.02 [ours]
 
@@ -24,11 +23,12 @@ def bc(
     rounds: int = 4,
     episodes: int = 1536,
     physics: Annotated[str, offer(PRESETS)] = "paper",
+    workers: int = 0,
 ) -> int:
     """Train the policy of the agent `bc` by behaviour cloning in the sketch, in minutes on one core.
 
     It learns in generated scenes that belong to no split, and keeps the round that does best in others of that sort.
-    `hazard-ms evaluate --agents hazard_ms.agents.learned.bc:Bc:weights=FILE` scores it in the real environment.
+    `hazard-ms evaluate --agents bc:weights=FILE` scores it in the real environment.
 
     Args:
         env_id: Task.
@@ -38,14 +38,15 @@ def bc(
         rounds: Rounds of labelling and learning.
         episodes: Rescues that are labelled in each round.
         physics: Preset of the hazards.
+        workers: Processes that make scenes; 0: one for each processor.
     """
     import torch
-    from tqdm import tqdm
 
     from hazard_ms.agents.learned.weights import ENDING, contents
     from hazard_ms.learning.cloning import Student, train
+    from hazard_ms.learning.scenes import generated
     from hazard_ms.machine.files import make_folder, write_together
-    from hazard_ms.sketch.scenes import SCENES, level_ranges, more_scenes
+    from hazard_ms.sketch.scenes import SCENES, level_ranges
     from hazard_ms.sketch.skill_times import load
     from hazard_ms.spec.checks import whole
 
@@ -54,7 +55,7 @@ def bc(
     make_folder(output)
     student = Student(level_ranges(env_id, physics), whole(seed, 0, 2**31, "seed"))
     numbers = [*range(SCENES, SCENES + count), *range(VALIDATION, VALIDATION + VALIDATION_SCENES)]
-    made = [more_scenes(env_id, physics, number, 1)[0] for number in tqdm(numbers, "scenes", unit="scene")]
+    made = generated(env_id, physics, numbers, whole(workers, 0, 1000, "workers"))
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
     try:
@@ -69,7 +70,75 @@ def bc(
     }
     weights, told = contents(student.policy, env_id, facts)
     write_together({path: weights, path.with_suffix(".json"): told})
-    print(f"hazard-ms evaluate -e {env_id} --agents {AGENT}:weights={path} greedy --split train")
+    print(f"hazard-ms evaluate -e {env_id} --agents bc:weights={path} greedy --split train")
+    return 0
+
+
+def ppo(
+    env_id: Annotated[str, offer(registry.TASKS), flag("-e")],
+    output: Annotated[Path, flag("-o")],
+    seed: int = 0,
+    decisions: int = 1_000_000,
+    minutes: float = 60.0,
+    scenes: int = 225,
+    reward: str = "value",
+    start: Path | None = None,
+    physics: Annotated[str, offer(PRESETS)] = "paper",
+    workers: int = 0,
+) -> int:
+    """Train the policy of the agent `rl` by reinforcement in the sketch, with sb3-contrib's MaskablePPO.
+
+    It learns in generated scenes that belong to no split, and keeps what does best in others of that sort. The same
+    command resumes an interrupted training; with more --decisions or --minutes it goes on with a finished one.
+    `hazard-ms evaluate --agents rl:weights=FILE` scores it in the real environment.
+
+    Raises ValueError for numbers out of range, and where the extra `rl` is not installed.
+
+    Args:
+        env_id: Task.
+        output: Folder for rl_TASK.safetensors, rl_TASK.json, rl_TASK.csv (the curve) and rl_TASK.training.
+        seed: Seed of everything that is random.
+        decisions: Number of decisions to learn from.
+        minutes: Wall time after which learning ends, if it has not ended before.
+        scenes: Number of scenes to learn in.
+        reward: value or paper.
+        start: File NAME.safetensors of a policy to begin with; by default an untrained one.
+        physics: Preset of the hazards.
+        workers: Processes that make scenes; 0: one for each processor.
+    """
+    from hazard_ms.agents.learned.weights import ENDING
+    from hazard_ms.agents.learned.weights import load as policy_of
+    from hazard_ms.learning.scenes import generated
+    from hazard_ms.machine.files import make_folder
+    from hazard_ms.sketch.scenes import SCENES, level_ranges
+    from hazard_ms.sketch.skill_times import load
+    from hazard_ms.spec.checks import one_of, whole
+
+    try:
+        from hazard_ms.learning.ppo import Learner
+        from hazard_ms.learning.runs import Run
+    except ModuleNotFoundError as missing:
+        raise ValueError(f"train ppo needs the extra `rl`: pip install 'hazard_ms[rl]', got {missing}") from None
+    count = whole(scenes, 1, VALIDATION - SCENES, "scenes")
+    whole(decisions, 1, 2**31, "decisions")
+    whole(seed, 0, 2**31, "seed")
+    one_of(reward, ("value", "paper"), "reward")
+    begun = None if start is None else policy_of(start, env_id)
+    command = (
+        f"hazard-ms train ppo -e {env_id} --seed {seed} --scenes {scenes} --reward {reward} --physics {physics}"
+        f"{'' if start is None else f' --start {start}'}"
+    )
+    make_folder(output)
+    facts = {"command": command, "version": __version__, "physics": physics, "validation": VALIDATION}
+    run = Run(output / f"rl_{env_id}{ENDING}", env_id, facts)
+    state = run.state()
+    numbers = [*range(SCENES, SCENES + count), *range(VALIDATION, VALIDATION + VALIDATION_SCENES)]
+    made = generated(env_id, physics, numbers, whole(workers, 0, 1000, "workers"))
+    learner = Learner(made[:count], made[count:], level_ranges(env_id, physics), load("fetch"), seed, reward, begun)
+    if state is not None:
+        learner.resume(state)
+    run.train(learner, decisions, minutes)
+    print(f"hazard-ms evaluate -e {env_id} --agents rl:weights={run.path} greedy --split train")
     return 0
 
 
@@ -86,19 +155,19 @@ def score(
         physics: Preset of the hazards.
     """
     from hazard_ms.agents.learned.weights import load as policy_of
-    from hazard_ms.learning.cloning import Student
     from hazard_ms.learning.comparison import table
-    from hazard_ms.sketch.scenes import level_ranges, more_scenes
+    from hazard_ms.learning.playing import Player
+    from hazard_ms.sketch.scenes import more_scenes
     from hazard_ms.sketch.skill_times import load
 
-    student = Student(level_ranges(env_id, physics), 0)
-    student.policy = policy_of(weights, env_id)
+    player = Player(policy_of(weights, env_id))
     scenes = more_scenes(env_id, physics, VALIDATION, VALIDATION_SCENES)
-    print(table(scenes, load("fetch"), {str(weights): student.play}))
+    print(table(scenes, load("fetch"), {str(weights): player.play}))
     return 0
 
 
 TrainCommand = (
     Annotated[int, tyro.conf.subcommand(name="bc", constructor=bc)]
+    | Annotated[int, tyro.conf.subcommand(name="ppo", constructor=ppo)]
     | Annotated[int, tyro.conf.subcommand(name="score", constructor=score)]
 )

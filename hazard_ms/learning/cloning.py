@@ -17,11 +17,12 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from hazard_ms.agents.learned.set_policy import SetPolicy, Shape, worthwhile
+from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
 from hazard_ms.learning.labels import SEEDS, Labels, collect
+from hazard_ms.learning.playing import Player
 from hazard_ms.sketch.policies import POLICIES, Policy, play
-from hazard_ms.sketch.rescues.features import MISSING, SketchEncoder
-from hazard_ms.sketch.rescues.scene import Floats, Ints, SketchScene
+from hazard_ms.sketch.rescues.features import MISSING
+from hazard_ms.sketch.rescues.scene import Floats, SketchScene
 from hazard_ms.sketch.rescues.state import AGAIN, TRAINING, Domain
 from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.sketch.world import Sketch
@@ -61,17 +62,11 @@ class Student:
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(seed)
             self.policy = SetPolicy(Shape(tuple(ranges), ignored=MISSING))
-        self.encoder = SketchEncoder(ranges)
+        player = Player(self.policy)
+        self.encoder, self.play = player.encoder, player.play
         self._chance = torch.Generator().manual_seed(seed)
         mirrored = [column.name == "left" for _, _, _, column in self.encoder.layout.cells()]
         self._mirrored = torch.tensor(mirrored)
-
-    def play(self, sketch: Sketch, chance: np.random.Generator) -> Ints:
-        """The options that it chooses for all rescues, [N]; nothing is drawn."""
-        del chance
-        features = self.encoder.encode(sketch.stack, sketch.state, sketch.slots)
-        chosen = self.policy.choose(torch.from_numpy(features), torch.from_numpy(worthwhile(sketch.mask)))
-        return np.asarray(chosen.numpy(), np.int64)
 
     def learn(self, labels: Labels, epochs: int) -> None:
         """Pass over all `labels` in a new order in each of `epochs`, in mirrored rooms half of the time."""

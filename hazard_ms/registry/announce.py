@@ -18,7 +18,8 @@ from hazard_ms import registry
 from hazard_ms.registry import Entry, RobotEntry, TaskEntry
 
 ENVIRONMENT = "hazard_ms.env:HazardEnv"
-SKILLS = "hazard_ms.skills.options.environment:HazardSkills"
+SKILLS = "hazard_ms.sketch.environments.making:make"
+MANY_SKILLS = "hazard_ms.sketch.environments.making:make_vector"
 
 
 class _After(MetaPathFinder):
@@ -73,7 +74,12 @@ def tell_gymnasium() -> None:
                 kwargs={"task": entry.name},
                 additional_wrappers=(WrapperSpec("TimeLimit", "hazard_ms.env.time_limit:TimeLimit", kwargs={}),),
             )
-            gymnasium.register(id=skills_id(entry.name), entry_point=SKILLS, kwargs={"task": entry.name})
+            gymnasium.register(
+                id=skills_id(entry.name),
+                entry_point=SKILLS,
+                vector_entry_point=MANY_SKILLS,
+                kwargs={"task": entry.name},
+            )
 
     def removed(entry: Entry) -> None:
         if isinstance(entry, TaskEntry):

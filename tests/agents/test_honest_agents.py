@@ -10,11 +10,13 @@ import pytest
 import torch
 
 from hazard_ms.agents.base import Agent, agent
+from hazard_ms.agents.learned import players
 from hazard_ms.env import HazardEnv
 from hazard_ms.registry import AGENTS, load
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, WALK_TO, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
+from tests.worlds.policies import ship
 
 HONEST = sorted(name for name, entry in AGENTS.items() if not load(entry.agent).privileged)
 TASKS = ["HazardFire-v1", pytest.param("HazardFlood-v1", marks=pytest.mark.long)]
@@ -72,6 +74,14 @@ def choices(player: Agent, brief: Brief, decisions: list[Decision]) -> list[Acti
     """What an agent chooses at each of the decisions of an episode."""
     player.reset(brief)
     return [player.act(decision) for decision in decisions]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _weights(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Learned agents have policies for every task, though untrained ones."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(players, "SHIPPED", ship(tmp_path_factory.mktemp("weights")))
+        yield
 
 
 @pytest.fixture(scope="module", params=TASKS)

@@ -34,8 +34,38 @@ def test_a_policy_is_trained_stored_and_scored(tmp_path: Path, capsys: pytest.Ca
     assert line.split()[0] == f"{told['rounds'][0]['student']:.3f}"
 
 
+@pytest.mark.long
+def test_a_policy_is_trained_by_reinforcement_and_resumed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plain = ["train", "ppo", "-e", FIRE, "-o", str(tmp_path), "--scenes", "1"]
+    assert main([*plain, "--decisions", "4096"]) == 0
+    first = (tmp_path / f"rl_{FIRE}.csv").read_text().splitlines()
+    assert first[0].startswith("decisions,seconds,training,validation,greedy") and first[-1].startswith("4096,")
+    told = json.loads((tmp_path / f"rl_{FIRE}.json").read_text())
+    assert told["command"].endswith("--seed 0 --scenes 1 --reward value --physics paper")
+    capsys.readouterr()
+    assert main([*plain, "--decisions", "8192"]) == 0
+    assert "goes on after 4,096 decisions" in capsys.readouterr().out
+    after = (tmp_path / f"rl_{FIRE}.csv").read_text().splitlines()
+    assert after[: len(first)] == first and after[-1].startswith("8192,")
+    path = tmp_path / f"rl_{FIRE}.safetensors"
+    assert load(path, FIRE).shape.ranges == ((20.0, 600.0),)
+    assert main(["train", "score", str(path), "-e", FIRE]) == 0
+    (line,) = (line for line in capsys.readouterr().out.splitlines() if line.endswith(str(path)))
+    assert line.split()[0] == f"{float(after[-1].split(',')[-1]):.3f}"
+    assert main([*plain, "--decisions", "8192", "--seed", "1"]) == 2
+    assert "give another folder" in capsys.readouterr().err
+
+
 def test_what_cannot_be_trained_or_scored_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["train", "bc", "-e", FIRE, "-o", str(tmp_path), "--scenes", "0"]) == 2
     assert "scenes must be a whole number from 1 to 975" in capsys.readouterr().err
+    ppo = ["train", "ppo", "-e", FIRE, "-o", str(tmp_path)]
+    for wrong, said in (
+        (["--decisions", "0"], "decisions must be a whole number"),
+        (["--reward", "gold"], "reward must be one of value, paper"),
+        (["--start", str(tmp_path / "none.safetensors")], "none.safetensors must hold a policy"),
+    ):
+        assert main([*ppo, *wrong]) == 2
+        assert said in capsys.readouterr().err
     assert main(["train", "score", str(tmp_path / "none.safetensors"), "-e", FIRE]) == 2
     assert "none.safetensors must hold a policy for HazardFire-v1" in capsys.readouterr().err

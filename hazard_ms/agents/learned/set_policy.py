@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from hazard_ms.skills.options.features import Encoder
-from hazard_ms.skills.options.options import CART, COUNT, END, FIRST, LANDMARK, LOOK, TARGET
+from hazard_ms.skills.options.options import CART, END, FIRST, LANDMARK, LOOK, TARGET
 
 KINDS = {"targets": TARGET, "carts": CART, "landmarks": LANDMARK}  # tables of things, and their options
 FORBIDDEN = -1e9  # logit of an option that the mask forbids: its probability is 0 in float32
@@ -102,23 +102,33 @@ class SetPolicy(nn.Module):
 
     def forward(self, features: Tensor, mask: Tensor) -> Tensor:
         """Logits [N, A] from `features` [N, F]; FORBIDDEN where `mask` [N, A] is not set."""
+        return self.logits(self.tokens(features), mask)
+
+    def tokens(self, features: Tensor) -> dict[str, Tensor]:
+        """The tokens that `features` [N, F] become, by table, [N, rows, width]: one of the whole, one for each thing.
+
+        Rows of a table that no decision fills are cut off.
+        """
         parts = self._parts(features * self.get_buffer("read"))
         whole = parts["global"]
-        tokens, exists = [self.enter["global"](whole)], [torch.ones_like(whole[..., 0], dtype=torch.bool)]
+        rows = {"global": self.enter["global"](whole)}
+        exists = [torch.ones_like(whole[..., 0], dtype=torch.bool)]
         for name in KINDS:
-            rows = parts[name]
-            tokens.append(self.enter[name](torch.cat([rows, whole.expand(-1, rows.shape[1], -1)], dim=-1)))
-            exists.append(self._matters(name, rows, mask))
-        token, there = torch.cat(tokens, dim=1), torch.cat(exists, dim=1)
+            table = parts[name]
+            rows[name] = self.enter[name](torch.cat([table, whole.expand(-1, table.shape[1], -1)], dim=-1))
+            exists.append(self._matters(name, table))
+        token, there = torch.cat(list(rows.values()), dim=1), torch.cat(exists, dim=1)
         for block in self.blocks:
             token = block(token, there)
-        logits, start = features.new_full((len(features), COUNT), FORBIDDEN), 1
+        return dict(zip(rows, token.split([row.shape[1] for row in rows.values()], dim=1), strict=True))
+
+    def logits(self, tokens: dict[str, Tensor], mask: Tensor) -> Tensor:
+        """Logits [N, A] from `tokens` [N, rows, width]; FORBIDDEN where `mask` [N, A] is not set."""
+        made = torch.full(mask.shape, FORBIDDEN, device=mask.device)
         for name, kind in KINDS.items():
-            slots = parts[name].shape[1]
-            logits[:, FIRST[kind] : FIRST[kind] + slots] = self.score[name](token[:, start : start + slots])[..., 0]
-            start += slots
-        logits[:, FIRST[LOOK] : FIRST[END] + 1] = self.score["global"](token[:, 0])
-        return logits.masked_fill(~mask, FORBIDDEN)
+            made[:, FIRST[kind] : FIRST[kind] + tokens[name].shape[1]] = self.score[name](tokens[name])[..., 0]
+        made[:, FIRST[LOOK] : FIRST[END] + 1] = self.score["global"](tokens["global"][:, 0])
+        return made.masked_fill(~mask, FORBIDDEN)
 
     def choose(self, features: Tensor, mask: Tensor) -> Tensor:
         """The option of the highest logit of each decision, [N]; arguments as of `forward`."""
@@ -136,12 +146,11 @@ class SetPolicy(nn.Module):
             start += rows * len(columns)
         return parts
 
-    def _matters(self, name: str, rows: Tensor, mask: Tensor) -> Tensor:
+    def _matters(self, name: str, rows: Tensor) -> Tensor:
         """Whether each row stands for a thing that still matters, [N, rows]."""
-        kind = KINDS[name]
+        columns: Sequence[str] = [column.name for column in self.layout.tables[name][1]]
         if name == "targets":
-            columns: Sequence[str] = [column.name for column in self.layout.tables[name][1]]
             return (rows[..., columns.index("value")] > 0) & (rows[..., columns.index("rescued")] == 0)
-        if name == "carts":
-            return rows[..., 0] > 0
-        return mask[:, FIRST[kind] : FIRST[kind] + rows.shape[1]]
+        return (
+            rows[..., columns.index("known" if name == "carts" else "edge")] > 0
+        )  # nothing is offered without an edge

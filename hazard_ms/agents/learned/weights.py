@@ -27,8 +27,10 @@ def contents(policy: SetPolicy, task: str, facts: Mapping[str, Any]) -> tuple[by
     return save(dict(policy.state_dict())), json.dumps(told, indent=1, allow_nan=False) + "\n"
 
 
-def load(path: Path, task: str) -> SetPolicy:
+def load(path: Path, task: str, made_by: str = "train bc") -> SetPolicy:
     """The policy in a file NAME.safetensors, with its NAME.json, ready to be asked at decisions of `task`.
+
+    `made_by`: the command that makes such files.
 
     Raises ValueError for files that are missing or damaged, and for policies of another task, or of another version of
     the features.
@@ -45,7 +47,7 @@ def load(path: Path, task: str) -> SetPolicy:
         policy.load_state_dict(unpacked(path.read_bytes()))
     except (OSError, ValueError, KeyError, TypeError, RuntimeError, SafetensorError) as error:
         raise ValueError(
-            f"{path} must hold a policy for {task}: {error}; `hazard-ms train bc -e {task} -o FOLDER` makes one"
+            f"{path} must hold a policy for {task}: {error}; `hazard-ms {made_by} -e {task} -o FOLDER` makes one"
         ) from None
     policy.eval()
     return policy

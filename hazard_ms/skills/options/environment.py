@@ -1,8 +1,7 @@
 """Skills as a plain gymnasium environment: gym.make("hazard_ms:HazardFireSkills-v1").
 
 An action is the number of an option (`hazard_ms.skills.options.options`), which runs to its end. An observation is a
-vector of features (`hazard_ms.skills.options.features`). The reward of a step is the value that it rescued as a share
-of the value of all targets: the rewards of an episode add up to its score Value.
+vector of features (`hazard_ms.skills.options.features`). Rewards are those of `hazard_ms.skills.options.rewards`.
 """
 
 from __future__ import annotations
@@ -20,6 +19,7 @@ from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.options.features import Encoder
 from hazard_ms.skills.options.macros import play
 from hazard_ms.skills.options.options import COUNT, Menu, Option, Options
+from hazard_ms.skills.options.rewards import PAPER, REWARDS, VALUE, paper, potential
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
 from hazard_ms.spec.checks import flag, one_of, whole
 
@@ -43,6 +43,7 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         *,
         task: str,
         actions: str = "options",
+        reward: str = VALUE,
         stop: bool = True,
         max_frames: int | None = None,
         render_mode: str | None = None,
@@ -53,6 +54,7 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         Args:
             task: Name of the task; gym.make fills it in.
             actions: Meaning of an action: "options".
+            reward: "value" or "paper".
             stop: Whether the option `stop` may be chosen. Without it, an untrained policy cannot end its episodes at
                 once.
             max_frames: Greatest length of an episode [frames]; None takes that of the task.
@@ -63,6 +65,7 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
             ValueError: For unknown names, for keywords that skills decide, and without a renderer.
         """
         self.actions = one_of(actions, ACTIONS, "actions")
+        self._reward = one_of(reward, REWARDS, "reward")
         self._stop = flag(stop, "stop")
         if render_mode is not None:
             one_of(render_mode, self.metadata["render_modes"], "render_mode")
@@ -98,7 +101,7 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         drawn = int(self.np_random.integers(SEEDS)) if seed is None else seed
         self._decision, _ = self.skills.reset(seed=drawn, options=options)
         self._options = Options(self._stop)
-        self._value = self._rescued_value()
+        self._value, self._potential = self._rescued_value(), self._now()
         return self._observe(), self._info(None, Result(True), 0)
 
     def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
@@ -110,20 +113,19 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
             raise ValueError("the episode must have begun and not be over: call reset first")
         number = whole(action, 0, COUNT - 1, "action")
         option, start = self._menu.option(number), self.skills.frame
-        result, terminated = Result(False, NOT_AVAILABLE), False
-        if option is not None and self._menu.mask[number]:
+        result, terminated, allowed = Result(False, NOT_AVAILABLE), False, bool(self._menu.mask[number])
+        if option is not None and allowed:
             result, terminated = self._play(option)
             self._options.note(option, result.ok)
         if self.skills.frame == start and not terminated:
             self.skills.run(_stand(self.skills.stage))
             self._decision = self.skills.decision()
         truncated = self.skills.frame >= self.skills.max_frames or bool(self.skills.base.episode.sim_error[0])
-        before, self._value = self._value, self._rescued_value()
-        obs = self._observe()
+        reward, obs = self._rewarded(allowed), self._observe()
         info = self._info(option, result, self.skills.frame - start)
         if terminated or truncated:
             self._menu = None
-        return obs, self._value - before, terminated, truncated and not terminated, info
+        return obs, reward, terminated, truncated and not terminated, info
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Mask of the options that can be chosen now, bool [A], as sb3-contrib's MaskablePPO expects it.
@@ -192,6 +194,23 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
             "sim_error": bool(self.skills.base.episode.sim_error[0]),
             "action_mask": self._menu.mask.copy(),
         }
+
+    def _rewarded(self, allowed: bool) -> float:
+        """The reward of the decision that has just ended; `allowed`: whether it could be taken."""
+        value, standing = self._value, self._potential
+        self._value, self._potential = self._rescued_value(), self._now()
+        return float(paper(standing, self._potential, allowed)) if self._reward == PAPER else self._value - value
+
+    def _now(self) -> float:
+        """The potential of the reward `paper`."""
+        base = self.skills.base
+        world, containers = base.world, base.task.safe_place.containers
+        place, held = world.position[0, :, :2], world.held[0]
+        away = np.hypot(*(place - world.agent_position[0, :2]).cpu().numpy().astype(np.float64).T)
+        open_ones = (world.target[0] & ~world.safe[0] & ~held).cpu().numpy()
+        cart = np.array([thing.category in containers for thing in base.specs[0].things])
+        nearest = [float(away[which].min()) if which.any() else 0.0 for which in (open_ones, cart)]
+        return float(potential(int((world.safe & world.target)[0].sum()), bool(held.any()), cart.any(), *nearest))
 
     def _rescued_value(self) -> float:
         """Value rescued so far as a share of all, a damaged target counting half."""

@@ -1,29 +1,23 @@
-"""The agent `bc`: plays the options that its policy chooses."""
+"""The agents `bc` and `rl`: they play the options that their policies choose."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import pytest
-import torch
 
 from hazard_ms.agents.base import Agent, agent
-from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
-from hazard_ms.agents.learned.weights import contents
+from hazard_ms.agents.learned import players
 from hazard_ms.skills.decision import DROP, Action
 from tests.worlds.playground import Playground, brief
+from tests.worlds.policies import ship, stored
 
-ME = "hazard_ms.agents.learned.bc:Bc"
 PLACES = {"mug": (2.0, 0.0), "book": (0.0, 1.5), "shelf": (2.5, 1.0), "hidden": (4.5, 2.0)}
 
 
 def untrained(folder: Path) -> Agent:
     """The agent with a policy that was never trained, at the beginning of an episode."""
-    torch.manual_seed(0)
-    packed, told = contents(SetPolicy(Shape(((20.0, 600.0),))), "HazardFire-v1", {})
-    (folder / "one.safetensors").write_bytes(packed)
-    (folder / "one.json").write_text(told)
-    player = agent(f"{ME}:weights={folder / 'one.safetensors'}")
+    player = agent(f"bc:weights={stored(folder / 'one.safetensors')}")
     player.reset(brief())
     return player
 
@@ -61,7 +55,27 @@ def test_what_is_in_the_hand_goes_into_the_bag(tmp_path: Path) -> None:
     assert player.act(ground.decision()) == Action(DROP) and player.note == "into the bag"
 
 
-def test_without_weights_it_says_how_to_make_them(tmp_path: Path) -> None:
-    player = agent(f"{ME}:weights={tmp_path / 'none.safetensors'}")
-    with pytest.raises(ValueError, match=r"none.safetensors must hold a policy for HazardFire-v1: .*train bc"):
+@pytest.mark.parametrize(("name", "command"), [("bc", "train bc"), ("rl", "train ppo")])
+def test_without_weights_it_says_how_to_make_them(
+    name: str, command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    player = agent(f"{name}:weights={tmp_path / 'none.safetensors'}")
+    with pytest.raises(ValueError, match=rf"none.safetensors must hold a policy for HazardFire-v1: .*{command} -e"):
         player.reset(brief())
+    monkeypatch.setattr(players, "SHIPPED", tmp_path)
+    with pytest.raises(ValueError, match=f"brings none for HazardFire-v1, got none: .*{command} -e HazardFire-v1"):
+        agent(name).reset(brief())
+
+
+@pytest.mark.parametrize("name", ["bc", "rl"])
+def test_weights_of_the_package_are_found_by_task(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(players, "SHIPPED", ship(tmp_path))
+    ground = Playground(dict(PLACES), {"mug": 5.0})
+    ground.look()
+    shipped, given = agent(name), agent(f"{name}:weights={tmp_path / f'{name}_HazardFire-v1.safetensors'}")
+    for player in (shipped, given):
+        player.reset(brief())
+    assert shipped.act(ground.decision()) == given.act(ground.decision())
+    (tmp_path / f"{name}_HazardFire-v1.safetensors").unlink()
+    with pytest.raises(ValueError, match="brings none for HazardFire-v1"):
+        agent(name).reset(brief())

@@ -140,7 +140,7 @@ class Sketch:
         """Pick up what is near, and with a bag put it in; whether that worked, [R]."""
         stack, state, scene = self.stack, self.state, self.state.scene[rows]
         place = stack.height[scene, target], stack.clearance[scene, target]
-        ease = state.ease[rows] * self.domain.again ** state.failures[rows, target]
+        ease = state.ease[rows] * np.where(state.failures[rows, target] > 0, self.domain.again, 1.0)
         worked, frames = self.times.draw(PICK_UP, self._luck[rows, :2], *place, ease)
         worked &= self._pass(rows, frames)
         damaged = stack.damaged_at[scene, target]

@@ -41,3 +41,14 @@ def test_what_was_out_of_reach_stays_so_if_the_world_is_like_that(again: float, 
         sketch.step(np.array([0]))
     assert (sketch.state.score[0] == 1.0) == (tries == 1)
     assert sketch.state.failures[0, 0] == tries
+
+
+def test_each_attempt_after_a_failure_works_as_often_as_the_last() -> None:
+    """Of pick-ups that always work at first, half do after one failure, and half after three."""
+    count = 4000
+    for failures in (1, 3):
+        sketch = Sketch([scene([(0.0, 0.0), (1.0, 0.0)], [1])], sure_times(), count, Domain(again=0.5))
+        sketch.reset(np.zeros(count, int), np.arange(count))
+        sketch.state.failures[:, 0] = failures
+        sketch.step(np.zeros(count, int))
+        assert (sketch.state.rescued_at[:, 0] >= 0).mean() == pytest.approx(0.5, abs=0.04)  # 5 standard errors

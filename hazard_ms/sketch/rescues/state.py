@@ -22,7 +22,7 @@ class Domain:
     ease: tuple[float, float] = (1.0, 1.0)  # least and greatest factor on the share of attempts that work
     missed: float = 0.0  # share of sightings that do not happen
     revalued: float = 0.0  # share of targets whose value is drawn anew
-    again: float = 1.0  # factor on the share of pick-ups that work after each failure with the same target
+    again: float = 1.0  # factor on the share of pick-ups that work after failures with the same target
 
     def __post_init__(self) -> None:
         for name in ("pace", "ease"):
@@ -35,8 +35,9 @@ class Domain:
 
 
 AS_MEASURED = Domain()
-# Of 4,670 pick-ups in recorded episodes of all agents 81 % of the first worked, 56, 55 and 45 % after 1, 2, 3 failures.
-AGAIN = 0.75
+# Of 2,070 pick-ups in recorded episodes of seven agents 93 % of the first worked, and 33 % of the 42 after a failure:
+# 9 of 27 after one, 5 of 15 after more. What was out of reach mostly stays so.
+AGAIN = 0.36
 TRAINING = Domain((0.8, 1.3), (0.85, 1.0), 0.1, 0.3, AGAIN)  # wide enough to cover what the sketch leaves out [ours]
 
 

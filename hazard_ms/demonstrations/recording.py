@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -29,6 +28,7 @@ from hazard_ms.evaluation.result import BROKEN, EpisodeResult, versions
 from hazard_ms.evaluation.runner import play
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.evaluation.workers import SILENCE, Crew, Job, Outcome, Say, ending
+from hazard_ms.machine.cores import cores
 from hazard_ms.machine.files import make_folder
 from hazard_ms.skills.failures import BLOCKED
 
@@ -59,7 +59,7 @@ def record(options: RecordOptions) -> int:
     if len(jobs) < options.episodes:
         print(f"{options.episodes - len(jobs)} of {options.episodes} episodes are there already", flush=True)
     failed = 0
-    crew = Crew(min(options.workers or os.cpu_count() or 1, max(len(jobs), 1)), attempt)
+    crew = Crew(min(options.workers or cores(), max(len(jobs), 1)), attempt)
     with ending(crew.end), tqdm(total=len(jobs), unit="episode", disable=not jobs) as bar:
         for job, outcome in crew.play(jobs):
             bar.update()

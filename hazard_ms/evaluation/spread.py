@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from hazard_ms.evaluation.attempts import attempt
 from hazard_ms.evaluation.workers import Crew, Job, Outcome, ending
+from hazard_ms.machine.cores import cores
 
 MOST_SHARDS = 100_000  # [ours]
 SCHEDULER = "SLURM_ARRAY_TASK_"  # how the variables of an array job begin
@@ -62,7 +63,7 @@ def spread(
     if backend == "ray":
         crew: _RaySeats | Crew = _RaySeats(workers, most, address)
     else:
-        crew = Crew(min(workers or os.cpu_count() or 1, most), attempt)
+        crew = Crew(min(workers or cores(), most), attempt)
     with ending(crew.end):
         yield crew.play(jobs)
 

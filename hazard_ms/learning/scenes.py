@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -11,6 +10,7 @@ from functools import partial
 import torch
 from tqdm import tqdm
 
+from hazard_ms.machine.cores import cores
 from hazard_ms.sketch.rescues.scene import SketchScene
 from hazard_ms.sketch.scenes import more_scenes
 
@@ -24,7 +24,7 @@ def generated(env_id: str, physics: str, numbers: Sequence[int], workers: int = 
 
     Raises ValueError for unknown names, and for numbers of scenes that belong to a split.
     """
-    make, most = partial(_scene, env_id, physics), min(workers or os.cpu_count() or 1, len(numbers) // FEWEST)
+    make, most = partial(_scene, env_id, physics), min(workers or cores(), len(numbers) // FEWEST)
     if most <= 1:
         return list(_watched(map(make, numbers), len(numbers)))
     spawned = multiprocessing.get_context("spawn")  # forks of a process that runs torch can stand still

@@ -20,6 +20,7 @@ import torch
 from tqdm import tqdm
 
 from hazard_ms.evaluation.workers import SILENCE, Crew, Job, Outcome, Say, Word, ending
+from hazard_ms.machine.cores import cores
 from hazard_ms.machine.files import flush, make_folder, write, write_together
 from hazard_ms.perception import coco, layout
 from hazard_ms.perception.card import card, licences
@@ -53,7 +54,7 @@ def capture(options: CaptureOptions) -> int:
     if done:
         print(f"{len(done)} of {len(wanted)} scenes are there already", flush=True)
     failed = 0
-    crew = Crew(min(options.workers or os.cpu_count() or 1, max(len(jobs), 1)), attempt)
+    crew = Crew(min(options.workers or cores(), max(len(jobs), 1)), attempt)
     with ending(crew.end), tqdm(total=len(jobs) * options.per_scene, unit="picture", disable=not jobs) as bar:
         for job, outcome in crew.play(jobs):
             bar.update(options.per_scene)

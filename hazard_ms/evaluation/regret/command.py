@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ from hazard_ms.evaluation.replay import DIFFERENT, compare, job_of
 from hazard_ms.evaluation.result import FAILED, DamagedResultError, EpisodeResult, result_files
 from hazard_ms.evaluation.runner import play
 from hazard_ms.evaluation.workers import Crew, Job, Outcome, Say, ending
+from hazard_ms.machine.cores import cores
 from hazard_ms.registry.detectors import TRUTH
 
 
@@ -39,7 +39,7 @@ def regret(folders: Sequence[Path], workers: int, load: tuple[str, ...]) -> list
     made = {path: kept for path in found if (kept := _kept(path)) is not None}
     jobs = [_job(path, result, load) for path, result in found.items() if path not in made]
     failed = []
-    crew = Crew(min(workers or os.cpu_count() or 1, max(len(jobs), 1)), attempt)
+    crew = Crew(min(workers or cores(), max(len(jobs), 1)), attempt)
     with ending(crew.end):
         for job, outcome in crew.play(jobs):
             assert isinstance(job, RegretJob)

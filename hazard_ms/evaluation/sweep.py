@@ -6,6 +6,7 @@ that raises, calls sys.exit, kills its process or hangs costs that episode alone
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 
 from hazard_ms.evaluation.options import EpisodeOptions, SweepOptions
@@ -15,6 +16,8 @@ from hazard_ms.evaluation.spread import in_shard, shard, spread
 from hazard_ms.evaluation.workers import Job
 from hazard_ms.machine.files import make_folder
 from hazard_ms.registry.version import __version__
+
+LONGEST_NAME = 255  # of a file, in the file systems of Linux and macOS [bytes]
 
 
 def evaluate(options: SweepOptions) -> int:
@@ -31,6 +34,7 @@ def evaluate(options: SweepOptions) -> int:
     episodes = [e for e in every if in_shard(options.place(e).name, part, parts)]
     for agent in options.agents:
         check_name(agent)
+    _check_names(options, every)
     make_folder(options.output)
     found = {e: result for e in episodes if (result := kept(options, e)) is not None}
     others = {str(r.versions.get("hazard-ms")) for r in found.values()} - {__version__}
@@ -52,6 +56,15 @@ def evaluate(options: SweepOptions) -> int:
                 f"not finished: {result.agent}, seed {result.seed}: {result.error}; to see it again: {result.command}"
             )
     return int(bool(failed) or any(r.ended in (BROKEN, *FAILED) for r in results))
+
+
+def _check_names(options: SweepOptions, episodes: list[EpisodeOptions]) -> None:
+    longest = max((len(os.fsencode(options.place(e).name)) for e in episodes), default=0)
+    if longest > LONGEST_NAME:
+        raise ValueError(
+            f"a result's file must have a name of at most {LONGEST_NAME} bytes, got {longest}: "
+            "give agents and perception shorter paths"
+        )
 
 
 def kept(options: SweepOptions, episode: EpisodeOptions) -> EpisodeResult | None:

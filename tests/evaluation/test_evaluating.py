@@ -48,6 +48,16 @@ def test_bad_options_are_refused(bad: dict[str, object]) -> None:
         SweepOptions(**bad).episode_options()  # type: ignore[arg-type]
 
 
+def test_names_that_no_file_can_have_are_refused_before_anything_is_played(tmp_path: Path) -> None:
+    """An agent and a detector with long paths, each of them short enough alone."""
+    agents, detector, folder = (f"rl:weights={'a' * 130}",), f"mask_rcnn:{'b' * 100}", tmp_path / "results"
+    with pytest.raises(ValueError, match="of at most 255 bytes, got 2[0-9]{2}: give agents and perception shorter"):
+        sweep.evaluate(SweepOptions(agents=agents, perception=detector, episodes=1, output=folder))
+    assert not folder.exists()
+    for alone in (SweepOptions(agents=agents, episodes=1), SweepOptions(perception=detector, episodes=1)):
+        (tmp_path / alone.place(alone.episode_options()[0]).name).touch()
+
+
 def test_a_folder_of_scenes_is_played_in_the_order_of_their_names(tmp_path: Path) -> None:
     """Seeds count the files, and begin again after the last one."""
     for name in ("room10", "room9", "yard", "notes.txt"):

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from hazard_ms.sensing.detection.detector import Box, Detection, Detector
 from hazard_ms.spec.catalogue import CATEGORIES
 
-BOX_SCORE, TEXT_SCORE = 0.3, 0.25  # least scores of boxes and of their words, as GroundingDINO's authors use them
+BOX_SCORE = 0.3  # least score of a box, as GroundingDINO's authors use it
+END = "."  # ends each name in the text that GroundingDINO reads
 SLAB = 0.3  # difference in depth from the middle of a box within which pixels belong to its thing [m] [ours]
 DINO, SAM = "grounding_dino", "sam"  # folders
 
@@ -49,8 +50,10 @@ class OpenVocabulary(Detector):
     def _loaded(self, model: Any, processor: Any, folder: Path) -> tuple[Any, Any]:
         """A model and its processor from a folder. Raises ValueError for a folder that does not hold them."""
         try:
-            made = model.from_pretrained(folder, local_files_only=True).to(self._device).eval()
-            return made, processor.from_pretrained(folder, local_files_only=True)
+            # a folder may come from strangers: no code of its own is run, and no pickle is read
+            made = model.from_pretrained(folder, local_files_only=True, trust_remote_code=False, use_safetensors=True)
+            read = processor.from_pretrained(folder, local_files_only=True, trust_remote_code=False)
+            return made.to(self._device).eval(), read
         except (OSError, ValueError, KeyError) as error:
             raise ValueError(f"{folder} must hold a model of transformers, got {error!r:.200}") from None
 
@@ -63,22 +66,44 @@ class OpenVocabulary(Detector):
         """Find things of the episode's categories in the colours `rgb`, [H, W, 3], and the `depth`, [H, W] [m]."""
         words = list(self._words)
         given = self._asking(images=rgb, text=[words], return_tensors="pt").to(self._device)
-        sizes = torch.tensor([rgb.shape[:2]])
         output = self._finder(**given)
         if self._masker is None:
             (found,) = self._asking.post_process_grounded_object_detection(
-                output, threshold=BOX_SCORE, target_sizes=sizes, text_labels=[words]
+                output, threshold=BOX_SCORE, target_sizes=torch.tensor([rgb.shape[:2]]), text_labels=[words]
             )
+            named = [self._words.get(text or "") for text in found["text_labels"]]
         else:
-            (found,) = self._asking.post_process_grounded_object_detection(
-                output, given["input_ids"], threshold=BOX_SCORE, text_threshold=TEXT_SCORE, target_sizes=sizes
-            )
-        named = [self._words.get(text or "") for text in found["text_labels"]]
+            found = self._grounded(output, given["input_ids"][0].tolist(), rgb.shape[:2])
+            named = [self._words[words[number]] for number in found["labels"].tolist()]
         every = zip(named, found["scores"].tolist(), found["boxes"].tolist(), strict=True)
         kept = [(name, score, inside(box, depth.shape)) for name, score, box in every if name is not None]
         kept = [(name, score, box) for name, score, box in kept if box[2] > box[0] and box[3] > box[1]]
         masks = self._masks(rgb, depth, [box for _, _, box in kept])
-        return [Detection(name, score, box, mask) for (name, score, box), mask in zip(kept, masks, strict=True)]
+        pairs = zip(kept, masks, strict=True)
+        return [Detection(name, score, box, mask) for (name, score, box), mask in pairs if mask.any()]
+
+    def _grounded(self, output: Any, text: list[int], shape: tuple[int, ...]) -> dict[str, torch.Tensor]:
+        """What GroundingDINO found in a picture of the shape (H, W): scores, boxes [pixels] and numbers of names.
+
+        The score of a name is the mean of those of its tokens in `text`, as in the authors' evaluation on COCO; labels
+        made of all tokens above a threshold run names into one another. Raises ValueError for a text that was cut off.
+        """
+        tokens, names = self._asking.tokenizer, [list[int]()]
+        for place, token in enumerate(text):
+            if token == tokens.convert_tokens_to_ids(END):
+                names.append([])
+            elif token not in tokens.all_special_ids:
+                names[-1].append(place)
+        if len(names) != len(self._words) + 1:
+            raise ValueError(f"the names of categories must fit into the model's text, got {len(self._words)}")
+        chances = output.logits[0].sigmoid()
+        scores, labels = torch.stack([chances[:, name].mean(dim=1) for name in names[:-1]], dim=1).max(dim=1)
+        middle, size = output.pred_boxes[0].split(2, dim=1)
+        boxes = torch.cat([middle - size / 2, middle + size / 2], dim=1) * middle.new_tensor(
+            [shape[1], shape[0]]
+        ).repeat(2)
+        kept = scores > BOX_SCORE
+        return {"scores": scores[kept], "boxes": boxes[kept], "labels": labels[kept]}
 
     def _masks(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32], boxes: list[Box]) -> list[NDArray[np.bool_]]:
         """A mask, [H, W], for each of `boxes` [pixels]."""
@@ -101,10 +126,15 @@ def inside(box: list[float], shape: tuple[int, ...]) -> Box:
 
 
 def slab(depth: NDArray[np.float32], box: Box) -> NDArray[np.bool_]:
-    """The pixels in a box whose `depth`, [H, W] [m], is within SLAB of the median of the middle of the box: [H, W]."""
+    """The pixels in a box whose `depth`, [H, W] [m], is within SLAB of the median of the middle of the box: [H, W].
+
+    A depth of 0 means that there is nothing: it does not count, and a box whose middle is empty has no pixels.
+    """
     left, top, right, bottom = int(box[0]), int(box[1]), int(np.ceil(box[2])), int(np.ceil(box[3]))
     quarter_x, quarter_y = (right - left) // 4, (bottom - top) // 4
     middle = depth[top + quarter_y : bottom - quarter_y, left + quarter_x : right - quarter_x]
     mask = np.zeros(depth.shape, bool)
-    mask[top:bottom, left:right] = np.abs(depth[top:bottom, left:right] - np.median(middle)) < SLAB
+    if (middle > 0.0).any():
+        far = depth[top:bottom, left:right]
+        mask[top:bottom, left:right] = (far > 0.0) & (np.abs(far - np.median(middle[middle > 0.0])) < SLAB)
     return mask

@@ -130,12 +130,23 @@ def test_the_score_of_a_name_is_the_mean_of_its_tokens(tmp_path: Path) -> None:
     sure[0, 1, 7:18] = 20.0  # coffee maker
     sure[0, 2, 1] = 20.0  # a
     boxes = torch.tensor([[[0.5, 0.5, 0.5, 0.5], [0.25, 0.25, 0.5, 0.5], [0.5, 0.5, 1.0, 1.0]]])
-    found = made._grounded(SimpleNamespace(logits=sure, pred_boxes=boxes), text, (HEIGHT, WIDTH))
-    assert found["labels"].tolist() == [0, 1]
-    assert found["scores"].tolist() == pytest.approx([0.8, 1.0], abs=1e-6)
-    assert found["boxes"].tolist() == [[16.0, 12.0, 48.0, 36.0], [0.0, 0.0, 32.0, 24.0]]
-    with pytest.raises(ValueError, match="the names of categories must fit into the model's text, got 2"):
-        made._grounded(SimpleNamespace(logits=sure, pred_boxes=boxes), text[:9], (HEIGHT, WIDTH))
+    scores, labels, found = made._grounded(SimpleNamespace(logits=sure, pred_boxes=boxes), text, (HEIGHT, WIDTH))
+    assert labels.tolist() == [0, 1]
+    assert scores.tolist() == pytest.approx([0.8, 1.0], abs=1e-6)
+    assert found.tolist() == [[16.0, 12.0, 48.0, 36.0], [0.0, 0.0, 32.0, 24.0]]
+
+
+def test_more_names_than_a_model_reads_are_asked_for_in_portions(tmp_path: Path) -> None:
+    """Its text has room for 32 tokens, two of which stand around the letters and full stops of all names."""
+    dino_and_sam(tmp_path)
+    made = OpenVocabulary(str(tmp_path))
+    made._finder.config.max_text_len = 32
+    made.begin(("apple", "coffee_maker", "table", "banana", "book"))
+    letters = [sum(len(word.replace(" ", "")) + 1 for word in portion) for portion in made._portions]
+    assert [*map(list, made._portions)] == [["apple", "coffee maker", "table"], ["banana", "book"]]
+    assert letters == [6 + 12 + 6, 7 + 5]
+    found = made.detect(np.zeros((HEIGHT, WIDTH, 3), np.uint8), np.full((HEIGHT, WIDTH), 2.0, np.float32))
+    assert len(found) <= 2 * QUERIES
 
 
 def test_folders_without_models_are_refused(tmp_path: Path) -> None:

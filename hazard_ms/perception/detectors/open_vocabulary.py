@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import torch
+import torchvision
 from numpy.typing import NDArray
 
 from hazard_ms.sensing.detection.detector import Box, Detection, Detector
@@ -19,6 +20,8 @@ from hazard_ms.spec.catalogue import CATEGORIES
 
 BOX_SCORE = 0.3  # least score of a box, as GroundingDINO's authors use it
 END = "."  # ends each name in the text that GroundingDINO reads
+AROUND = 2  # tokens that stand around that text
+SAME = 0.7  # overlap from which two boxes are of one thing, if they were found under different names [ours]
 SLAB = 0.3  # difference in depth from the middle of a box within which pixels belong to its thing [m] [ours]
 DINO, SAM = "grounding_dino", "sam"  # folders
 
@@ -45,7 +48,7 @@ class OpenVocabulary(Detector):
         self._cutting: Any = None
         if both:
             self._masker, self._cutting = self._loaded(transformers.SamModel, transformers.SamProcessor, folder / SAM)
-        self._words: dict[str, str] = {}  # in words: the category
+        self._portions: list[dict[str, str]] = []  # categories by their words, in portions that a model reads at once
 
     def _loaded(self, model: Any, processor: Any, folder: Path) -> tuple[Any, Any]:
         """A model and its processor from a folder. Raises ValueError for a folder that does not hold them."""
@@ -58,35 +61,51 @@ class OpenVocabulary(Detector):
             raise ValueError(f"{folder} must hold a model of transformers, got {error!r:.200}") from None
 
     def begin(self, categories: tuple[str, ...]) -> None:
-        """Look for things of `categories`, in words."""
-        self._words = {CATEGORIES[name].label: name for name in categories}
+        """Look for things of `categories`, in words; in several portions where the model reads no longer text."""
+        names = {CATEGORIES[name].label: name for name in categories}
+        self._portions = [names]
+        if self._masker is not None:
+            self._portions, left = [], 0
+            for word, name in names.items():
+                length = len(self._asking.tokenizer(word + END, add_special_tokens=False).input_ids)
+                if length > left:
+                    self._portions.append({})
+                    left = self._finder.config.max_text_len - AROUND
+                self._portions[-1][word] = name
+                left -= length
 
     @torch.inference_mode()
     def detect(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> list[Detection]:
         """Find things of the episode's categories in the colours `rgb`, [H, W, 3], and the `depth`, [H, W] [m]."""
-        words = list(self._words)
-        given = self._asking(images=rgb, text=[words], return_tensors="pt").to(self._device)
-        output = self._finder(**given)
-        if self._masker is None:
-            (found,) = self._asking.post_process_grounded_object_detection(
-                output, threshold=BOX_SCORE, target_sizes=torch.tensor([rgb.shape[:2]]), text_labels=[words]
-            )
-            named = [self._words.get(text or "") for text in found["text_labels"]]
-        else:
-            found = self._grounded(output, given["input_ids"][0].tolist(), rgb.shape[:2])
-            named = [self._words[words[number]] for number in found["labels"].tolist()]
-        every = zip(named, found["scores"].tolist(), found["boxes"].tolist(), strict=True)
-        kept = [(name, score, inside(box, depth.shape)) for name, score, box in every if name is not None]
-        kept = [(name, score, box) for name, score, box in kept if box[2] > box[0] and box[3] > box[1]]
+        kept = [found for names in self._portions for found in self._found(rgb, names)]
+        if len(self._portions) > 1 and kept:  # a thing may have been found under a name of each portion
+            boxes, scores = torch.tensor([box for _, _, box in kept]), torch.tensor([score for _, score, _ in kept])
+            kept = [kept[k] for k in torchvision.ops.nms(boxes, scores, SAME).tolist()]
         masks = self._masks(rgb, depth, [box for _, _, box in kept])
         pairs = zip(kept, masks, strict=True)
         return [Detection(name, score, box, mask) for (name, score, box), mask in pairs if mask.any()]
 
-    def _grounded(self, output: Any, text: list[int], shape: tuple[int, ...]) -> dict[str, torch.Tensor]:
-        """What GroundingDINO found in a picture of the shape (H, W): scores, boxes [pixels] and numbers of names.
+    def _found(self, rgb: NDArray[np.uint8], names: dict[str, str]) -> list[tuple[str, float, Box]]:
+        """Category, score and box of what is called by one of `names`, which are categories by their words."""
+        words, shape = list(names), rgb.shape[:2]
+        given = self._asking(images=rgb, text=[words], return_tensors="pt").to(self._device)
+        output = self._finder(**given)
+        if self._masker is None:
+            (found,) = self._asking.post_process_grounded_object_detection(
+                output, threshold=BOX_SCORE, target_sizes=torch.tensor([shape]), text_labels=[words]
+            )
+            named, scores, boxes = found["text_labels"], found["scores"], found["boxes"]
+        else:
+            scores, labels, boxes = self._grounded(output, given["input_ids"][0].tolist(), shape)
+            named = [words[number] for number in labels.tolist()]
+        every = zip(named, scores.tolist(), [inside(box, shape) for box in boxes.tolist()], strict=True)
+        return [(names[n], score, box) for n, score, box in every if n in names and box[2] > box[0] and box[3] > box[1]]
+
+    def _grounded(self, output: Any, text: list[int], shape: tuple[int, ...]) -> tuple[torch.Tensor, ...]:
+        """What GroundingDINO found in a picture of the shape (H, W): scores, numbers of names, and boxes [pixels].
 
         The score of a name is the mean of those of its tokens in `text`, as in the authors' evaluation on COCO; labels
-        made of all tokens above a threshold run names into one another. Raises ValueError for a text that was cut off.
+        made of all tokens above a threshold run names into one another.
         """
         tokens, names = self._asking.tokenizer, [list[int]()]
         for place, token in enumerate(text):
@@ -94,16 +113,12 @@ class OpenVocabulary(Detector):
                 names.append([])
             elif token not in tokens.all_special_ids:
                 names[-1].append(place)
-        if len(names) != len(self._words) + 1:
-            raise ValueError(f"the names of categories must fit into the model's text, got {len(self._words)}")
         chances = output.logits[0].sigmoid()
         scores, labels = torch.stack([chances[:, name].mean(dim=1) for name in names[:-1]], dim=1).max(dim=1)
-        middle, size = output.pred_boxes[0].split(2, dim=1)
-        boxes = torch.cat([middle - size / 2, middle + size / 2], dim=1) * middle.new_tensor(
-            [shape[1], shape[0]]
-        ).repeat(2)
-        kept = scores > BOX_SCORE
-        return {"scores": scores[kept], "boxes": boxes[kept], "labels": labels[kept]}
+        height, width = shape
+        boxes = torchvision.ops.box_convert(output.pred_boxes[0], "cxcywh", "xyxy")
+        boxes, kept = boxes * boxes.new_tensor([width, height, width, height]), scores > BOX_SCORE
+        return scores[kept], labels[kept], boxes[kept]
 
     def _masks(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32], boxes: list[Box]) -> list[NDArray[np.bool_]]:
         """A mask, [H, W], for each of `boxes` [pixels]."""

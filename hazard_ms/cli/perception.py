@@ -9,6 +9,7 @@ import tyro
 
 from hazard_ms.evaluation.choices import flag
 from hazard_ms.perception.options import CaptureOptions
+from hazard_ms.perception.training.options import TrainOptions
 
 Folder = tyro.conf.Positional[Path]
 
@@ -63,9 +64,21 @@ def score(folder: Folder, results: tyro.conf.Positional[Path], split: str = "tes
     return 0
 
 
+def train(options: Annotated[tyro.conf.OmitArgPrefixes[TrainOptions], tyro.conf.arg(name="")]) -> int:
+    """Train a detector on captured pictures, and score it on others: Mask R-CNN, or our small one.
+
+    The same command resumes an interrupted training; with more --steps, --epochs or --minutes it goes on with a
+    finished one. `--perception MODEL:FILE` lets agents see through it.
+    """
+    from hazard_ms.perception.training.run import train as run
+
+    return run(options)
+
+
 PerceptionCommand = (
     Annotated[int, tyro.conf.subcommand(name="capture", constructor=capture)]
     | Annotated[int, tyro.conf.subcommand(name="check", constructor=check)]
     | Annotated[int, tyro.conf.subcommand(name="show", constructor=show)]
     | Annotated[int, tyro.conf.subcommand(name="score", constructor=score)]
+    | Annotated[int, tyro.conf.subcommand(name="train", constructor=train)]
 )

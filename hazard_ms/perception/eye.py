@@ -15,7 +15,6 @@ from hazard_ms.effects.raytracing.still import Image, Photographer, Viewpoint
 from hazard_ms.effects.shaders.pack import LABELS, pack_folder
 from hazard_ms.sensing.camera import NOTHING
 
-ANGLE = 1.2  # vertical field of view of all pictures [rad] [ours]
 NEAR_PLANE, FAR_PLANE = 0.05, 60.0  # of what is seen [m]; depth in 16 bits ends at 65.5 m
 DEEPEST = 65535  # [mm]
 TO_GL = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # x right, y up, z back, from SAPIEN's axes
@@ -35,11 +34,11 @@ class Shot:
 class Eye:
     """The camera in the first environment of a `HazardEnv`, whose robot is hidden from now on."""
 
-    def __init__(self, env: Any, size: int) -> None:
-        """Pictures are `size` pixels wide and high. Raises ValueError where nothing can draw."""
+    def __init__(self, env: Any, size: int, angle: float) -> None:
+        """Pictures have sides of `size` pixels and show `angle` [rad]. Raises ValueError where nothing can draw."""
         if not env.observer.renders:
             raise ValueError("render_backend must be a renderer, got none: see `hazard-ms doctor`")
-        self._env, self._size = env, size
+        self._env, self._size, self._angle = env, size, angle
         self._scene: sapien.Scene = env.scene.sub_scenes[0]
         self._label_of = env.observer.labels[0].cpu().numpy()
         self._cameras: dict[str, Any] = {}  # by effects mode
@@ -74,7 +73,7 @@ class Eye:
         """The colours of `shot`, [H, W, 3], through `shader` (rt-fast, rt), with so many `samples` a pixel."""
         if self._photographer is None:
             self._photographer = Photographer(self._scene)
-        view = Viewpoint(pose, ANGLE, self._size, self._size)
+        view = Viewpoint(pose, self._angle, self._size, self._size)
         time = int(self._env.world.frame[0]) / FRAMES_PER_SECOND
         with self._photographer.ready(view, shader, time) as take:
             return take(samples)
@@ -102,7 +101,7 @@ class Eye:
     def _camera(self, mode: str) -> Any:
         if mode not in self._cameras:
             camera = sapien.render.RenderCameraComponent(self._size, self._size, pack_folder(mode))
-            camera.set_fovy(ANGLE, compute_x=True)
+            camera.set_fovy(self._angle, compute_x=True)
             camera.near, camera.far = NEAR_PLANE, FAR_PLANE
             entity = sapien.Entity()
             entity.name = "picture"

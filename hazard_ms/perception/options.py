@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -11,6 +12,8 @@ from hazard_ms.evaluation.options import MOST, MOST_WORKERS, EnvOptions, Episode
 
 VARIED = "varied"  # light or effects are drawn anew for every stop or picture
 SMALLEST, LARGEST = 64, 4096  # edge of a picture [pixels] [ours]
+FOV = 68.755  # field of view of a picture [degrees] [ours]
+NARROWEST, WIDEST = 10.0, 150.0  # of them [degrees] [ours]
 MOST_SAMPLES = 65536  # samples per pixel [ours]
 
 
@@ -25,6 +28,8 @@ class CaptureOptions:
     """Names of scenes; all of the split if not given."""
     size: int = 512
     """Width and height of a picture in pixels."""
+    fov: float = FOV
+    """Field of view in degrees; that of the robots' head cameras is 120."""
     shader: Literal["default", "rt-fast", "rt"] = "default"
     """Raster (default), or ray-traced, which takes seconds a picture."""
     spp: int = 4
@@ -49,6 +54,8 @@ class CaptureOptions:
         self.env.check()
         whole(self.per_scene, 1, MOST, "per_scene")
         whole(self.size, SMALLEST, LARGEST, "size")
+        if not NARROWEST <= self.fov <= WIDEST:
+            raise ValueError(f"fov must be from {NARROWEST:g} to {WIDEST:g} degrees, got {self.fov!r}")
         whole(self.spp, 1, MOST_SAMPLES, "spp")
         whole(self.seed, 0, MOST, "seed")
         whole(self.workers, 0, MOST_WORKERS, "workers")
@@ -69,9 +76,15 @@ class CaptureOptions:
     def recipe(self) -> dict[str, Any]:
         """The settings that all pictures of a split have in common."""
         names = ("per_scene", "size", "shader", "lights", "looks", "amodal", "seed")
-        made = {"env_id": self.env.env_id, "settings": self.env.settings}
+        made: dict[str, Any] = {"env_id": self.env.env_id, "settings": self.env.settings}
         made |= {name: getattr(self, name) for name in names}
+        made |= {} if self.fov == FOV else {"fov": self.fov}
         return made if self.shader == "default" else {**made, "spp": self.spp}
+
+    @property
+    def angle(self) -> float:
+        """The field of view [rad]."""
+        return math.radians(self.fov)
 
     def episode(self, scene: str, seed: int) -> EpisodeOptions:
         """The episode of `scene` in which nobody acts."""

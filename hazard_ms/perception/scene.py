@@ -89,7 +89,7 @@ def _pictures(
     env: Any, options: CaptureOptions, key: int, folder: Path, first: int, alive: Callable[[], None]
 ) -> Iterator[tuple[dict[str, Any], list[dict[str, Any]]]]:
     """Take the pictures of a scene, stop by stop: their rows of `images`, from id `first` on, and of `annotations`."""
-    eye, watch = Eye(env, options.size), Watch(env)
+    eye, watch = Eye(env, options.size, options.angle), Watch(env)
     stops = -(-options.per_scene // POSES)
     for stop in range(stops):
         rng = np.random.default_rng([key, options.seed, stop])
@@ -142,7 +142,7 @@ def _take(env: Any, eye: Eye, options: CaptureOptions, rng: np.random.Generator,
     wanted = active if wants_hazard else target if wants_target else np.zeros_like(target)
     mode = str(rng.choice(EFFECTS, p=SHARES)) if options.looks == VARIED else options.looks
     mode = mode if options.shader == "default" else "full"
-    poses, best, most = viewpoints(env, rng, wanted), None, -1
+    poses, best, most = viewpoints(env, rng, wanted, options.angle), None, -1
     for _ in range(MOST_TRIES):
         pose = next(poses)
         shot = eye.shot(pose, mode)

@@ -45,7 +45,7 @@ def score(dataset: Path, results: Path, split: str) -> str:
     truth = layout.read_instances(path)
     found = read_results(results, truth)
     kinds = [kind for kind, key in (("bbox", "bbox"), ("segm", "segmentation")) if all(key in row for row in found)]
-    return "\n".join(f"{KINDS[kind]}\n\n{_table(truth, found, kind)}" for kind in kinds)
+    return "\n".join(f"{KINDS[kind]}\n\n{table(truth, found, kind)}" for kind in kinds)
 
 
 def read_results(path: Path, truth: Row) -> list[dict[str, Any]]:
@@ -98,8 +98,8 @@ def _finite(numbers: list[Any]) -> bool:
     return all(isinstance(n, (int, float)) and not isinstance(n, bool) and math.isfinite(n) for n in numbers)
 
 
-def _table(truth: Row, found: list[dict[str, Any]], kind: str) -> str:
-    """A table in Markdown: one line for all things, and one for each group that has any."""
+def table(truth: Row, found: list[dict[str, Any]], kind: str) -> str:
+    """Scores of `found` (bbox or segm, `kind`) in Markdown: a line for all things, and one for each group in it."""
     every: dict[str, Callable[[Row], bool]] = {"all": lambda a: True, **STATES}
     every |= {f"{name} pixels": rule for name, rule in _between("pixels", AREAS).items()}
     every |= {f"{name} m away": rule for name, rule in _between("distance_m", DISTANCES).items()}
@@ -130,6 +130,8 @@ def average_precision(
     Other things are neither missed nor found: detections of them are left out. Detections of nothing count in all
     groups.
     """
+    if not found:
+        return 0.0, 0.0, 0.0
     from pycocotools.coco import COCO
     from pycocotools.cocoeval import COCOeval
 

@@ -11,7 +11,6 @@ import sapien
 import torch
 from numpy.typing import NDArray
 
-from hazard_ms.perception.eye import ANGLE
 from hazard_ms.simulation.clearance import in_the_way, in_walls
 
 CLEARANCE = 0.3  # from the camera's upright axis to all things and walls, at least [m] [ours]
@@ -23,11 +22,11 @@ NEAREST, FARTHEST = 0.5, 5.0  # distance of a thing that a picture is meant for 
 CENTRAL = 0.8  # share of the field of view, about its middle, in which such a thing stands [ours]
 
 
-def viewpoints(env: Any, rng: np.random.Generator, wanted: NDArray[np.bool_]) -> Iterator[sapien.Pose]:
+def viewpoints(env: Any, rng: np.random.Generator, wanted: NDArray[np.bool_], angle: float) -> Iterator[sapien.Pose]:
     """Poses [m] of cameras (x forward, z up) in the first environment of `env`, drawn with `rng`, without end.
 
-    One of the things that are `wanted`, [B], stands in the field of view of every pose, as far as one is found; walls
-    and other things may hide it. Raises ValueError where the floor has no free place.
+    One of the things that are `wanted`, [B], stands in the field of view, `angle` [rad], of every pose, as far as one
+    is found; walls and other things may hide it. Raises ValueError where the floor has no free place.
     """
     goals = env.world.position[0][torch.from_numpy(wanted)].cpu().numpy()
     while True:
@@ -35,7 +34,7 @@ def viewpoints(env: Any, rng: np.random.Generator, wanted: NDArray[np.bool_]) ->
         for _ in range(MOST_DRAWS):
             poses = list(_drawn(env, rng))
             spare = poses[0] if poses else spare
-            found = next((pose for pose in poses if not len(goals) or _in_view(pose, goals)), None)
+            found = next((pose for pose in poses if not len(goals) or _in_view(pose, goals, angle)), None)
             if found is not None:
                 break
         if found is None and spare is None:
@@ -61,10 +60,10 @@ def _turned(pitch: float, yaw: float) -> list[float]:
     return [c * a, -s * b, c * b, s * a]
 
 
-def _in_view(pose: sapien.Pose, goals: NDArray[np.float32]) -> bool:
-    """Whether one of the points `goals` [m], [P, 3], is in the middle part of the field of view."""
+def _in_view(pose: sapien.Pose, goals: NDArray[np.float32], angle: float) -> bool:
+    """Whether one of the points `goals` [m], [P, 3], is in the middle part of the field of view, `angle` [rad]."""
     local = (goals - pose.p) @ pose.to_transformation_matrix()[:3, :3]
     ahead = local[:, 0]
-    reach = math.tan(ANGLE / 2) * CENTRAL * ahead
+    reach = math.tan(angle / 2) * CENTRAL * ahead
     inside = (np.abs(local[:, 1:]) < reach[:, None]).all(-1)
     return bool((inside & (ahead > NEAREST) & (ahead < FARTHEST)).any())

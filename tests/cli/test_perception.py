@@ -21,6 +21,9 @@ from hazard_ms.cli.__main__ import main
         (["check", "{}"], "must be a dataset of `hazard-ms perception capture`"),
         (["show", "{}", "-o", "page.txt"], "must be"),
         (["score", "{}", "{}/none.json"], "must be a dataset"),
+        (["train", "-o", "{}"], "DATA must be one dataset or more"),
+        (["train", "{}", "-o", "{}"], "must be a dataset"),
+        (["capture", "--fov", "200"], "fov must be from 10 to 150 degrees, got 200.0"),
     ],
 )
 def test_what_cannot_be_done_is_said_in_one_line(

@@ -30,7 +30,7 @@ def burning() -> Iterator[tuple[Any, Eye]]:
     still = torch.zeros(env.action_space.shape)
     for _ in range(700):
         env.advance(still)
-    eye = Eye(env, 128)
+    eye = Eye(env, 128, 1.2)
     eye.show()
     yield env, eye
     env.close()
@@ -38,7 +38,7 @@ def burning() -> Iterator[tuple[Any, Eye]]:
 
 def poses_of(env: Any, count: int) -> list[Any]:
     burns = env.episode.states["fire"].status[0].numpy() == 1
-    drawn = viewpoints(env, np.random.default_rng(0), burns)
+    drawn = viewpoints(env, np.random.default_rng(0), burns, 1.2)
     return [next(drawn) for _ in range(count)]
 
 
@@ -54,6 +54,22 @@ def test_labels_and_depth_are_the_same_behind_flames_and_without_any(burning: tu
         changed += int((np.abs(shots["full"].rgb.astype(int) - shots["off"].rgb).max(-1) > 50).sum())
         assert not (shots["full"].labels == AGENT).any(), "the robot is hidden"
     assert changed > 500, "flames are seen in the pictures"
+
+
+@pytest.mark.render
+def test_a_wider_view_shows_the_same_things_smaller(burning: tuple[Any, Eye]) -> None:
+    """What the wide picture shows in its middle part is what the narrow one shows."""
+    env, narrow = burning
+    (pose,) = poses_of(env, 1)
+    wide = Eye(env, 128, 2.0 * np.pi / 3.0)
+    wide.show()
+    shots = [eye.shot(pose, "off") for eye in (narrow, wide)]
+    focal = [shot.intrinsic[0, 0] for shot in shots]
+    assert focal == pytest.approx([64 / np.tan(0.6), 64 / np.tan(np.pi / 3)], rel=1e-5)
+    edge = round(64 * focal[1] / focal[0])
+    small = shots[1].labels[64 - edge : 64 + edge, 64 - edge : 64 + edge]
+    places = ((np.arange(2 * edge) + 0.5) * 64 / edge).astype(int)
+    assert (shots[0].labels[np.ix_(places, places)] == small).mean() > 0.9
 
 
 @pytest.mark.render

@@ -55,6 +55,10 @@ def found_in(truth: dict[str, Any], shift: float = 0.0) -> list[dict[str, Any]]:
     return [{**{k: r[k] for k in kept}, "bbox": box, "score": 0.9} for r, box in rows]
 
 
+def test_a_detector_that_finds_nothing_scores_nothing(truth: dict[str, Any]) -> None:
+    assert average_precision(truth, [], "bbox") == (0.0, 0.0, 0.0)
+
+
 @pytest.mark.parametrize("kind", ["bbox", "segm"])
 def test_the_truth_as_detections_is_perfect(truth: dict[str, Any], kind: str) -> None:
     assert average_precision(truth, found_in(truth), kind) == pytest.approx((1.0, 1.0, 1.0))

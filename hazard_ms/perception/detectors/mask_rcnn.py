@@ -2,8 +2,9 @@
 
 Beside the weights FILE.pth or FILE.safetensors stands FILE.json with the network and its classes:
 
-    {"network": "maskrcnn_resnet50_fpn_v2", "classes": ["bowl", "mug", ...]}
+    {"network": "maskrcnn_resnet50_fpn_v2", "classes": ["bowl", "mug", ...], "size": 800}
 
+`size`, the shorter side to which the network brings pictures [pixels], may be left out.
 Classes are the catalogue's categories, in the order in which the network numbers them from 1; 0 is the background.
 """
 
@@ -17,12 +18,19 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from hazard_ms.perception.options import LARGEST
 from hazard_ms.sensing.detection.detector import Detection, Detector
 from hazard_ms.spec.catalogue import CATEGORIES
-from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.checks import one_of, whole
 
 RESNET18 = "resnet18_fpn"  # smaller, for pictures of 192 pixels
 NETWORKS = ("maskrcnn_resnet50_fpn_v2", "maskrcnn_resnet50_fpn", RESNET18)
+SIDE, LONGEST = 192, 2  # usual shorter side of its pictures [pixels], and longer sides as multiples of that at most
+ANCHORS = ((8,), (16,), (32,), (64,), (128,))  # sides of its boxes to begin with, level by level [pixels] [ours]
+RATIOS = (0.5, 1.0, 2.0)  # of their heights to their widths, as in torchvision
+WIDTH, MASK_WIDTH = 256, 128  # of its heads, a quarter and half of those of the larger networks [ours]
+POOLED = 7  # side of what torchvision's box heads look at [cells]
+MODEST = {"rpn_post_nms_top_n_train": 500, "rpn_post_nms_top_n_test": 300, "box_batch_size_per_image": 128}  # [ours]
 INSIDE = 0.5  # of a mask: a pixel with at least this much belongs to the thing [-]
 
 
@@ -33,15 +41,25 @@ class MaskRcnn(Detector):
         """Load the weights at `path`. Raises ValueError for files that are missing or do not fit each other."""
         file = Path(path)
         recipe = read_recipe(file.with_suffix(".json"))
-        self._classes: list[str] = recipe["classes"]
-        self._network = network(recipe["network"], 1 + len(self._classes))
+        made = network(recipe["network"], 1 + len(recipe["classes"]), recipe.get("size"))
         try:
-            self._network.load_state_dict(read_weights(file))
+            made.load_state_dict(read_weights(file))
         except RuntimeError as error:
             told = str(error).splitlines()[0]
             raise ValueError(f"weights must fit the network {recipe['network']}, got {file}: {told:.200}") from None
+        self._use(made, recipe["classes"])
+
+    @classmethod
+    def of(cls, network: Any, classes: list[str]) -> MaskRcnn:
+        """The detector that asks `network`, whose classes from 1 on are the categories `classes`."""
+        made = cls.__new__(cls)
+        made._use(network, classes)
+        return made
+
+    def _use(self, network: Any, classes: list[str]) -> None:
+        self._classes = classes
         self._device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
-        self._network.to(self._device).eval()
+        self._network = network.to(self._device).eval()
 
     @torch.inference_mode()
     def detect(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> list[Detection]:
@@ -67,6 +85,8 @@ def read_recipe(path: Path) -> dict[str, Any]:
         raise ValueError(f"classes in {path} must be a list of different categories, got {classes!r:.100}")
     for name in classes:
         one_of(name, CATEGORIES, f"a class in {path}")
+    if recipe.get("size") is not None:
+        whole(recipe["size"], 1, LARGEST, f"size in {path}")
     return recipe
 
 
@@ -85,13 +105,26 @@ def read_weights(path: Path) -> dict[str, torch.Tensor]:
     return weights
 
 
-def network(name: str, classes: int) -> Any:
-    """An untrained network called `name` for so many `classes`, the background included."""
-    from torchvision.models import detection
+def network(name: str, classes: int, size: int | None = None) -> Any:
+    """An untrained network called `name` for so many `classes`, the background included.
 
+    It brings pictures to a shorter side of `size` [pixels]; if not given, of 192, larger networks of 800.
+    """
+    from torchvision.models import detection
+    from torchvision.models.detection.anchor_utils import AnchorGenerator
+
+    sides = {} if size is None else {"min_size": size, "max_size": LONGEST * size}
     if name != RESNET18:
-        return getattr(detection, name)(weights=None, weights_backbone=None, num_classes=classes)
+        return getattr(detection, name)(weights=None, weights_backbone=None, num_classes=classes, **sides)
     backbone = detection.backbone_utils.resnet_fpn_backbone(
         backbone_name="resnet18", weights=None, trainable_layers=5, norm_layer=torch.nn.BatchNorm2d
     )
-    return detection.MaskRCNN(backbone, classes, min_size=192, max_size=320)
+    anchors = AnchorGenerator(ANCHORS, (RATIOS,) * len(ANCHORS))
+    usual = {"min_size": SIDE, "max_size": LONGEST * SIDE, **sides}
+    made = detection.MaskRCNN(backbone, classes, rpn_anchor_generator=anchors, **MODEST, **usual)
+    heads, channels = made.roi_heads, backbone.out_channels
+    heads.box_head = detection.faster_rcnn.TwoMLPHead(channels * POOLED**2, WIDTH)
+    heads.box_predictor = detection.faster_rcnn.FastRCNNPredictor(WIDTH, classes)
+    heads.mask_head = detection.mask_rcnn.MaskRCNNHeads(channels, (MASK_WIDTH, MASK_WIDTH), 1)
+    heads.mask_predictor = detection.mask_rcnn.MaskRCNNPredictor(MASK_WIDTH, MASK_WIDTH, classes)
+    return made

@@ -35,6 +35,12 @@ class Detector(abc.ABC):
         Each detection has a mask of the size of the picture.
         """
 
+    def aim(self, intrinsic: NDArray[np.floating], cam2world: NDArray[np.floating]) -> None:  # noqa: B027 as below
+        """Tell where the camera of the next picture is: `intrinsic`, [3, 3] [pixels], and `cam2world`, [4, 4] [m].
+
+        The camera looks along its -z axis with y up.
+        """
+
     def begin(self, categories: tuple[str, ...]) -> None:  # noqa: B027 most detectors need not be told
         """Begin an episode in which things of `categories` matter: targets, carts and the catalogue's furniture."""
 

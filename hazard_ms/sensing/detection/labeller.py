@@ -94,15 +94,17 @@ class DetectingLabeller(Labeller):
         detector.begin(tuple(dict.fromkeys([*wanted, *furniture])))
 
     def _detect(self, rgb: NDArray[np.uint8], true: View, frame: int) -> list[Detection]:
-        """What counts of the detections in a picture, the surest last. Raises ValueError for a mask of another size."""
+        """What counts of the detections in a picture, the surest last. Raises ValueError for masks of another kind."""
         assert true.labels is not None
         if isinstance(self._detector, PrivilegedDetector):
             seed = int(self._world.chance.seed[0])
             self._detector.truth = Truth(true.labels, self._categories, seed, frame)
-        found = [d for d in self._detector.detect(rgb, true.depth) if d.score >= self._threshold]
-        for detection in found:
-            if detection.mask.shape != true.depth.shape:
-                raise ValueError(f"a mask must have shape {true.depth.shape}, got {detection.mask.shape}")
+        self._detector.aim(true.intrinsic, true.cam2world)
+        made = self._detector.detect(rgb.copy(), true.depth.copy())  # which it may write on
+        found = [d for d in made if d.score >= self._threshold]
+        for mask in (detection.mask for detection in found):
+            if mask.shape != true.depth.shape or mask.dtype != bool:
+                raise ValueError(f"a mask must be bool {true.depth.shape}, got {mask.dtype} {mask.shape}")
         return sorted((d for d in found if d.category in CATEGORIES), key=lambda d: d.score)
 
     def _own(self, labels: NDArray[np.int64]) -> NDArray[np.bool_]:

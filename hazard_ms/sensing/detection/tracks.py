@@ -99,12 +99,13 @@ class Tracker:
     ) -> tuple[dict[int, Track], list[Track]]:
         """Enter what was `found` in a `view`: by number of a detection, its category and sighting.
 
-        Returns the track of each detection, and the tracks that are given up because their places are empty. Those in
-        `still` are left alone: the hand has them, or they are rescued and out of sight.
+        Returns the track of each detection, and the tracks that are given up because their places are empty, which
+        rescued ones never are. Those in `still` are left alone: the hand has them, or they are in the bag.
         """
         known = [track for track in self.tracks if track not in still]
         for track in known:
-            if track.sighting.frame < frame and seen_through(view, track.sighting.position):
+            looked_for = track.sighting.frame < frame and not track.rescued  # what is safe stays so
+            if looked_for and seen_through(view, track.sighting.position):
                 track.empty += 1
         numbers = list(found)
         matched: dict[int, Track] = {}

@@ -167,6 +167,19 @@ def test_what_was_taken_is_rescued_if_it_ends_in_the_bag(labeller: OwnLabeller, 
     assert at(look(labeller, 2, ("mug", MUG_2), shown=(MUG_2,)), MUG_2) == 1
 
 
+def test_what_was_put_into_a_cart_stays_rescued_even_if_it_is_not_found_there(
+    labeller: OwnLabeller, world: World
+) -> None:
+    for frame in range(2):
+        look(labeller, frame, ("mug", MUG_1))
+    world.held[0, MUG_1] = True
+    labeller.took(0)
+    world.held[0, MUG_1], world.safe[0, MUG_1] = False, True
+    for frame in range(2, 6):
+        look(labeller, frame, ("mug", MUG_2), shown=(MUG_2,))
+    assert [t.rescued for t in labeller.targets()] == [True, False] and 0 not in labeller.unmapped()
+
+
 def test_what_was_let_go_elsewhere_is_where_the_hand_was(labeller: OwnLabeller, world: World) -> None:
     for frame in range(2):
         look(labeller, frame, ("mug", MUG_1))
@@ -206,8 +219,24 @@ def test_as_published_indices_are_those_of_the_truth(world: World) -> None:
     assert labeller.names == world.names[0] and labeller.withheld
 
 
-def test_masks_of_another_size_are_refused(labeller: OwnLabeller, monkeypatch: pytest.MonkeyPatch) -> None:
-    wrong = Detection("mug", 1.0, (0.0, 0.0, 1.0, 1.0), np.ones((4, 4), bool))
+@pytest.mark.parametrize(
+    ("mask", "told"), [(np.ones((4, 4), bool), r"bool \(4, 4\)"), (np.ones((100, 100), np.uint8), "uint8")]
+)
+def test_masks_of_another_kind_are_refused(
+    labeller: OwnLabeller, monkeypatch: pytest.MonkeyPatch, mask: NDArray[np.generic], told: str
+) -> None:
+    """Numbers in place of bool would be read as rows of the picture."""
+    wrong = Detection("mug", 1.0, (0.0, 0.0, 1.0, 1.0), mask)  # type: ignore[arg-type]
     monkeypatch.setattr(labeller._detector, "detect", lambda rgb, depth: [wrong])
-    with pytest.raises(ValueError, match=r"a mask must have shape \(100, 100\), got \(4, 4\)"):
+    with pytest.raises(ValueError, match=rf"a mask must be bool \(100, 100\), got {told}"):
         look(labeller, 0)
+
+
+def test_a_detector_may_write_on_what_it_is_shown(labeller: OwnLabeller, monkeypatch: pytest.MonkeyPatch) -> None:
+    def scribble(rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> list[Detection]:
+        rgb[:], depth[:] = 255, 0.0
+        return []
+
+    monkeypatch.setattr(labeller._detector, "detect", scribble)
+    rgb, true = np.zeros((100, 100, 3), np.uint8), scene()
+    assert labeller.view(rgb, true, 0).depth.all() and not rgb.any()

@@ -1,0 +1,173 @@
+"""Our own small detector: it looks at colours and depth, and takes tens of milliseconds of one core.
+
+Its network tells the category of every pixel and where the middle of its thing is. Pixels that point at the same place
+are one thing.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from scipy import ndimage
+from torch.nn import functional
+
+from hazard_ms.perception.detectors.mask_rcnn import read_weights
+from hazard_ms.perception.detectors.small_network import SCALE, SmallNetwork, features
+from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
+from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.checks import one_of
+
+NETWORK = "small"  # in the file beside the weights
+SHIPPED = Path(__file__).parents[1] / "weights" / "small.safetensors"
+FOREGROUND = 0.4  # probability of all known categories together from which a pixel counts [ours]
+FEWEST = 6  # pixels of a thing [ours]
+STRAY = 0.1  # share of a thing's pixels below which a patch apart from the others is left out [ours]
+SPREAD = 1.0  # pixels by which votes for a middle are smoothed [ours]
+WINDOW = 7  # side of that in which a middle has the most votes [pixels] [ours]
+FEWEST_VOTES = 0.02  # at a middle, once smoothed [ours]
+NEAR = 0.35  # distance of two middles that are of one thing, as a share of the side of a square of its pixels [ours]
+
+
+class Small(Detector):
+    """The trained network, asked on one core or on a GPU."""
+
+    def __init__(self, path: str = "") -> None:
+        """Load the weights at `path`, NAME.safetensors with NAME.json beside it; by default those of the package.
+
+        Raises ValueError for files that are missing or do not fit each other.
+        """
+        file = Path(path) if path else SHIPPED
+        if not path and not file.is_file():
+            raise ValueError(
+                "perception small must be given weights, small:FILE, got none, and the package has none yet: "
+                "`hazard-ms perception train DATA -o FOLDER --model small` trains them"
+            )
+        self._classes = read_classes(file.with_suffix(".json"))
+        made = SmallNetwork(len(self._classes) + 2)
+        try:
+            made.load_state_dict({name: value.float() for name, value in read_weights(file).items()})
+        except RuntimeError as error:
+            raise ValueError(f"weights must fit the network small, got {file}: {str(error).splitlines()[0]}") from None
+        self._use(made)
+
+    @classmethod
+    def of(cls, network: SmallNetwork, classes: list[str]) -> Small:
+        """The detector that asks `network`, whose classes from 1 on are the categories `classes`."""
+        made = cls.__new__(cls)
+        made._classes = classes
+        made._use(network)
+        return made
+
+    def _use(self, network: SmallNetwork) -> None:
+        self._device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+        self._network = network.to(self._device).to(memory_format=torch.channels_last).eval()
+        self._camera: tuple[torch.Tensor, torch.Tensor] | None = None
+
+    def aim(self, intrinsic: NDArray[np.floating], cam2world: NDArray[np.floating]) -> None:
+        matrices = (torch.from_numpy(np.asarray(m, np.float32))[None].to(self._device) for m in (intrinsic, cam2world))
+        self._camera = (next(matrices), next(matrices))
+
+    @torch.inference_mode()
+    def detect(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> list[Detection]:
+        """Find things in the colours `rgb`, [H, W, 3], and the `depth`, [H, W] [m], of the camera told to `aim`."""
+        assert self._camera is not None, "aim comes first"
+        picture, far = (torch.from_numpy(np.ascontiguousarray(a)).to(self._device)[None] for a in (rgb, depth))
+        given = features(picture, far, *self._camera)
+        below, beside = (-size % SCALE for size in depth.shape)
+        given = functional.pad(given, (0, beside, 0, below)).contiguous(memory_format=torch.channels_last)
+        logits, offsets = self._network(given)
+        height, width = depth.shape
+        chances = logits[0, :, :height, :width].softmax(0).cpu().numpy()
+        return things(chances, offsets[0, :, :height, :width].cpu().numpy(), self._classes)
+
+
+def things(chances: NDArray[np.float32], offsets: NDArray[np.float32], classes: list[str]) -> list[Detection]:
+    """The things that the pixels of a picture point at.
+
+    `chances`, [C + 2, H, W]: of structure, of each of `classes`, and of other things; `offsets`, [2, H, W] [pixels]:
+    right and down to the middle of the thing. The score of a thing is the mean chance of its category in its mask.
+    """
+    height, width = chances.shape[1:]
+    known = 1.0 - chances[0] - chances[-1]
+    rows, columns = np.nonzero(known >= FOREGROUND)
+    if not len(rows):
+        return []
+    right = columns + 0.5 + offsets[0, rows, columns]
+    down = rows + 0.5 + offsets[1, rows, columns]
+    at = np.clip(down, 0, height - 1).astype(np.int64), np.clip(right, 0, width - 1).astype(np.int64)
+    votes = np.zeros((height, width), np.float32)
+    np.add.at(votes, at, 1.0)
+    owner = _joined(_owners(votes)[at], np.stack([right, down], -1))
+    found = []
+    for number in np.unique(owner[owner > 0]).tolist():
+        mine = owner == number
+        if mine.sum() < FEWEST:
+            continue
+        mean = chances[1:-1, rows[mine], columns[mine]].mean(1)
+        best = int(mean.argmax())
+        mask = _without_strays(rows[mine], columns[mine], (height, width))
+        found.append(Detection(classes[best], float(mean[best]), box_of(mask), mask))
+    return found
+
+
+def _without_strays(rows: NDArray[np.int64], columns: NDArray[np.int64], shape: tuple[int, int]) -> NDArray[np.bool_]:
+    """The mask, `shape` (H, W), of pixels at `rows` and `columns`, [P] each, without small patches beside others."""
+    top, left = int(rows.min()), int(columns.min())
+    part = np.zeros((int(rows.max()) - top + 1, int(columns.max()) - left + 1), bool)
+    part[rows - top, columns - left] = True
+    patches, _ = ndimage.label(part, np.ones((3, 3)))
+    size = np.bincount(patches.ravel())
+    size[0] = 0
+    mask = np.zeros(shape, bool)
+    mask[top : top + part.shape[0], left : left + part.shape[1]] = (size >= STRAY * size.sum())[patches] & part
+    return mask
+
+
+def _owners(votes: NDArray[np.float32]) -> NDArray[np.int64]:
+    """For each place of a picture, [H, W], the number from 1 of the middle to which `votes` for it count."""
+    smooth = ndimage.gaussian_filter(votes, SPREAD)
+    peaks = (smooth == ndimage.maximum_filter(smooth, WINDOW)) & (smooth > FEWEST_VOTES)
+    marks, _ = ndimage.label(peaks, np.ones((3, 3)))
+    nearest = ndimage.distance_transform_edt(marks == 0, return_distances=False, return_indices=True)
+    owners: NDArray[np.int64] = marks[tuple(nearest)].astype(np.int64)
+    return owners
+
+
+def _joined(owner: NDArray[np.int64], votes: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The numbers of the things, [P], to which pixels belong by their `owner`, [P], and `votes`, [P, 2] [pixels].
+
+    Pixels of a large thing do not agree on its middle: middles that are near for the size of the thing become one.
+    """
+    numbers, mine, count = np.unique(owner, return_inverse=True, return_counts=True)
+    sums = np.stack([np.bincount(mine, votes[:, axis]) for axis in range(2)], -1)
+    middle, size, into = sums / count[:, None], count.astype(float), np.arange(len(numbers))
+    kept: list[int] = []
+    for k in np.argsort(-count, kind="stable").tolist():
+        far = np.linalg.norm(middle[kept] - middle[k], axis=-1) / np.sqrt(size[kept] + size[k])
+        if len(kept) and far.min() < NEAR:
+            into[k] = kept[int(far.argmin())]
+            size[into[k]] += size[k]
+        else:
+            kept.append(k)
+    joined: NDArray[np.int64] = numbers[into][mine]
+    return joined
+
+
+def read_classes(path: Path) -> list[str]:
+    """The categories in the file beside the weights. Raises ValueError for one that does not hold them."""
+    try:
+        recipe: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        one_of(recipe["network"], (NETWORK,), "network")
+        classes = recipe["classes"]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ValueError(f"{path} must hold the network small and its classes, got {error!r:.200}") from None
+    if not isinstance(classes, list) or not classes or len(set(map(str, classes))) < len(classes):
+        raise ValueError(f"classes in {path} must be a list of different categories, got {classes!r:.100}")
+    for name in classes:
+        one_of(name, CATEGORIES, f"a class in {path}")
+    return classes

@@ -1,0 +1,84 @@
+"""Options of `hazard-ms perception train` as plain data: loading them for a help text imports nothing heavy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import tyro
+
+from hazard_ms.evaluation.choices import flag
+from hazard_ms.perception.options import LARGEST, SMALLEST
+
+UNTRAINED = "none"  # weights to begin with
+MOST_STEPS, MOST_BATCH = 10**8, 4096  # [ours]
+SIZES = {"small": 128, "mask_rcnn": 192}  # usual sizes of the networks that begin untrained [pixels] [ours]
+
+
+@dataclass(frozen=True)
+class TrainOptions:
+    """Options of `hazard-ms perception train`."""
+
+    data: Annotated[tuple[Path, ...], tyro.conf.Positional]
+    """Datasets, OUTPUT/TASK; one or more."""
+    output: Annotated[Path, flag("-o")]
+    """Folder for MODEL.safetensors, MODEL.json, MODEL.csv and MODEL.svg (the curve) and MODEL.training."""
+    model: Literal["mask_rcnn", "small"] = "mask_rcnn"
+    """Mask R-CNN of torchvision, or the small detector that looks at depth, too."""
+    weights: str = UNTRAINED
+    """File .pth or .safetensors to begin with: torchvision's COCO weights, or an earlier training's; none: a smaller
+    network with random weights."""
+    split: str = "train"
+    """Split to learn from."""
+    validate: tuple[Path, ...] = ()
+    """Datasets on which the network is scored, in rooms that it has not seen."""
+    validate_split: str = "test"
+    """Split of these."""
+    epochs: float = 12.0
+    """Passes over the pictures after which training ends."""
+    steps: int | None = None
+    """Steps after which training ends, in place of epochs."""
+    minutes: float = 1e6
+    """Wall time after which training ends, if it has not ended before."""
+    every: int = 500
+    """Steps between two times that files are written and the network is scored."""
+    seed: Annotated[int, flag("-s")] = 0
+    """Seed of weights, pictures and crops."""
+    batch: int | None = None
+    """Pictures or crops of a step; by default 2, small 8."""
+    size: int | None = None
+    """Shorter side to which Mask R-CNN brings pictures (by default 192 untrained, else torchvision's), or side of
+    the crops of small (128), in pixels."""
+
+    def check(self) -> None:
+        """Check all options. Raises ValueError for those that cannot be."""
+        from hazard_ms.spec.checks import whole  # loads numpy
+
+        if not self.data:
+            raise ValueError("DATA must be one dataset or more, got none")
+        for name, number in (("epochs", self.epochs), ("minutes", self.minutes)):
+            if not number > 0:
+                raise ValueError(f"{name} must be positive, got {number!r}")
+        for name, count, most in (("steps", self.steps, MOST_STEPS), ("batch", self.batch, MOST_BATCH)):
+            if count is not None:
+                whole(count, 1, most, name)
+        whole(self.every, 1, MOST_STEPS, "every")
+        whole(self.seed, 0, 2**31 - 1, "seed")
+        if self.size is not None:
+            whole(self.size, SMALLEST, LARGEST, "size")
+        if self.model == "small" and self.weights != UNTRAINED:
+            raise ValueError(f"weights must be {UNTRAINED} for the model small, got {self.weights}")
+
+    @property
+    def batch_size(self) -> int:
+        """Pictures or crops of a step."""
+        return self.batch or {"small": 8, "mask_rcnn": 2}[self.model]
+
+    @property
+    def command(self) -> str:
+        """The command that resumes this training, without what may change on the way."""
+        given: dict[str, Any] = {"model": self.model, "weights": self.weights, "split": self.split, "seed": self.seed}
+        given |= {"batch": self.batch_size} | ({"size": self.size} if self.size else {})
+        words = [f"--{name} {value}" for name, value in given.items()]
+        return " ".join(["hazard-ms perception train", *map(str, self.data), *words])

@@ -1,0 +1,102 @@
+"""The pictures of captured datasets, as trainings and their validation read them."""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.perception import layout
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One picture of a dataset, whose files are read when they are asked for."""
+
+    dataset: Path
+    row: dict[str, Any]  # of `images`
+    things: tuple[dict[str, Any], ...]  # its annotations
+
+    def rgb(self) -> NDArray[np.uint8]:
+        """Colours, [H, W, 3]."""
+        return np.ascontiguousarray(_read(self.dataset / self.row["file_name"], cv2.IMREAD_COLOR)[..., ::-1])
+
+    def depth(self) -> NDArray[np.float32]:
+        """Depth along the optical axis [m], [H, W]; 0: nothing."""
+        return _read(self.dataset / self.row["depth_file"], cv2.IMREAD_UNCHANGED).astype(np.float32) * 1e-3
+
+    def ids(self) -> NDArray[np.uint16]:
+        """Index of the thing that is seen, plus 1, [H, W]; 0: floor, walls, sky."""
+        return _read(self.dataset / self.row["ids_file"], cv2.IMREAD_UNCHANGED)
+
+    def intrinsic(self) -> NDArray[np.float32]:
+        """The camera's matrix [pixels], [3, 3]."""
+        return np.asarray(self.row["camera"]["intrinsic"], np.float32)
+
+    def cam2world(self) -> NDArray[np.float32]:
+        """The camera's pose [m], [4, 4]; it looks along its -z axis with y up."""
+        return np.asarray(self.row["camera"]["cam2world"], np.float32)
+
+    def categories(self) -> dict[int, str]:
+        """The category of every number in `ids` but 0."""
+        return _table(self.dataset)[self.row["scene"]]
+
+
+def read(datasets: Sequence[Path], split: str) -> list[Picture]:
+    """All pictures of a split of some datasets. Raises ValueError for a folder or a split that is not there."""
+    found: list[Picture] = []
+    for dataset in datasets:
+        path = dataset / layout.instances(split)
+        if not path.is_file():
+            known = ", ".join(p.stem.removeprefix("instances_") for p in layout.splits_of(dataset))
+            raise ValueError(f"split must be one of {known} in {dataset}, got {split!r}")
+        rows = layout.read_instances(path)
+        things: dict[int, list[dict[str, Any]]] = {image["id"]: [] for image in rows["images"]}
+        for thing in rows["annotations"]:
+            things[thing["image_id"]].append(thing)
+        found += [Picture(dataset, image, tuple(things[image["id"]])) for image in rows["images"]]
+    return found
+
+
+def truth_of(pictures: Sequence[Picture], classes: Sequence[str]) -> dict[str, Any]:
+    """COCO data of `pictures`, numbered anew from 1 in their order, with the things of `classes` alone."""
+    numbers = layout.category_ids()
+    wanted = {numbers[name] for name in classes}
+    images: list[dict[str, Any]] = []
+    rows: list[dict[str, Any]] = []
+    for number, picture in enumerate(pictures, start=1):
+        images.append({**picture.row, "id": number})
+        mine = [thing for thing in picture.things if thing["category_id"] in wanted]
+        rows += [{**thing, "image_id": number, "id": len(rows) + k} for k, thing in enumerate(mine, start=1)]
+    return {"images": images, "annotations": rows, "categories": layout.categories()}
+
+
+def names_of(pictures: Sequence[Picture]) -> list[str]:
+    """The categories of all annotated things, in the order of the catalogue's ids."""
+    names = {number: name for name, number in layout.category_ids().items()}
+    return [names[number] for number in sorted({t["category_id"] for picture in pictures for t in picture.things})]
+
+
+@functools.lru_cache(maxsize=64)
+def _table(dataset: Path) -> dict[str, dict[int, str]]:
+    """The categories of the numbers in the ids pictures of a dataset, by scene."""
+    path = dataset / layout.TABLE
+    try:
+        scenes = json.loads(path.read_text(encoding="utf-8"))["scenes"]
+        return {scene: {int(k): row["category"] for k, row in rows.items()} for scene, rows in scenes.items()}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ValueError(f"{path} must name the things of every scene, got {error!r:.200}") from None
+
+
+def _read(path: Path, mode: int) -> NDArray[Any]:
+    picture = cv2.imread(str(path), mode)
+    if picture is None:
+        raise ValueError(f"{path} must be a picture that can be read; `hazard-ms perception check` lists what is wrong")
+    return picture

@@ -1,0 +1,69 @@
+"""The contract of networks that can be trained."""
+
+from __future__ import annotations
+
+import abc
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from hazard_ms.sensing.detection.detector import Detector
+
+
+class Student(abc.ABC):
+    """A network that learns from pictures, and the optimiser of its weights."""
+
+    network: torch.nn.Module
+    optimiser: torch.optim.Optimizer
+    classes: list[str]  # categories that it tells, in the order of its numbers for them
+
+    @abc.abstractmethod
+    def losses(self, chance: np.random.Generator) -> Mapping[str, Tensor]:
+        """The parts of the loss, 0-dimensional [...] [-], by name, of a batch that is drawn with `chance`.
+
+        Their sum is made smaller.
+        """
+
+    @abc.abstractmethod
+    def pace(self, step: int, share: float) -> float:
+        """The rate of learning at `step`, when this `share` of the training is over [-]."""
+
+    @abc.abstractmethod
+    def detector(self) -> Detector:
+        """The detector that the network is now; it stays right until the next step."""
+
+    @abc.abstractmethod
+    def weights(self) -> dict[str, Tensor]:
+        """The tensors that the detector loads, [...] [-], by name."""
+
+    @abc.abstractmethod
+    def recipe(self) -> dict[str, Any]:
+        """The contents of the file beside the weights: plain data."""
+
+    def learned(self) -> None:  # noqa: B027 most keep nothing beside their weights
+        """A step has been taken."""
+
+    def state(self) -> dict[str, Any]:
+        """All that is needed to go on: plain data and tensors."""
+        return {"network": self.network.state_dict(), "optimiser": self.optimiser.state_dict()}
+
+    def resume(self, state: Mapping[str, Any]) -> None:
+        """Go on from what `state` gave. Raises an error of torch's for anything else."""
+        self.network.load_state_dict(state["network"])
+        self.optimiser.load_state_dict(state["optimiser"])
+
+
+def device() -> torch.device:
+    """The processor on which networks learn: a GPU of NVIDIA's if there is one."""
+    return torch.device("cuda" if torch.cuda.is_available() else "cpu")
+
+
+def half_precision(where: torch.device) -> bool:
+    """Whether it is quicker to multiply in bfloat16, which takes hardware made for it."""
+    if where.type == "cuda":
+        return torch.cuda.is_bf16_supported(including_emulation=False)
+    told: dict[str, bool] = getattr(torch.cpu, "get_capabilities", dict)()  # not in older versions of torch
+    return bool(told.get("amx_bf16", False))

@@ -5,10 +5,14 @@ Numbers are those of the benchmark's rules.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
 
+from hazard_ms.sensing.detection.labeller import Labeller
+from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills import failures
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.context import Skill
@@ -72,6 +76,32 @@ def test_a_pick_up_refuses_what_it_cannot_do(fresh: Arena) -> None:
     assert fresh.run(pick_up(fresh.stage, fresh.index("far"))).reason == failures.TOO_FAR  # 4.6 m; the limit is 2.5 m
     assert fresh.run(pick_up(fresh.stage, fresh.index("book"))).reason == failures.NOT_A_TARGET
     assert fresh.run(pick_up(fresh.stage, fresh.index("table"))).reason == failures.NOT_A_TARGET
+
+
+@pytest.mark.parametrize("state", ["a book", "safe"])
+def test_what_a_thing_really_is_only_the_hand_finds_out(fresh: Arena, state: str) -> None:
+    """An agent takes a book for a target, or does not know that it is safe: to try from afar tells it nothing."""
+    actual = fresh.index("book" if state == "a book" else "bowl")
+    fresh.world.safe[0, actual] = state == "safe"
+
+    class Mistaken(Labeller):
+        """Names of things are the agent's own."""
+
+        def thing(self, index: int) -> int:
+            return actual
+
+        def targets(self, damaged: frozenset[int] = frozenset()) -> tuple[Target, ...]:
+            return tuple(replace(target, rescued=False) for target in super().targets(damaged))
+
+    def reason(name: str) -> str:
+        fresh.world.position[0, actual] = fresh.world.position[0, fresh.index(name)]
+        return str(fresh.run(pick_up(fresh.stage, fresh.index(name))).reason)
+
+    fresh.stage.labeller = Mistaken(fresh.world)
+    assert reason("pen") == (failures.NOT_A_TARGET if state == "a book" else failures.ALREADY_RESCUED)
+    assert reason("far") == failures.TOO_FAR
+    del fresh.map.objects[fresh.index("far")]  # type: ignore[attr-defined]
+    assert reason("far") == failures.UNKNOWN
 
 
 def test_a_pick_up_comes_nearer_by_itself(fresh: Arena) -> None:

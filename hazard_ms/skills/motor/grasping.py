@@ -75,18 +75,23 @@ def pick_up(stage: Stage, index: int) -> Skill:
 
 def _refusal(stage: Stage, index: int, thing: int) -> str:
     """The reason why a pick-up of `index`, which is `thing` along B, cannot begin; empty if it can."""
+    told = next((target for target in stage.labeller.targets() if target.index == index), None)
     if stage.held >= 0:
         return failures.ALREADY_HOLDING
-    if thing >= 0 and not bool(stage.world.target[0, thing]):
+    if told is None:
         return failures.NOT_A_TARGET
-    if thing >= 0 and bool(stage.world.safe[0, thing]):
+    if told.rescued:
         return failures.ALREADY_RESCUED
     if not known(stage, index):
         return failures.UNKNOWN
     place = stage.position(thing) if thing >= 0 else stage.seen.objects[index].position
     if float(np.linalg.norm(place - stage.robot.shoulder())) > LIMIT:
         return failures.TOO_FAR
-    return "" if thing >= 0 else failures.UNREACHABLE
+    if thing < 0:  # what really lies there is found out within reach alone
+        return failures.UNREACHABLE
+    if not bool(stage.world.target[0, thing]):
+        return failures.NOT_A_TARGET
+    return failures.ALREADY_RESCUED if bool(stage.world.safe[0, thing]) else ""
 
 
 def _within_span(stage: Stage, thing: NDArray[np.float64]) -> bool:
@@ -182,9 +187,7 @@ def _way_to_where_it_will_be(stage: Stage, index: int, tried: set[int], drift: D
     if not drift.ahead(1.0).any():
         return _way(stage, index, tried, stage.position(index))
     way = _way(stage, index, tried, stage.position(index) + drift.ahead(CHASE_FRAMES), HURRY)
-    if way is None:
-        return None
-    return _way(stage, index, tried, stage.position(index) + drift.ahead(way.route.frames), HURRY)
+    return way and _way(stage, index, tried, stage.position(index) + drift.ahead(way.route.frames), HURRY)
 
 
 def _way(
@@ -222,8 +225,7 @@ def standings(stage: Stage, thing: NDArray[np.float64]) -> list[float]:
     x, y, _ = stage.robot.base()
     far = float(np.hypot(thing[0] - x, thing[1] - y))
     nearer = far - STAND_OFF * stage.robot.build.span(float(thing[2]))[1]
-    room = stage.room_ahead(LOW, far) - stage.robot.build.radius
-    ahead = min(nearer, room)
+    ahead = min(nearer, stage.room_ahead(LOW, far) - stage.robot.build.radius)
     return [0.0, ahead] if ahead > 0.0 else [0.0]
 
 

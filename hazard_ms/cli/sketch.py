@@ -107,7 +107,7 @@ def speed(
     scenes: int = 8,
     physics: Annotated[str, offer(PRESETS)] = "paper",
 ) -> int:
-    """Print how many decisions a second the sketch makes on one core, for one rescue and for many at once.
+    """Print how many decisions a second the sketch and its environments make on one core.
 
     Args:
         env_id: Task.
@@ -115,10 +115,11 @@ def speed(
         physics: Preset of the hazards.
     """
     from hazard_ms.sketch import skill_times
-    from hazard_ms.sketch.scenes import training_scenes
+    from hazard_ms.sketch.scenes import level_ranges, training_scenes
     from hazard_ms.sketch.speed import report
 
-    print(report(training_scenes(env_id, physics, scenes), skill_times.load("fetch")))
+    ranges = level_ranges(env_id, physics)
+    print(report(training_scenes(env_id, physics, scenes), skill_times.load("fetch"), ranges))
     return 0
 
 

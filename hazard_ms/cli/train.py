@@ -11,6 +11,7 @@ from hazard_ms import registry
 from hazard_ms.evaluation.choices import PRESETS, flag, offer
 from hazard_ms.registry.version import __version__
 
+ACTIONS = ("options", "paper")  # as hazard_ms.skills.options.choices has them; tests/cli compares them
 VALIDATION = 1000  # number of the first scene whose Value chooses the best round; training stays below it [ours]
 VALIDATION_SCENES = 24  # of that sort: 192 rescues, whose mean is known to 0.02 [ours]
 
@@ -78,67 +79,80 @@ def ppo(
     env_id: Annotated[str, offer(registry.TASKS), flag("-e")],
     output: Annotated[Path, flag("-o")],
     seed: int = 0,
-    decisions: int = 1_000_000,
+    actions: Annotated[str, offer(ACTIONS)] = "options",
+    decisions: int | None = None,
     minutes: float = 60.0,
     scenes: int = 225,
-    reward: str = "value",
+    reward: str | None = None,
     start: Path | None = None,
+    masked: bool = False,
+    share: float = 0.5,
     physics: Annotated[str, offer(PRESETS)] = "paper",
     workers: int = 0,
 ) -> int:
-    """Train the policy of the agent `rl` by reinforcement in the sketch, with sb3-contrib's MaskablePPO.
+    """Train the policy of the agent `rl`, or of `rl_paper`, by reinforcement in the sketch.
 
-    It learns in generated scenes that belong to no split, and keeps what does best in others of that sort. The same
-    command resumes an interrupted training; with more --decisions or --minutes it goes on with a finished one.
-    `hazard-ms evaluate --agents rl:weights=FILE` scores it in the real environment.
+    It learns in generated scenes that belong to no split, by sb3-contrib's MaskablePPO, and keeps what does best in
+    others of that sort. The same command resumes an interrupted training; with more --decisions or --minutes it goes on
+    with a finished one. `hazard-ms evaluate --agents rl:weights=FILE` scores it in the real environment.
 
     Raises ValueError for numbers out of range, and where the extra `rl` is not installed.
 
     Args:
         env_id: Task.
-        output: Folder for rl_TASK.safetensors, rl_TASK.json, rl_TASK.csv (the curve) and rl_TASK.training.
+        output: Folder for rl_TASK.safetensors, .json, .csv (the curve) and .training; rl_paper_TASK with actions paper.
         seed: Seed of everything that is random.
-        decisions: Number of decisions to learn from.
+        actions: options, or paper: the six actions, the map, the network and the settings of the original's learner.
+        decisions: Number of decisions to learn from; by default 1,000,000 of options, 100,000 of the six actions.
         minutes: Wall time after which learning ends, if it has not ended before.
         scenes: Number of scenes to learn in.
-        reward: value or paper.
+        reward: value or paper; by default value for options, paper for the six actions.
         start: File NAME.safetensors of a policy to begin with; by default an untrained one.
+        masked: Of the six actions, only those that can be done are chosen.
+        share: Of the six actions' network: width of its layers, as a share of the original's.
         physics: Preset of the hazards.
         workers: Processes that make scenes; 0: one for each processor.
     """
-    from hazard_ms.agents.learned.weights import ENDING
-    from hazard_ms.agents.learned.weights import load as policy_of
+    from hazard_ms.agents.learned.weights import ENDING, load, load_map
     from hazard_ms.learning.scenes import generated
     from hazard_ms.machine.files import make_folder
     from hazard_ms.sketch.scenes import SCENES, level_ranges
-    from hazard_ms.sketch.skill_times import load
+    from hazard_ms.sketch.skill_times import load as times_of
     from hazard_ms.spec.checks import one_of, whole
 
     try:
-        from hazard_ms.learning.ppo import Learner
+        from hazard_ms.learning.ppo import Learner, shape_for
         from hazard_ms.learning.runs import Run
+        from hazard_ms.learning.settings import BY_ACTIONS
     except ModuleNotFoundError as missing:
         raise ValueError(f"train ppo needs the extra `rl`: pip install 'hazard_ms[rl]', got {missing}") from None
+    settings, six = BY_ACTIONS[one_of(actions, ACTIONS, "actions")], actions == "paper"
+    wanted = settings.decisions if decisions is None else whole(decisions, 1, 2**31, "decisions")
     count = whole(scenes, 1, VALIDATION - SCENES, "scenes")
-    whole(decisions, 1, 2**31, "decisions")
     whole(seed, 0, 2**31, "seed")
-    one_of(reward, ("value", "paper"), "reward")
-    begun = None if start is None else policy_of(start, env_id)
+    reward = settings.reward if reward is None else one_of(reward, ("value", "paper"), "reward")
+    if masked and not six:
+        raise ValueError("masked must be left out with actions options, which always have masks, got True")
+    ranges = level_ranges(env_id, physics)
+    shape = shape_for(actions, ranges, **({"share": share, "masked": masked} if six else {}))
+    begun = None if start is None else (load_map if six else load)(start, env_id)
     command = (
         f"hazard-ms train ppo -e {env_id} --seed {seed} --scenes {scenes} --reward {reward} --physics {physics}"
+        f"{f' --actions {actions} --share {share:g}' if six else ''}{' --masked' if masked else ''}"
         f"{'' if start is None else f' --start {start}'}"
     )
     make_folder(output)
+    name = "rl_paper" if six else "rl"
     facts = {"command": command, "version": __version__, "physics": physics, "validation": VALIDATION}
-    run = Run(output / f"rl_{env_id}{ENDING}", env_id, facts)
+    run = Run(output / f"{name}_{env_id}{ENDING}", env_id, facts)
     state = run.state()
     numbers = [*range(SCENES, SCENES + count), *range(VALIDATION, VALIDATION + VALIDATION_SCENES)]
     made = generated(env_id, physics, numbers, whole(workers, 0, 1000, "workers"))
-    learner = Learner(made[:count], made[count:], level_ranges(env_id, physics), load("fetch"), seed, reward, begun)
+    learner = Learner(made[:count], made[count:], ranges, times_of("fetch"), seed, reward, begun, settings, shape)
     if state is not None:
         learner.resume(state)
-    run.train(learner, decisions, minutes)
-    print(f"hazard-ms evaluate -e {env_id} --agents rl:weights={run.path} greedy --split train")
+    run.train(learner, wanted, minutes)
+    print(f"hazard-ms evaluate -e {env_id} --agents {name}:weights={run.path} greedy --split train")
     return 0
 
 
@@ -154,15 +168,19 @@ def score(
         env_id: Task of the policy.
         physics: Preset of the hazards.
     """
-    from hazard_ms.agents.learned.weights import load as policy_of
-    from hazard_ms.learning.comparison import table
-    from hazard_ms.learning.playing import Player
+    from hazard_ms.agents.learned.weights import load, load_map, sees_map
+    from hazard_ms.learning.comparison import six_table, table
+    from hazard_ms.learning.playing import MapPlayer, Player
     from hazard_ms.sketch.scenes import more_scenes
-    from hazard_ms.sketch.skill_times import load
+    from hazard_ms.sketch.skill_times import load as times_of
 
-    player = Player(policy_of(weights, env_id))
-    scenes = more_scenes(env_id, physics, VALIDATION, VALIDATION_SCENES)
-    print(table(scenes, load("fetch"), {str(weights): player.play}))
+    six = MapPlayer(load_map(weights, env_id)).play if sees_map(weights) else None
+    options = None if six is not None else Player(load(weights, env_id)).play
+    scenes, times = more_scenes(env_id, physics, VALIDATION, VALIDATION_SCENES), times_of("fetch")
+    if six is not None:
+        print(six_table(scenes, times, {str(weights): six}))
+    if options is not None:
+        print(table(scenes, times, {str(weights): options}))
     return 0
 
 

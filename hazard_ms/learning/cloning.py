@@ -19,7 +19,7 @@ from torch import Tensor
 
 from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
 from hazard_ms.learning.labels import SEEDS, Labels, collect
-from hazard_ms.learning.playing import Player
+from hazard_ms.learning.playing import TRIALS, Player
 from hazard_ms.sketch.policies import POLICIES, Policy, play
 from hazard_ms.sketch.rescues.features import MISSING
 from hazard_ms.sketch.rescues.scene import Floats, SketchScene
@@ -35,7 +35,6 @@ RATE = 2e-3  # greatest rate of learning [ours]
 DECAY = 1e-3  # of weights [ours]
 STEEPEST = 1.0  # norm that gradients are cut to [ours]
 EPOCHS = 3  # passes over all labels in a round: ten in the last of five rounds lost 0.02 of Value [ours]
-TRIALS = 8  # rescues in each scene for a score [ours]
 
 
 @dataclass(frozen=True)

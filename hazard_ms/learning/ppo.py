@@ -1,4 +1,6 @@
-"""Proximal policy optimisation over options in the sketch, by sb3-contrib's MaskablePPO.
+"""Proximal policy optimisation in the sketch, by sb3-contrib's MaskablePPO, over options or the six actions.
+
+Where masks allow everything, as those of the six actions do, it is Stable-Baselines3's PPO.
 
 Worlds are drawn from TRAINING, wider than what was measured, so that policies bear what the sketch leaves out. What is
 kept is the policy that did best in scenes that none is trained in.
@@ -17,26 +19,25 @@ import torch
 from sb3_contrib import MaskablePPO
 from stable_baselines3.common.callbacks import BaseCallback
 
+from hazard_ms.agents.learned.map_policy import MapPolicy, MapShape
 from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
-from hazard_ms.learning.actor_critic import SetActorCritic
+from hazard_ms.agents.learned.weights import stored
+from hazard_ms.learning.actor_critic import ActorCritic
 from hazard_ms.learning.cloning import JUDGE, scores
-from hazard_ms.learning.playing import Player
+from hazard_ms.learning.playing import MapPlayer, Player, six_scores
+from hazard_ms.learning.settings import OURS, Settings
 from hazard_ms.learning.vec_env import SketchVecEnv
 from hazard_ms.sketch.environments.batch import SketchBatch
+from hazard_ms.sketch.environments.choices import OPTIONS
+from hazard_ms.sketch.paper.maps import MISSING as MISSING_PLANES
 from hazard_ms.sketch.policies import POLICIES
 from hazard_ms.sketch.rescues.features import MISSING
 from hazard_ms.sketch.rescues.scene import SketchScene
 from hazard_ms.sketch.rescues.state import TRAINING
 from hazard_ms.sketch.skill_times import SkillTimes
 
-# [ours], all of them
-RESCUES, STEPS = 64, 64  # rescues at once; decisions of each between two updates
-BATCH, EPOCHS = 1024, 4  # decisions of a step of the optimiser; passes over the decisions of an update
-RATES = (7e-4, 1e-4)  # of learning, at the beginning and at the end
-ENTROPY = (0.01, 0.001)  # worth of chance, at the beginning and at the end
-DISCOUNT, TRACE, CLIP = 1.0, 0.95, 0.2  # Value counts what is rescued late as much as what is rescued early
-WIDTH, HEADS, BLOCKS = 32, 4, 1  # of the policy: three times as quick as that of behaviour cloning
-CHECK = 8  # updates from one look at validation scenes to the next
+WIDTH, HEADS, BLOCKS = 32, 4, 1  # of the policy over options: three times as quick as that of behaviour cloning
+SHARE = 0.5  # of the widths of the original's network: policies for all tasks stay below 1.5 MB
 FEW = 3  # validation scenes whose mean Value is kept with a policy, to see later whether it still plays alike
 
 
@@ -63,7 +64,9 @@ class Learner:
         times: SkillTimes,
         seed: int,
         reward: str,
-        start: SetPolicy | None = None,
+        start: SetPolicy | MapPolicy | None = None,
+        settings: Settings = OURS,
+        shape: Shape | MapShape | None = None,
     ) -> None:
         """Make a learner.
 
@@ -74,32 +77,37 @@ class Learner:
             times: Skill times of the robot.
             seed: Seed of everything that is random.
             reward: "value" or "paper".
-            start: Policy to begin with; by default an untrained one.
+            start: Policy to begin with; by default an untrained one of `shape`.
+            settings: Settings of the training, and what its actions mean.
+            shape: Architecture of the policy; by default one that fits the actions.
 
         Raises:
             ValueError: For an unknown reward, and for no scenes.
         """
-        self._validation, self._times = validation, times
+        self._validation, self._times, self.settings = validation, times, settings
         self._share = 0.0  # of the training that is over
         self.curve: list[Check] = []
-        shape = Shape(tuple(ranges), WIDTH, HEADS, BLOCKS, MISSING) if start is None else start.shape
-        batch = SketchBatch(scenes, ranges, times, RESCUES, reward, domain=TRAINING)
+        shape = start.shape if start is not None else shape or shape_for(settings.actions, ranges)
+        masked = isinstance(shape, MapShape) and shape.masked
+        batch = SketchBatch(
+            scenes, ranges, times, settings.rescues, reward, domain=TRAINING, actions=settings.actions, masked=masked
+        )
         self.model = MaskablePPO(
-            SetActorCritic,
-            SketchVecEnv(batch),
-            learning_rate=lambda _: _between(RATES, self._share),
-            n_steps=STEPS,
-            batch_size=BATCH,
-            n_epochs=EPOCHS,
-            gamma=DISCOUNT,
-            gae_lambda=TRACE,
-            clip_range=CLIP,
-            ent_coef=ENTROPY[0],
+            ActorCritic,
+            SketchVecEnv(batch, settings.scale),
+            learning_rate=lambda _: _between(settings.rates, self._share),
+            n_steps=settings.steps,
+            batch_size=settings.batch,
+            n_epochs=settings.epochs,
+            gamma=settings.discount,
+            gae_lambda=settings.trace,
+            clip_range=settings.clip,
+            ent_coef=settings.entropy[0],
             policy_kwargs={"shape": shape},
             seed=seed,
             device="cpu",
         )
-        assert isinstance(self.model.policy, SetActorCritic)
+        assert isinstance(self.model.policy, ActorCritic)
         self.policy = self.model.policy.chooser
         if start is not None:
             self.policy.load_state_dict(start.state_dict())
@@ -107,7 +115,7 @@ class Learner:
         self._greedy = float(scores(validation, times, POLICIES[JUDGE]).mean())
 
     def train(self, decisions: int, minutes: float, told: Callable[[Check], None]) -> None:
-        """Learn until there were `decisions` in all, or for `minutes` in all; each check is `told`.
+        """Learn until there were `decisions` in all, or for `minutes` in all, or until it is stuck; checks are `told`.
 
         Raises ValueError for numbers that are not positive.
         """
@@ -115,14 +123,14 @@ class Learner:
             if not number > 0:
                 raise ValueError(f"{name} must be positive, got {number}")
         left = decisions - self.model.num_timesteps
-        if left > 0:
+        if left > 0 and not self.stuck():
             watch = _Watch(self, decisions, minutes, told)
             self.model.learn(left, callback=watch, reset_num_timesteps=False)
             watch.check()
 
     def check(self, seconds: float, values: Sequence[float]) -> Check:
         """Score the policy after `seconds` of training; `values`: those of the episodes that ended since the last."""
-        found = float(scores(self._validation, self._times, Player(self.policy).play).mean())
+        found = value_of(self.policy, self._validation, self._times)
         best = max([each.best for each in self.curve], default=-1.0)
         if found > best:
             self.best = _copied(self.policy)
@@ -133,7 +141,7 @@ class Learner:
 
     def value(self) -> float:
         """The mean Value of the best policy so far in the first FEW validation scenes."""
-        return float(scores(self._validation[:FEW], self._times, Player(self.best).play).mean())
+        return value_of(self.best, self._validation[:FEW], self._times)
 
     def saved(self) -> bytes:
         """All that is needed to go on: plain numbers and tensors."""
@@ -160,10 +168,15 @@ class Learner:
         except Exception as error:  # torch raises errors of many kinds for a damaged file
             raise ValueError(f"the state of a training must be one that was saved, got {error}") from None
 
+    def stuck(self) -> bool:
+        """Whether there was no better policy for as many checks as its settings have patience."""
+        best = max(range(len(self.curve)), key=lambda k: self.curve[k].validation, default=0)
+        return 0 < self.settings.patience < len(self.curve) - best
+
     def progress(self, share: float) -> None:
         """Bring rates to what they are when this `share` of the training is over."""
         self._share = min(share, 1.0)
-        self.model.ent_coef = _between(ENTROPY, self._share)
+        self.model.ent_coef = _between(self.settings.entropy, self._share)
 
 
 class _Watch(BaseCallback):
@@ -182,10 +195,10 @@ class _Watch(BaseCallback):
     def _on_step(self) -> bool:
         infos: list[dict[str, Any]] = self.locals["infos"]
         self._values += [info["value"] for info in infos if "value" in info]
-        return self._seconds() < self._most
+        return self._seconds() < self._most and not self._learner.stuck()
 
     def _on_rollout_end(self) -> None:
-        if self._rollouts % CHECK == 0:
+        if self._rollouts % self._learner.settings.check == 0:
             self.check()
         self._rollouts += 1
         share = self._learner.model.num_timesteps / self._decisions
@@ -202,7 +215,22 @@ def _between(ends: tuple[float, float], share: float) -> float:
     return ends[0] + share * (ends[1] - ends[0])
 
 
-def _copied(policy: SetPolicy) -> SetPolicy:
-    made = SetPolicy(policy.shape)
-    made.load_state_dict(policy.state_dict())
+def shape_for(actions: str, ranges: Sequence[tuple[float, float]], **more: Any) -> Shape | MapShape:
+    """The usual shape of a policy for "options" or "paper" that learns in the sketch; `more` of it."""
+    if actions == OPTIONS:
+        return Shape(tuple(ranges), WIDTH, HEADS, BLOCKS, MISSING)
+    return MapShape(tuple(ranges), **{"share": SHARE, "ignored": MISSING_PLANES, "at_things": True, **more})
+
+
+def value_of(policy: SetPolicy | MapPolicy, scenes: Sequence[SketchScene], times: SkillTimes) -> float:
+    """The mean Value of a policy in `scenes`."""
+    if isinstance(policy, MapPolicy):
+        return float(six_scores(scenes, times, MapPlayer(policy).play).mean())
+    return float(scores(scenes, times, Player(policy).play).mean())
+
+
+def _copied(policy: SetPolicy | MapPolicy) -> SetPolicy | MapPolicy:
+    """A copy that is rounded as its file is."""
+    made = type(policy)(policy.shape)  # type: ignore[arg-type]
+    made.load_state_dict(stored(policy))
     return made.eval()

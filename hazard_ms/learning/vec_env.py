@@ -15,14 +15,15 @@ from stable_baselines3.common.vec_env import VecEnv
 
 from hazard_ms.agents.learned.set_policy import worthwhile
 from hazard_ms.sketch.environments.batch import SketchBatch
+from hazard_ms.sketch.environments.choices import OPTIONS
 
 
 class SketchVecEnv(VecEnv):
     """The rescues of a `SketchBatch`. The option `stop` is offered only where there is nothing to go to."""
 
-    def __init__(self, batch: SketchBatch) -> None:
-        """Take a `batch` of N rescues."""
-        self.batch = batch
+    def __init__(self, batch: SketchBatch, scale: float = 1.0) -> None:
+        """Take a `batch` of N rescues; `scale`: factor on the rewards that learners get, but not on those in info."""
+        self.batch, self._scale = batch, scale
         self.render_mode = None
         super().__init__(batch.num_envs, batch.single_observation_space, batch.single_action_space)
         self._returns = np.zeros(batch.num_envs)
@@ -35,18 +36,18 @@ class SketchVecEnv(VecEnv):
         return [seed] * self.num_envs
 
     def reset(self) -> NDArray[np.float32]:
-        """Begin all episodes anew: what is seen, [N, F]."""
+        """Begin all episodes anew: what is seen, [N, ...]."""
         obs, _ = self.batch.reset(seed=self._seed)
         self._seed = None
         self._returns[:] = 0.0
         return obs
 
     def step_async(self, actions: NDArray[np.int64]) -> None:
-        """Take the options that `step_wait` plays, [N]."""
+        """Take the choices that `step_wait` plays, [N]."""
         self._actions = actions
 
     def step_wait(self) -> Any:
-        """Play them: what is seen [N, F], rewards [N], whether episodes ended [N], and info of each rescue."""
+        """Play them: what is seen [N, ...], rewards [N], whether episodes ended [N], and info of each rescue."""
         obs, rewards, terminated, truncated, told = self.batch.step(self._actions)
         self._returns += rewards
         done, infos = terminated | truncated, [dict[str, Any]() for _ in range(self.num_envs)]
@@ -59,11 +60,12 @@ class SketchVecEnv(VecEnv):
                 "frame": int(ended["frame"][n]),
             }
         self._returns[done] = 0.0
-        return obs, rewards.astype(np.float32), done, infos
+        return obs, (self._scale * rewards).astype(np.float32), done, infos
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Masks of the options that can be chosen now, [N, A]."""
-        return worthwhile(self.batch.action_masks())
+        """Masks of what can be chosen now, [N, A]."""
+        masks = self.batch.action_masks()
+        return worthwhile(masks) if self.batch.actions == OPTIONS else masks
 
     def close(self) -> None:
         """Close the batch of rescues."""

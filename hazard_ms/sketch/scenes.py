@@ -18,11 +18,11 @@ from hazard_ms.scenes.splits import SCENES, spare_scene
 from hazard_ms.simulation.building import extent_of
 from hazard_ms.sketch.limits import limit_of
 from hazard_ms.sketch.recording import recorded
-from hazard_ms.sketch.rescues.scene import LOOKS, SPOTS, Floats, Ints, SketchScene
+from hazard_ms.sketch.rescues.scene import LOOKS, SPOTS, Floats, Ints, SketchScene, spot_offsets
 from hazard_ms.sketch.sight import FETCH, G1, Sight
 from hazard_ms.sketch.timeline import STRIDE, Timeline
 from hazard_ms.sketch.ways import Ways
-from hazard_ms.skills.options.landmarks import AROUND, MIN_SPACING
+from hazard_ms.skills.options.landmarks import MIN_SPACING
 from hazard_ms.spec import SceneSpec, Task
 from hazard_ms.spec.catalogue import CATEGORIES
 from hazard_ms.spec.checks import one_of, whole
@@ -33,7 +33,6 @@ INDOOR_CELL, OUTDOOR_CELL = 0.5, 1.0  # edges of the cells, in each of which sig
 FLOOR_SEEN = 5.0  # distance up to which a look shows the floor without gaps: farther off, pixels are too sparse [m]
 MANY_PIXELS = 1e4  # of a thing, beyond which the number makes no difference
 MOST_SCENES = 100_000  # any larger number of a scene must be a mistake [ours]
-GOLDEN = np.pi * (3.0 - np.sqrt(5.0))  # turn from one spot around a landmark to the next, for even spacing [rad]
 EYES = {"fetch": FETCH, "g1": G1}
 
 
@@ -50,8 +49,7 @@ def scenes_of(
 
     `max_frames`: length of an episode at most, by default that of the task. Raises ValueError for unknown names.
     """
-    task = task_of(env_id, physics, hazards)
-    task = task if max_frames is None else dataclasses.replace(task, max_frames=max_frames)
+    task = _lasting(task_of(env_id, physics, hazards), max_frames)
     return [sketch_scene(task, physics, task.build(n), seed, robot) for n, seed in zip(names, seeds, strict=True)]
 
 
@@ -65,16 +63,22 @@ def training_scenes(env_id: str, physics: str, count: int, robot: str = "fetch")
     return scenes_of(env_id, some, range(len(some)), physics, robot)
 
 
-def more_scenes(env_id: str, physics: str, first: int, count: int, robot: str = "fetch") -> list[SketchScene]:
+def more_scenes(
+    env_id: str, physics: str, first: int, count: int, robot: str = "fetch", max_frames: int | None = None
+) -> list[SketchScene]:
     """`count` scenes that belong to no split, in the places of the split `train` in turn.
 
-    Their numbers begin with `first`, and are their seeds. Raises ValueError for unknown names, and for numbers of
-    scenes that belong to a split.
+    Their numbers begin with `first`, and are their seeds; `max_frames` is that of `scenes_of`. Raises ValueError for
+    unknown names, and for numbers of scenes that belong to a split.
     """
-    task = task_of(env_id, physics)
+    task = _lasting(task_of(env_id, physics), max_frames)
     whole(first, SCENES, MOST_SCENES, "first")
     numbers = range(first, first + whole(count, 0, MOST_SCENES, "count"))
     return [sketch_scene(task, physics, spare_scene(task.scenes("train"), number), number, robot) for number in numbers]
+
+
+def _lasting(task: Task, max_frames: int | None) -> Task:
+    return task if max_frames is None else dataclasses.replace(task, max_frames=max_frames)
 
 
 def level_ranges(env_id: str, physics: str) -> list[tuple[float, float]]:
@@ -231,15 +235,12 @@ class _Maker:
 
     def _spots(self, places: Floats, marks: Floats) -> Floats:
         """The floor around landmarks at `marks` [m], [L, 2], that is seen from `places` [m], [P, 2]: bits, [P, L]."""
-        number = np.arange(SPOTS)
-        out = AROUND * np.sqrt((number + 0.5) / SPOTS)
-        around = np.stack([np.cos(GOLDEN * number), np.sin(GOLDEN * number)], axis=-1) * out[:, None]
-        points = (marks[:, None] + around).reshape(-1, 2)
+        points = (marks[:, None] + spot_offsets()).reshape(-1, 2)
         cell = np.floor((points - self.ways.origin) / self.ways.cell).astype(int)
         inside = ((cell >= 0) & (cell < np.array(self.ways.free.shape[::-1]))).all(axis=1)
         free = np.zeros(len(points), bool)
         free[inside] = self.ways.free[cell[inside, 1], cell[inside, 0]]
         near = np.hypot(*np.moveaxis(places[:, None] - points, -1, 0)) <= FLOOR_SEEN
         seen = near & free & self.sight.clear(places, np.pad(points, ((0, 0), (0, 1))))
-        bits = seen.reshape(len(places), len(marks), SPOTS) << number
+        bits = seen.reshape(len(places), len(marks), SPOTS) << np.arange(SPOTS)
         return bits.sum(axis=-1).astype(np.uint16)

@@ -105,17 +105,18 @@ class Sketch:
             rows = np.flatnonzero(allowed & (chosen >= first) & (chosen < end))
             if len(rows):
                 play(rows, chosen[rows] - first)
-        stopped = allowed & (chosen == FIRST[END])
+        self._settle(started, allowed & (chosen == FIRST[END]))
+        return state.score - before, state.over.copy()
+
+    def _settle(self, started: Ints, stopped: Bools) -> None:
+        """End a step that began at the frames `started` [N]: what took no time takes IDLE, unless it `stopped` [N]."""
+        state, limit = self.state, self.stack.max_frames[self.state.scene]
         state.frame[~state.over & (state.frame == started) & ~stopped] += IDLE
-        limit = self.stack.max_frames[state.scene]
         state.frame = np.minimum(state.frame, limit)
         self._drift_in()
         done = ((state.rescued_at >= 0) | (state.value == 0.0)).all(axis=1)
         state.over |= (state.frame >= limit) | done | stopped
         self._menu()
-        return state.score - before, state.over.copy()
-
-    # ------------------------------------------------------------------ options
 
     def _fetch(self, rows: Ints, target: Ints) -> None:
         """Walk to a target and pick it up; with a bag, put it in."""
@@ -133,21 +134,22 @@ class Sketch:
                 break
         worked = np.zeros(len(rows), bool)
         worked[here] = self._pick_up(rows[here], target[here])
+        bag = worked & ~stack.cart_there[state.scene[rows]].any(axis=1)
+        worked[bag] = self._let_go(rows[bag], BAG)
         state.failures[rows, target] += ~worked
         state.looked[rows] = False
 
     def _pick_up(self, rows: Ints, target: Ints) -> Bools:
-        """Pick up what is near, and with a bag put it in; whether that worked, [R]."""
+        """Pick up what is near; whether that worked, [R]."""
         stack, state, scene = self.stack, self.state, self.state.scene[rows]
         place = stack.height[scene, target], stack.clearance[scene, target]
-        ease = state.ease[rows] * np.where(state.failures[rows, target] > 0, self.domain.again, 1.0)
+        ease = state.ease_of(rows, target, self.domain.again)
         worked, frames = self.times.draw(PICK_UP, self._luck[rows, :2], *place, ease)
         worked &= self._pass(rows, frames)
+        state.missed[rows] = np.where(worked, -1, target)
         damaged = stack.damaged_at[scene, target]
         state.spoiled[rows, target] |= worked & (damaged >= 0) & (damaged <= state.frame[rows])
         state.held[rows[worked]] = target[worked]
-        bag = worked & ~stack.cart_there[scene].any(axis=1)
-        worked[bag] = self._let_go(rows[bag], BAG)
         return worked
 
     def _let_go(self, rows: Ints, skill: str) -> Bools:
@@ -199,8 +201,6 @@ class Sketch:
         self._look(rows, state.place[rows][:, None], None, state.frame[rows][:, None])
         state.looked[rows] = whole
 
-    # ------------------------------------------------------------------ parts of options
-
     def _pass(self, rows: Ints, frames: Floats) -> Bools:
         """Let `frames` [R] at usual pace pass; whether the episode lasts so long, [R]."""
         after = self.state.frame[rows] + np.rint(frames * self.state.pace[rows]).astype(np.int64)
@@ -208,13 +208,13 @@ class Sketch:
         self.state.frame[rows] = np.minimum(after, limit)
         return after <= limit
 
-    def _walk(self, rows: Ints, goal: Ints) -> Bools:
-        """Walk to the sites `goal` [R], with looks on the way; whether the robot arrived, [R]."""
+    def _walk(self, rows: Ints, goal: Ints, most: Floats | int = WALK_BUDGET) -> Bools:
+        """Walk to the sites `goal` [R] for `most` frames, with looks on the way; whether the robot arrived, [R]."""
         state, scene = self.state, self.state.scene[rows]
         frames = ahead(self.stack, state, rows, goal) * state.pace[rows]
         none = ~np.isfinite(frames)
         room = self.stack.max_frames[scene] - state.frame[rows]
-        spent = np.minimum(np.where(none, 0.0, np.minimum(frames, WALK_BUDGET)), room)
+        spent = np.minimum(np.where(none, 0.0, np.minimum(frames, most)), room)
         share = np.where(none, 0.0, np.where(frames > 0.0, spent / np.maximum(frames, 1e-9), 1.0))
         if none.any():
             nothing, sure = np.zeros(len(rows)), np.ones(len(rows))
@@ -231,7 +231,7 @@ class Sketch:
         points, facing = journey(self.stack, self.state, rows, goal, share)
         passed = np.rint(spent[:, None] * np.arange(1, LOOKS + 1) / LOOKS).astype(np.int64)
         self._look(rows, points, facing, self.state.frame[rows][:, None] + passed)
-        self.state.place[rows], self.state.heading[rows] = points[:, -1], facing[:, -1]
+        self.state.place[rows], self.state.heading[rows], self.state.missed[rows] = points[:, -1], facing[:, -1], -1
         self.state.stand[rows] = stands(self.stack, self.state.scene[rows], points[:, -1])
 
     def _look(self, rows: Ints, points: Floats, facing: Floats | None, frame: Ints) -> None:

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms.agents.learned.weights import load
+from hazard_ms.agents.learned.weights import load, load_map
 from hazard_ms.cli import train
 from hazard_ms.cli.__main__ import main
+from hazard_ms.skills.options.choices import ACTIONS
 
 FIRE = "HazardFire-v1"
 
@@ -56,6 +57,25 @@ def test_a_policy_is_trained_by_reinforcement_and_resumed(tmp_path: Path, capsys
     assert "give another folder" in capsys.readouterr().err
 
 
+@pytest.mark.long
+def test_the_six_actions_are_trained_resumed_and_scored(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plain = ["train", "ppo", "-e", FIRE, "-o", str(tmp_path), "--scenes", "1", "--actions", "paper", "--share", "0.125"]
+    assert main([*plain, "--decisions", "512"]) == 0
+    path = tmp_path / f"rl_paper_{FIRE}.safetensors"
+    told = json.loads(path.with_suffix(".json").read_text())
+    assert told["command"].endswith("--reward paper --physics paper --actions paper --share 0.125")
+    assert load_map(path, FIRE).shape.share == 0.125
+    assert main([*plain, "--decisions", "1024"]) == 0
+    assert "goes on after 512 decisions" in capsys.readouterr().out
+    assert main(["train", "score", str(path), "-e", FIRE]) == 0
+    out = capsys.readouterr().out
+    assert str(path) in out and "random six actions" in out and "greedy, over options" in out
+
+
+def test_actions_are_those_of_environments() -> None:
+    assert train.ACTIONS == ACTIONS
+
+
 def test_what_cannot_be_trained_or_scored_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["train", "bc", "-e", FIRE, "-o", str(tmp_path), "--scenes", "0"]) == 2
     assert "scenes must be a whole number from 1 to 975" in capsys.readouterr().err
@@ -63,6 +83,9 @@ def test_what_cannot_be_trained_or_scored_is_refused(tmp_path: Path, capsys: pyt
     for wrong, said in (
         (["--decisions", "0"], "decisions must be a whole number"),
         (["--reward", "gold"], "reward must be one of value, paper"),
+        (["--actions", "papr"], "did you mean 'paper'"),
+        (["--masked"], "masked must be left out with actions options"),
+        (["--actions", "paper", "--share", "2"], "share of a policy must be from 1/32 to 1"),
         (["--start", str(tmp_path / "none.safetensors")], "none.safetensors must hold a policy"),
     ):
         assert main([*ppo, *wrong]) == 2

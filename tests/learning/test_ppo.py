@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 
 import numpy as np
 import pytest
 import torch
 
+from hazard_ms.agents.learned.set_policy import SetPolicy
 from hazard_ms.learning import ppo
-from hazard_ms.learning.actor_critic import SetActorCritic
+from hazard_ms.learning.actor_critic import ActorCritic
 from hazard_ms.learning.cloning import scores
 from hazard_ms.learning.ppo import Check, Learner
 from hazard_ms.learning.runs import line
+from hazard_ms.learning.settings import OURS
 from hazard_ms.sketch.rescues.scene import Ints
 from hazard_ms.sketch.scenes import more_scenes
 from hazard_ms.sketch.skill_times import load
@@ -23,16 +26,12 @@ from tests.worlds.sketch_scenes import chancy_times, random_scene
 FIRE = [(20.0, 600.0)]
 
 
-@pytest.fixture
-def _small(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Updates of few decisions."""
-    for name, number in (("RESCUES", 4), ("STEPS", 8), ("BATCH", 16), ("CHECK", 1)):
-        monkeypatch.setattr(ppo, name, number)
+FEW = dataclasses.replace(OURS, rescues=4, steps=8, batch=16, check=1)  # updates of few decisions
 
 
 def learner(seed: int = 0, scenes: int = 2) -> Learner:
     made = [random_scene(seed) for seed in range(scenes)]
-    return Learner(made, made, FIRE, chancy_times(), seed, "value")
+    return Learner(made, made, FIRE, chancy_times(), seed, "value", settings=FEW)
 
 
 def at_random(sketch: Sketch, chance: np.random.Generator) -> Ints:
@@ -42,10 +41,9 @@ def at_random(sketch: Sketch, chance: np.random.Generator) -> Ints:
     return np.asarray((chance.random(mask.shape) * mask).argmax(axis=1))
 
 
-@pytest.mark.usefixtures("_small")
 def test_what_is_sampled_is_allowed_and_the_order_of_targets_changes_no_value() -> None:
     policy = learner().model.policy
-    assert isinstance(policy, SetActorCritic)
+    assert isinstance(policy, ActorCritic) and isinstance(policy.chooser, SetPolicy)
     chance, space = np.random.default_rng(0), policy.observation_space
     obs = torch.from_numpy(chance.uniform(space.low, space.high, (500, *space.shape)).astype(np.float32))  # type: ignore[attr-defined]
     mask = chance.random((500, COUNT)) < 0.2
@@ -63,7 +61,6 @@ def test_what_is_sampled_is_allowed_and_the_order_of_targets_changes_no_value() 
     torch.testing.assert_close(moved, values, atol=1e-5, rtol=0)
 
 
-@pytest.mark.usefixtures("_small")
 def test_an_interrupted_training_goes_on_as_it_was() -> None:
     first, told = learner(), list[Check]()
     first.train(64, 60.0, told.append)
@@ -83,7 +80,6 @@ def test_an_interrupted_training_goes_on_as_it_was() -> None:
         second.resume(b"nothing")
 
 
-@pytest.mark.usefixtures("_small")
 def test_training_ends_when_its_time_is_over_and_slows_down_until_then(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a clock that goes on by a second whenever it is read."""
     made, rates, clock = learner(), list[float](), itertools.count()
@@ -93,16 +89,16 @@ def test_training_ends_when_its_time_is_over_and_slows_down_until_then(monkeypat
     assert rates == sorted(rates, reverse=True) and rates[-1] < 0.5 * rates[0]
     made.progress(1.0)
     found = (made.model.lr_schedule(0.5), made.model.ent_coef)
-    assert found == pytest.approx((ppo.RATES[1], ppo.ENTROPY[1]), rel=1e-9)
+    assert found == pytest.approx((OURS.rates[1], OURS.entropy[1]), rel=1e-9)
     with pytest.raises(ValueError, match="minutes must be positive, got 0"):
         made.train(10, 0, lambda _: None)
 
 
-@pytest.mark.usefixtures("_small")
 def test_another_policy_can_be_begun_with_and_is_left_as_it_was() -> None:
     start = learner(seed=3).policy
+    assert isinstance(start, SetPolicy)
     before = {name: tensor.clone() for name, tensor in start.state_dict().items()}
-    made = Learner([random_scene(0)], [random_scene(0)], FIRE, chancy_times(), 0, "paper", start)
+    made = Learner([random_scene(0)], [random_scene(0)], FIRE, chancy_times(), 0, "paper", start, FEW)
     assert all(torch.equal(made.policy.state_dict()[name], tensor) for name, tensor in before.items())
     made.train(64, 60.0, lambda _: None)
     assert all(torch.equal(start.state_dict()[name], tensor) for name, tensor in before.items())

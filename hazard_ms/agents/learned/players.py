@@ -1,4 +1,4 @@
-"""Agents whose choices of options were learned in the sketch, and are played as macros.
+"""Agents whose choices were learned in the sketch: of options, played as macros, and of the six actions.
 
 The package brings weights of some tasks (SHIPPED); `weights=FILE` takes others.
 """
@@ -8,18 +8,39 @@ from __future__ import annotations
 from pathlib import Path
 from typing import ClassVar
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 
 from hazard_ms.agents.base import Agent
+from hazard_ms.agents.learned.map_policy import MapPolicy
 from hazard_ms.agents.learned.set_policy import SetPolicy, worthwhile
-from hazard_ms.agents.learned.weights import ENDING, load
+from hazard_ms.agents.learned.weights import ENDING, load, load_map
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.skills.options.features import Encoder
 from hazard_ms.skills.options.macros import Macro, play
 from hazard_ms.skills.options.options import TARGET, Menu, Option, Options
+from hazard_ms.skills.options.paper_actions import NAMES, SixActions
+from hazard_ms.skills.options.paper_map import Planes
 
 SHIPPED = Path(__file__).parents[1] / "weights"  # one file for each agent and task, "rl_HazardFire-v1.safetensors"
+
+
+def weights_file(given: str, name: str, task: str, made_by: str) -> Path:
+    """The file of the policy of the agent `name` for `task`: the one that was `given`, or that of the package.
+
+    `made_by`: the command that trains such policies. Raises ValueError if none was given and the package brings none.
+    """
+    if given:
+        return Path(given)
+    path = SHIPPED / f"{name}_{task}{ENDING}"
+    if not path.exists():
+        raise ValueError(
+            f"weights of the agent {name} must be a file where the package brings none for {task}, got none: "
+            f"make one with `hazard-ms {made_by} -e {task} -o FOLDER`, and play {name}:weights=FILE"
+        )
+    return path
 
 
 class Learned(Agent):
@@ -39,23 +60,12 @@ class Learned(Agent):
         Raises ValueError if the file holds no policy for its task, and if the package brings none.
         """
         if self._loaded is None or self._loaded[0] != brief.task:
-            self._loaded = brief.task, load(self._path(brief.task), brief.task, self.made_by)
+            path = weights_file(self._weights, self.name, brief.task, self.made_by)
+            self._loaded = brief.task, load(path, brief.task, self.made_by)
         self._policy = self._loaded[1]
         self._encoder = Encoder(self._policy.shape.ranges, brief.radius)
         self._options = Options()
         self._playing: tuple[Option, Macro] | None = None
-
-    def _path(self, task: str) -> Path:
-        """The file of the policy for `task`. Raises ValueError if none was named and the package brings none."""
-        if self._weights:
-            return Path(self._weights)
-        path = SHIPPED / f"{self.name}_{task}{ENDING}"
-        if not path.exists():
-            raise ValueError(
-                f"weights of the agent {self.name} must be a file where the package brings none for {task}, got none: "
-                f"make one with `hazard-ms {self.made_by} -e {task} -o FOLDER`, and play {self.name}:weights=FILE"
-            )
-        return path
 
     def act(self, decision: Decision) -> Action:
         """The next action of the option that is being played, or the first of the next one."""
@@ -96,3 +106,49 @@ class Rl(Learned):
     """Learned by reinforcement."""
 
     name, made_by = "rl", "train ppo"
+
+
+class RlPaper(Agent):
+    """Learned by reinforcement over the six actions of the original's learner, from its map.
+
+    It draws actions as likely as its policy wants them, as it did while it learned: the likeliest one again and again
+    would often lead nowhere. A choice that cannot be taken is drawn anew, and counted as `impossible`.
+    """
+
+    name, made_by = "rl_paper", "train ppo --actions paper"
+
+    def __init__(self, weights: str = "") -> None:
+        """`weights`: file NAME.safetensors of a policy, with NAME.json beside it; by default that of the package."""
+        self._weights = weights
+        self._loaded: tuple[str, MapPolicy] | None = None  # a policy and its task
+
+    def reset(self, brief: Brief) -> None:
+        """Begin an episode, and a sequence of random numbers that `brief.random_seed` determines.
+
+        Raises ValueError if the file holds no policy for its task, and if the package brings none.
+        """
+        if self._loaded is None or self._loaded[0] != brief.task:
+            path = weights_file(self._weights, self.name, brief.task, self.made_by)
+            self._loaded = brief.task, load_map(path, brief.task, self.made_by)
+        self._policy = self._loaded[1]
+        # "RLP": not the stream of another agent with the same seed
+        self._chance = np.random.default_rng([brief.random_seed, 0x524C50])
+        self._actions = SixActions(brief.random_seed)
+        self.counters = {"impossible": 0.0}
+
+    def act(self, decision: Decision) -> Action:
+        """One of the six actions, as an action of the benchmark."""
+        self._actions.see(decision)
+        seen, possible = self._policy.layout.encode(decision), self._actions.mask
+        drawn = self._draw(seen, possible if self._policy.shape.masked else np.ones_like(possible))
+        if not possible[drawn]:
+            self.counters = {"impossible": self.counters["impossible"] + 1.0}
+            drawn = self._draw(seen, possible)
+        action = self._actions.action(drawn)
+        assert action is not None  # what is drawn can be done
+        self.note = NAMES[drawn]
+        return action
+
+    def _draw(self, seen: Planes, mask: NDArray[np.bool_]) -> int:
+        chance = torch.tensor([self._chance.random()], dtype=torch.float32)
+        return int(self._policy.draw(torch.from_numpy(seen)[None], torch.from_numpy(mask)[None], chance))

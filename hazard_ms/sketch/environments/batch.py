@@ -14,16 +14,16 @@ import numpy as np
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from hazard_ms.sketch.environments.choices import choices
 from hazard_ms.sketch.environments.rewarded import Rewarded
-from hazard_ms.sketch.rescues.features import SketchEncoder
 from hazard_ms.sketch.rescues.scene import SketchScene
 from hazard_ms.sketch.rescues.state import AS_MEASURED, Domain
 from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.sketch.world import Sketch
+from hazard_ms.skills.options.choices import OPTIONS
 from hazard_ms.skills.options.environment import SEEDS
-from hazard_ms.skills.options.options import COUNT
 from hazard_ms.skills.options.rewards import VALUE
-from hazard_ms.spec.checks import flag, whole
+from hazard_ms.spec.checks import whole
 
 MOST = 100_000  # rescues at once: any larger number must be a mistake [ours]
 
@@ -32,7 +32,7 @@ class SketchBatch(gym.vector.VectorEnv[NDArray[np.float32], NDArray[np.int64], N
     """N rescues at once, each in one of the `scenes`.
 
     Info holds for every rescue: "action_mask" [N, A]; "value" and "frame", [N], of its current episode. Where episodes
-    ended, "final_obs" [N, F] is what was seen last, and "final_info" holds "value", "frame" and "decisions", [N], of
+    ended, "final_obs" [N, ...] is what was seen last, and "final_info" holds "value", "frame" and "decisions", [N], of
     the episodes that ended; "_final_obs" and "_final_info", [N], say where that is.
     """
 
@@ -47,6 +47,8 @@ class SketchBatch(gym.vector.VectorEnv[NDArray[np.float32], NDArray[np.int64], N
         reward: str = VALUE,
         stop: bool = True,
         domain: Domain = AS_MEASURED,
+        actions: str = OPTIONS,
+        masked: bool = False,
     ) -> None:
         """Make N = `num_envs` rescues.
 
@@ -58,24 +60,22 @@ class SketchBatch(gym.vector.VectorEnv[NDArray[np.float32], NDArray[np.int64], N
             reward: "value" or "paper".
             stop: Whether the option `stop` may be chosen.
             domain: Spread of the worlds that episodes are drawn from.
+            actions: Meaning of an action: "options" or "paper".
+            masked: Whether masks forbid what cannot be done of the actions "paper"; options always have masks.
 
         Raises:
             ValueError: For unknown names and impossible numbers.
         """
         self.num_envs = whole(num_envs, 1, MOST, "num_envs")
-        self._count = len(scenes)
-        self._play = Rewarded(Sketch(scenes, times, num_envs, domain, flag(stop, "stop")), ranges, reward)
-        self.single_observation_space: gym.Space[Any] = self._play.encoder.layout.space()
-        self.single_action_space: gym.Space[Any] = gym.spaces.Discrete(COUNT)
+        self._count, self.actions = len(scenes), actions
+        made = choices(actions, scenes, ranges, times, num_envs, stop, masked, domain)
+        self._play = Rewarded(made, reward)
+        self.single_observation_space: gym.Space[Any] = made.space()
+        self.single_action_space: gym.Space[Any] = gym.spaces.Discrete(made.count)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._decisions = np.zeros(num_envs, np.int64)
         self._begun = False
-
-    @property
-    def encoder(self) -> SketchEncoder:
-        """The encoder that turns rescues into observations."""
-        return self._play.encoder
 
     @property
     def sketch(self) -> Sketch:
@@ -96,29 +96,29 @@ class SketchBatch(gym.vector.VectorEnv[NDArray[np.float32], NDArray[np.int64], N
         super().reset(seed=None if seed is None else whole(seed, 0, SEEDS, "seed"))
         self._begin(np.arange(self.num_envs))
         self._begun = True
-        return self._play.observe(), self._info()
+        return self._play.choices.observe(), self._info()
 
     def step(
         self, actions: Any
     ) -> tuple[NDArray[np.float32], NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Play one option of each rescue, [N]: see `Sketch.step`. Raises ValueError for anything else."""
+        """Take one choice of each rescue, [N]: see `Rewarded.step`. Raises ValueError for anything else."""
         if not self._begun:
             raise ValueError("episodes must have begun: call reset first")
-        rewards, terminated, truncated = self._play.step(actions)
+        rewards, terminated, truncated, _ = self._play.step(actions)
         self._decisions += 1
-        over, obs = terminated | truncated, self._play.observe()
+        over, obs = terminated | truncated, self._play.choices.observe()
         final: dict[str, Any] = {}
         rows = np.flatnonzero(over)
         if len(rows):
             ended = {**self._numbers(), "decisions": self._decisions.copy()}
             final = {"final_obs": obs, "final_info": ended, "_final_obs": over, "_final_info": over.copy()}
             self._begin(rows)
-            obs = self._play.observe()
+            obs = self._play.choices.observe()
         return obs, rewards, terminated, truncated, {**self._info(), **final}
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Masks of the options that can be chosen now, bool [N, A]."""
-        return self.sketch.mask.copy()
+        """Masks of what can be chosen now, bool [N, A]."""
+        return self._play.choices.mask.copy()
 
     def _begin(self, rows: NDArray[np.int64]) -> None:
         """Begin the next episodes at `rows` [R]."""

@@ -8,7 +8,8 @@ from hazard_ms.sketch.environments.batch import SketchBatch
 from hazard_ms.sketch.environments.settings import Settings
 from hazard_ms.sketch.environments.single import SketchSkills
 from hazard_ms.sketch.rescues.state import AS_MEASURED, Domain
-from hazard_ms.skills.options.environment import ACTIONS, HazardSkills
+from hazard_ms.skills.options.choices import ACTIONS, OPTIONS
+from hazard_ms.skills.options.environment import HazardSkills
 from hazard_ms.skills.options.rewards import VALUE
 from hazard_ms.spec.checks import one_of
 
@@ -17,16 +18,15 @@ BACKENDS = (SIMULATOR, SKETCH)
 
 
 def make(
-    *, task: str, backend: str = SIMULATOR, actions: str = ACTIONS[0], **settings: Any
+    *, task: str, backend: str = SIMULATOR, actions: str = OPTIONS, **settings: Any
 ) -> HazardSkills | SketchSkills:
     """The environment of skills of `task`, in the simulator or in the sketch, with `settings` as these take them.
 
     Raises ValueError for unknown names, and for settings that are not allowed.
     """
-    one_of(actions, ACTIONS, "actions")
     if one_of(backend, BACKENDS, "backend") == SIMULATOR:
         return HazardSkills(task=task, actions=actions, **settings)
-    return SketchSkills(task=task, **settings)
+    return SketchSkills(task=task, actions=actions, **settings)
 
 
 def make_vector(
@@ -34,9 +34,10 @@ def make_vector(
     task: str,
     num_envs: int = 1,
     backend: str = SIMULATOR,
-    actions: str = ACTIONS[0],
+    actions: str = OPTIONS,
     reward: str = VALUE,
     stop: bool = True,
+    masked: bool = False,
     domain: Domain = AS_MEASURED,
     **settings: Any,
 ) -> SketchBatch:
@@ -52,4 +53,4 @@ def make_vector(
             "give vectorization_mode='async' for simulators"
         )
     made = Settings.of(task, **settings)
-    return SketchBatch(made.scenes(), made.ranges, made.times, num_envs, reward, stop, domain)
+    return SketchBatch(made.scenes(), made.ranges, made.times, num_envs, reward, stop, domain, actions, masked)

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-import gymnasium as gym
-
 from hazard_ms.registry import TASKS
-from hazard_ms.sketch.rescues.features import SketchEncoder
 from hazard_ms.sketch.rescues.scene import SketchScene
-from hazard_ms.sketch.scenes import EYES, level_ranges, more_scenes, scenes_of
+from hazard_ms.sketch.scenes import EYES, MOST_SCENES, level_ranges, more_scenes, scenes_of
 from hazard_ms.sketch.skill_times import SkillTimes, shipped
 from hazard_ms.spec.checks import one_of, whole
 from hazard_ms.tasks import task_of
@@ -23,7 +20,7 @@ class Settings:
     """A task with some of its scenes. Scene k has the fate of seed k, as where the simulator plays a split."""
 
     task: str
-    names: tuple[str, ...]  # of its scenes; empty strings where they are generated
+    names: tuple[str, ...]  # of its scenes; their numbers where they are generated
     physics: str
     robot: str
     max_frames: int
@@ -63,9 +60,11 @@ class Settings:
             one_of(name, known.all_scenes, "scene")
         first = None
         if generated is not None:
+            if scenes is not None or not isinstance(generated, Sequence) or len(generated) != 2:
+                raise ValueError(f"generated must be (first, count), without scenes, got {generated!r}")
             first, count = generated
             more_scenes(task, physics, first, 0)  # refuses numbers of scenes that belong to a split
-            names = ("",) * whole(count, 1, LONGEST, "generated")
+            names = tuple(str(first + k) for k in range(whole(count, 1, MOST_SCENES, "the count of generated")))
         if not names:
             raise ValueError("scenes must be at least one, got none")
         frames = TASKS[task].frames(split) if max_frames is None else whole(max_frames, 1, LONGEST, "max_frames")
@@ -81,10 +80,6 @@ class Settings:
         """The skill times of the robot."""
         return shipped(self.robot)
 
-    def space(self) -> gym.spaces.Box:
-        """The space of observations."""
-        return SketchEncoder(self.ranges).layout.space()
-
     def number(self, name: str | None) -> int | None:
         """The number of the scene called `name`; None for None. Raises ValueError for others than its own scenes."""
         return None if name is None else self.names.index(one_of(name, self.names, "reset option 'scene'"))
@@ -93,7 +88,7 @@ class Settings:
         """The scene with this number, made when it is first asked for."""
         if number not in self._made:
             if self.first is not None:
-                (made,) = more_scenes(self.task, self.physics, self.first + number, 1, self.robot)
+                (made,) = more_scenes(self.task, self.physics, self.first + number, 1, self.robot, self.max_frames)
             else:
                 (made,) = scenes_of(
                     self.task, [self.names[number]], [number], self.physics, self.robot, self.max_frames

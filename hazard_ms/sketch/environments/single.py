@@ -8,12 +8,16 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.sketch.environments.choices import choices
 from hazard_ms.sketch.environments.rewarded import Rewarded
 from hazard_ms.sketch.environments.settings import Settings
 from hazard_ms.sketch.rescues.state import AS_MEASURED, Domain
-from hazard_ms.sketch.world import Sketch
-from hazard_ms.skills.options.environment import NOT_AVAILABLE, SEEDS
-from hazard_ms.skills.options.options import CART, COUNT, END, FIRST, KINDS, LANDMARK, TARGET
+from hazard_ms.skills.options.choices import ACTIONS, OPTIONS
+from hazard_ms.skills.options.environment import NOT_AVAILABLE, SEEDS, refuse_mask
+from hazard_ms.skills.options.features import Encoder
+from hazard_ms.skills.options.options import COUNT as OPTION_COUNT
+from hazard_ms.skills.options.paper_actions import COUNT as PAPER_COUNT
+from hazard_ms.skills.options.paper_map import MapLayout
 from hazard_ms.skills.options.rewards import REWARDS, VALUE
 from hazard_ms.spec.checks import flag, one_of, options, whole
 
@@ -33,8 +37,10 @@ class SketchSkills(gym.Env[NDArray[np.float32], np.int64]):
         self,
         *,
         task: str,
+        actions: str = OPTIONS,
         reward: str = VALUE,
         stop: bool = True,
+        masked: bool = False,
         domain: Domain = AS_MEASURED,
         render_mode: str | None = None,
         **settings: Any,
@@ -43,8 +49,10 @@ class SketchSkills(gym.Env[NDArray[np.float32], np.int64]):
 
         Args:
             task: Name of the task; gym.make fills it in.
+            actions: Meaning of an action: "options" or "paper".
             reward: "value" or "paper".
             stop: Whether the option `stop` may be chosen.
+            masked: Whether `action_masks` forbids what cannot be done of the actions "paper"; options always have it.
             domain: Spread of the worlds that episodes are drawn from.
             render_mode: None: the sketch has no pictures.
             **settings: Those of `Settings`: split, scenes, physics, robot_uids, max_frames.
@@ -56,9 +64,12 @@ class SketchSkills(gym.Env[NDArray[np.float32], np.int64]):
             raise ValueError(f"render_mode must be None with backend='sketch', got {render_mode!r}")
         self.render_mode = None
         self.settings = Settings.of(task, **settings)
-        self._reward, self._stop, self._domain = one_of(reward, REWARDS, "reward"), flag(stop, "stop"), domain
-        self.observation_space: gym.spaces.Box = self.settings.space()  # type: ignore[assignment]
-        self.action_space = gym.spaces.Discrete(COUNT)
+        self.actions, self._reward = one_of(actions, ACTIONS, "actions"), one_of(reward, REWARDS, "reward")
+        self._stop, self._masked, self._domain = flag(stop, "stop"), flag(masked, "masked"), domain
+        refuse_mask(masked, actions)
+        layout = Encoder(self.settings.ranges, 0.0) if actions == OPTIONS else MapLayout(self.settings.ranges)
+        self.observation_space: gym.spaces.Box = layout.space()  # type: ignore[assignment]
+        self.action_space = gym.spaces.Discrete(OPTION_COUNT if actions == OPTIONS else PAPER_COUNT)
         self._play: Rewarded | None = None
 
     def reset(
@@ -75,33 +86,39 @@ class SketchSkills(gym.Env[NDArray[np.float32], np.int64]):
         super().reset(seed=seed)
         drawn = int(self.np_random.integers(SEEDS)) if seed is None else seed
         scene = self.settings.scene(drawn % len(self.settings.names) if number is None else number)
-        sketch = Sketch([scene], self.settings.times, 1, self._domain, self._stop)
-        self._play = Rewarded(sketch, self.settings.ranges, self._reward)
+        made = choices(
+            self.actions,
+            [scene],
+            self.settings.ranges,
+            self.settings.times,
+            1,
+            self._stop,
+            self._masked,
+            self._domain,
+        )
+        self._play = Rewarded(made, self._reward)
         self._play.reset([0], [drawn])
-        return self._play.observe()[0], self._info(self._play, None, True, "", 0)
+        return made.observe()[0], self._info(self._play, "", True, "", 0)
 
     def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Play an option to its end.
 
         Raises ValueError for anything but the number of an option, and after the end of an episode.
         """
-        played, number = self._running(), whole(action, 0, COUNT - 1, "action")
-        state, allowed = played.sketch.state, bool(played.sketch.mask[0, number])
-        start, failures = int(state.frame[0]), int(state.failures.sum())
-        named = self._named(played, number)
-        rewards, terminated, truncated = played.step(np.array([number]))
-        looking = FIRST[LANDMARK] <= number < FIRST[END]
-        ok = allowed and (bool(state.looked[0]) if looking else int(state.failures.sum()) == failures)
-        reason = "" if ok else NOT_DONE if allowed else NOT_AVAILABLE
-        info = self._info(played, named, ok, reason, int(state.frame[0]) - start)
-        return played.observe()[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
+        played = self._running()
+        number = whole(action, 0, played.choices.count - 1, "action")
+        start, name = int(played.sketch.state.frame[0]), played.choices.name(0, number)
+        rewards, terminated, truncated, done = played.step(np.array([number]))
+        ok, frames = bool(done.ok[0]), int(played.sketch.state.frame[0]) - start
+        info = self._info(played, name, ok, "" if ok else NOT_DONE if done.allowed[0] else NOT_AVAILABLE, frames)
+        return played.choices.observe()[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Mask of the options that can be chosen now, bool [A], as sb3-contrib's MaskablePPO expects it.
 
         Raises ValueError before the first episode and after the end of an episode.
         """
-        return np.array(self._running().sketch.mask[0])
+        return np.array(self._running().choices.mask[0])
 
     def render(self) -> None:
         """Nothing: the sketch has no pictures."""
@@ -111,29 +128,21 @@ class SketchSkills(gym.Env[NDArray[np.float32], np.int64]):
             raise ValueError("the episode must have begun and not be over: call reset first")
         return self._play
 
-    def _named(self, played: Rewarded, number: int) -> str:
-        """The option with this number as text: the sketch numbers things where the simulator names them."""
-        kind = max((k for k in KINDS if FIRST[k] <= number), key=FIRST.__getitem__)
-        slot = number - FIRST[kind]
-        if kind not in (TARGET, CART, LANDMARK):
-            return kind
-        return f"{kind} {int(played.sketch.slots[0, slot]) if kind == LANDMARK else slot}"
-
-    def _info(self, played: Rewarded, option: str | None, ok: bool, reason: str, frames: int) -> dict[str, Any]:
+    def _info(self, played: Rewarded, option: str, ok: bool, reason: str, frames: int) -> dict[str, Any]:
         """Plain numbers and text about a step, with the keys that the simulator gives."""
         state = played.sketch.state
         there = played.sketch.stack.there[state.scene[0]]
         return {
             "value": float(state.score[0]),
             "frame": int(state.frame[0]),
-            "option": option or "",
+            "option": option,
             "ok": ok,
             "reason": reason,
             "frames": frames,
             "rescued": int(((state.rescued_at[0] >= 0) & there).sum()),
             "targets": int(there.sum()),
             "sim_error": False,
-            "action_mask": np.array(played.sketch.mask[0]),
+            "action_mask": np.array(played.choices.mask[0]),
         }
 
 

@@ -13,8 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.skills.options.landmarks import AROUND
 from hazard_ms.skills.options.options import CART_SLOTS, TARGET_SLOTS
 
+GOLDEN = np.pi * (3.0 - np.sqrt(5.0))  # turn from one spot around a landmark to the next, for even spacing [rad]
 SPOTS = 16  # places on the floor around a landmark, whose sight counts as the share explored there: bits of uint16
 # of a target: 1 if it can burn, 1 if water does not damage it, and the temperature at which it catches fire [C]
 TRAITS = ("flammable", "waterproof", "ignition")
@@ -128,6 +130,13 @@ class Stack:
         self.spots = _stacked([s.spots for s in scenes], 0)
         # all floor around each landmark that is ever seen, [W, L]: the rest counts for nothing
         self.all_spots = np.bitwise_or.reduce(self.spots, axis=1)
+
+
+def spot_offsets() -> Floats:
+    """Offsets of the SPOTS from their landmark [m], [SPOTS, 2]."""
+    number = np.arange(SPOTS)
+    out = AROUND * np.sqrt((number + 0.5) / SPOTS)
+    return np.stack([np.cos(GOLDEN * number), np.sin(GOLDEN * number)], axis=-1) * out[:, None]
 
 
 def _stacked(arrays: list[NDArray], fill: float) -> NDArray:

@@ -1,7 +1,8 @@
 """Skills as a plain gymnasium environment: gym.make("hazard_ms:HazardFireSkills-v1").
 
 An action is the number of an option (`hazard_ms.skills.options.options`), which runs to its end. An observation is a
-vector of features (`hazard_ms.skills.options.features`). Rewards are those of `hazard_ms.skills.options.rewards`.
+vector of features (`hazard_ms.skills.options.features`). With actions="paper" these are one of six actions and a map
+(`hazard_ms.skills.options.paper_actions`, `.paper_map`). Rewards are those of `hazard_ms.skills.options.rewards`.
 """
 
 from __future__ import annotations
@@ -16,17 +17,18 @@ from hazard_ms.env import inputs
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Decision, Result
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.options.choices import ACTIONS, OPTIONS, Choices, OptionChoices, PaperChoices
 from hazard_ms.skills.options.features import Encoder
-from hazard_ms.skills.options.macros import play
-from hazard_ms.skills.options.options import COUNT, Menu, Option, Options
+from hazard_ms.skills.options.macros import Macro
+from hazard_ms.skills.options.options import Menu
+from hazard_ms.skills.options.paper_map import MapLayout
 from hazard_ms.skills.options.rewards import PAPER, REWARDS, VALUE, paper, potential
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
 from hazard_ms.spec.checks import flag, one_of, whole
 
-ACTIONS = ("options",)
 FIXED = ("obs_mode", "reward_mode", "num_envs", "control_mode")  # keywords that skills decide
 IDLE = 10  # frames taken by an option that would take none, so that every episode ends [ours]
-NOT_AVAILABLE = "not_available"  # reason for the failure of an option that the mask forbids
+NOT_AVAILABLE = "not_available"  # reason for the failure of an option that cannot be taken
 SEEDS = 2**31  # seeds of unseeded episodes are drawn from 0 to this number
 
 
@@ -42,9 +44,10 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         self,
         *,
         task: str,
-        actions: str = "options",
+        actions: str = OPTIONS,
         reward: str = VALUE,
         stop: bool = True,
+        masked: bool = False,
         max_frames: int | None = None,
         render_mode: str | None = None,
         **settings: Any,
@@ -53,10 +56,11 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
 
         Args:
             task: Name of the task; gym.make fills it in.
-            actions: Meaning of an action: "options".
+            actions: Meaning of an action: "options" or "paper".
             reward: "value" or "paper".
             stop: Whether the option `stop` may be chosen. Without it, an untrained policy cannot end its episodes at
                 once.
+            masked: Whether `action_masks` forbids what cannot be done of the actions "paper"; options always have it.
             max_frames: Greatest length of an episode [frames]; None takes that of the task.
             render_mode: None, or "rgb_array" for pictures of the scene.
             **settings: Keywords of the task's own environment (split, scenes, physics, robot_uids, ...).
@@ -66,7 +70,8 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         """
         self.actions = one_of(actions, ACTIONS, "actions")
         self._reward = one_of(reward, REWARDS, "reward")
-        self._stop = flag(stop, "stop")
+        flag(stop, "stop")
+        refuse_mask(flag(masked, "masked"), actions)
         if render_mode is not None:
             one_of(render_mode, self.metadata["render_modes"], "render_mode")
         self.render_mode = render_mode
@@ -80,9 +85,12 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         base = self.skills.base
         ranges = [(hazard.level.low, hazard.level.high) for hazard in base.task.hazards]
         self.encoder = Encoder(ranges, base.agent.build.radius)
-        self.observation_space: gym.spaces.Box = self.encoder.space()  # type: ignore[assignment]
-        self.action_space = gym.spaces.Discrete(COUNT)
-        self._menu: Menu | None = None
+        options = OptionChoices(self.encoder, stop)
+        self._choices: Choices = options if actions == OPTIONS else PaperChoices(MapLayout(ranges), masked)
+        self._options = options if actions == OPTIONS else None
+        self.observation_space: gym.spaces.Box = self._choices.space()  # type: ignore[assignment]
+        self.action_space = gym.spaces.Discrete(self._choices.count)
+        self._running = False
 
     # ------------------------------------------------------------------ gymnasium
 
@@ -100,31 +108,31 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         super().reset(seed=seed)
         drawn = int(self.np_random.integers(SEEDS)) if seed is None else seed
         self._decision, _ = self.skills.reset(seed=drawn, options=options)
-        self._options = Options(self._stop)
+        self._choices.begin(drawn)
         self._value, self._potential = self._rescued_value(), self._now()
-        return self._observe(), self._info(None, Result(True), 0)
+        self._running = True
+        return self._choices.see(self._decision), self._info("", Result(True), 0)
 
     def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Play an option to its end.
 
         Raises ValueError for anything but the number of an option, and after the end of an episode.
         """
-        if self._menu is None:
+        if not self._running:
             raise ValueError("the episode must have begun and not be over: call reset first")
-        number = whole(action, 0, COUNT - 1, "action")
-        option, start = self._menu.option(number), self.skills.frame
-        result, terminated, allowed = Result(False, NOT_AVAILABLE), False, bool(self._menu.mask[number])
-        if option is not None and allowed:
-            result, terminated = self._play(option)
-            self._options.note(option, result.ok)
+        number = whole(action, 0, self._choices.count - 1, "action")
+        name, start = self._choices.name(number), self.skills.frame
+        result, terminated, macro = Result(False, NOT_AVAILABLE), False, self._choices.macro(number, self._decision)
+        if macro is not None:
+            result, terminated = self._play(macro)
+            self._choices.note(number, result.ok)
         if self.skills.frame == start and not terminated:
             self.skills.run(_stand(self.skills.stage))
             self._decision = self.skills.decision()
         truncated = self.skills.frame >= self.skills.max_frames or bool(self.skills.base.episode.sim_error[0])
-        reward, obs = self._rewarded(allowed), self._observe()
-        info = self._info(option, result, self.skills.frame - start)
-        if terminated or truncated:
-            self._menu = None
+        reward, obs = self._rewarded(macro is not None), self._choices.see(self._decision)
+        info = self._info(name, result, self.skills.frame - start)
+        self._running = not (terminated or truncated)
         return obs, reward, terminated, truncated and not terminated, info
 
     def action_masks(self) -> NDArray[np.bool_]:
@@ -132,9 +140,9 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
 
         Raises ValueError before the first episode and after the end of an episode.
         """
-        if self._menu is None:
+        if not self._running:
             raise ValueError("the episode must have begun and not be over: call reset first")
-        return self._menu.mask.copy()
+        return self._choices.mask.copy()
 
     def render(self) -> NDArray[np.uint8] | None:
         """A picture of the scene, [H, W, 3]; None without a render mode."""
@@ -156,12 +164,11 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
 
     @property
     def menu(self) -> Menu | None:
-        """The current meaning of the options' numbers; None when the episode is over."""
-        return self._menu
+        """The current meaning of the options' numbers; None when the episode is over, and for the six actions."""
+        return self._options.menu if self._running and self._options is not None else None
 
-    def _play(self, option: Option) -> tuple[Result, bool]:
-        """Play `option` to its end or to that of the episode; return its outcome and whether the episode terminated."""
-        macro = play(option, self._decision)
+    def _play(self, macro: Macro) -> tuple[Result, bool]:
+        """Play `macro` to its end or to that of the episode; return its outcome and whether the episode terminated."""
         action = next(macro)
         while True:
             self._decision, _, terminated, truncated, info = self.skills.step(action)
@@ -174,25 +181,20 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
                 macro.close()
                 return Result(terminated, "" if terminated else result.reason), terminated
 
-    def _observe(self) -> NDArray[np.float32]:
-        self._menu = self._options.menu(self._decision)
-        return self.encoder.encode(self._decision, self._menu)
-
-    def _info(self, option: Option | None, result: Result, frames: int) -> dict[str, Any]:
+    def _info(self, option: str, result: Result, frames: int) -> dict[str, Any]:
         """Plain numbers and text about a step."""
         world = self.skills.base.world
-        assert self._menu is not None
         return {
             "value": self._value,
             "frame": self.skills.frame,
-            "option": "" if option is None else str(option),
+            "option": option,
             "ok": result.ok,
             "reason": result.reason,
             "frames": frames,
             "rescued": int((world.safe & world.target).sum()),
             "targets": int(world.target.sum()),
             "sim_error": bool(self.skills.base.episode.sim_error[0]),
-            "action_mask": self._menu.mask.copy(),
+            "action_mask": self._choices.mask.copy(),
         }
 
     def _rewarded(self, allowed: bool) -> float:
@@ -219,6 +221,12 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         worth = world.value[0].double() * saved.double()
         worth[rescue.damaged[0]] *= DAMAGED_SHARE
         return float(worth.sum()) / max(float((world.value[0] * world.target[0]).double().sum()), 1.0)
+
+
+def refuse_mask(masked: bool, actions: str) -> None:
+    """Raises ValueError if `masked` is set for options, whose masks are always there."""
+    if masked and actions == OPTIONS:
+        raise ValueError("masked must be False with actions='options', which always have masks, got True")
 
 
 def _stand(stage: Stage) -> Skill:

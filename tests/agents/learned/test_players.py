@@ -10,7 +10,7 @@ from hazard_ms.agents.base import Agent, agent
 from hazard_ms.agents.learned import players
 from hazard_ms.skills.decision import DROP, Action
 from tests.worlds.playground import Playground, brief
-from tests.worlds.policies import ship, stored
+from tests.worlds.policies import ship, stored, stored_map
 
 PLACES = {"mug": (2.0, 0.0), "book": (0.0, 1.5), "shelf": (2.5, 1.0), "hidden": (4.5, 2.0)}
 
@@ -55,7 +55,28 @@ def test_what_is_in_the_hand_goes_into_the_bag(tmp_path: Path) -> None:
     assert player.act(ground.decision()) == Action(DROP) and player.note == "into the bag"
 
 
-@pytest.mark.parametrize(("name", "command"), [("bc", "train bc"), ("rl", "train ppo")])
+def test_by_the_six_actions_it_rescues_what_it_knows_sooner_or_later(tmp_path: Path) -> None:
+    """Untrained, that is by chance; it is the same chance in every episode of a seed."""
+    from tests.worlds.playground import play
+
+    made = []
+    for _ in range(2):
+        ground = Playground(dict(PLACES), {"mug": 5.0, "book": 1.0})
+        ground.look()
+        player = agent(f"rl_paper:weights={stored_map(tmp_path / 'map.safetensors')}")
+        made.append(play(player, ground, seed=3))
+        assert ground.rescued == {"mug", "book"} and player.counters["impossible"] > 5
+        assert player.note in ("to_target", "pick_up", "drop", "explore", "wander")
+    assert made[0] == made[1]
+    masked = agent(f"rl_paper:weights={stored_map(tmp_path / 'map.safetensors', masked=True)}")
+    play(masked, Playground(dict(PLACES), {"mug": 5.0}), seed=3)
+    assert masked.counters == {"impossible": 0.0}
+
+
+COMMANDS = [("bc", "train bc"), ("rl", "train ppo"), ("rl_paper", "train ppo --actions paper")]
+
+
+@pytest.mark.parametrize(("name", "command"), COMMANDS)
 def test_without_weights_it_says_how_to_make_them(
     name: str, command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -67,7 +88,7 @@ def test_without_weights_it_says_how_to_make_them(
         agent(name).reset(brief())
 
 
-@pytest.mark.parametrize("name", ["bc", "rl"])
+@pytest.mark.parametrize("name", ["bc", "rl", "rl_paper"])
 def test_weights_of_the_package_are_found_by_task(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(players, "SHIPPED", ship(tmp_path))
     ground = Playground(dict(PLACES), {"mug": 5.0})

@@ -9,6 +9,7 @@ import pytest
 
 from hazard_ms.sketch.environments.batch import SketchBatch
 from hazard_ms.sketch.rescues.state import TRAINING
+from hazard_ms.skills.options.features import Encoder
 from hazard_ms.skills.options.options import CART, COUNT, END, FIRST, GIVE_UP, LANDMARK, LOOK
 from tests.worlds.sketch_scenes import chancy_times, random_scene
 
@@ -49,7 +50,7 @@ def test_an_episode_is_followed_by_the_next_in_the_same_step() -> None:
             assert info["final_info"]["value"][n] == pytest.approx(sums[n]) and info["_final_info"][n]
             assert info["value"][n] == 0.0 == info["frame"][n] < info["final_info"]["frame"][n]
             assert info["final_info"]["decisions"][n] >= 1
-            elapsed, remaining = made.encoder.layout.split(info["final_obs"][n])["global"][0, :2]
+            elapsed, remaining = Encoder(FIRE, 0.0).split(info["final_obs"][n])["global"][0, :2]
             frame = info["final_info"]["frame"][n]
             assert elapsed == pytest.approx(frame / (frame + 1500.0 * remaining), abs=1e-5) and (elapsed > 0) == (
                 frame > 0

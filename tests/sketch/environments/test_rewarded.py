@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from hazard_ms.sketch.environments.choices import OptionChoices
 from hazard_ms.sketch.environments.rewarded import Rewarded
 from hazard_ms.sketch.rescues.scene import SketchScene
 from hazard_ms.sketch.rescues.state import TRAINING
@@ -18,7 +19,7 @@ EACH = round(62 * 1.5 + 3) + PICK_FRAMES + BAG_FRAMES  # frames of a rescue 2 m 
 
 def played(made: SketchScene, reward: str) -> Rewarded:
     """One rescue in a scene, just begun."""
-    play = Rewarded(Sketch([made], sure_times(), 1), FIRE, reward)
+    play = Rewarded(OptionChoices(Sketch([made], sure_times(), 1), FIRE), reward)
     play.reset([0], [0])
     return play
 
@@ -26,7 +27,7 @@ def played(made: SketchScene, reward: str) -> Rewarded:
 def test_the_only_target_two_metres_away() -> None:
     """(20 - 0) - (0 - 20) - 0.1, as in the paper's code."""
     made = scene([(0.0, 0.0), (2.0, 0.0)], [1])
-    rewards, terminated, truncated = played(made, "paper").step([0])
+    rewards, terminated, truncated, _ = played(made, "paper").step([0])
     assert rewards.tolist() == pytest.approx([39.9]) and terminated.all() and not truncated.any()
     assert played(made, "value").step([0])[0].tolist() == [1.0]
 
@@ -46,7 +47,7 @@ def test_a_cart_is_what_counts_with_full_hands() -> None:
     taken = float(play.step([0])[0][0])
     to_cart = float(np.hypot(*(play.sketch.state.place[0] - (2.0, 3.0))))
     assert taken == pytest.approx(-10.0 * (to_cart - 2.0) - 0.1) and 2.5 < to_cart < 3.5
-    brought, terminated, _ = play.step([FIRST[CART]])
+    brought, terminated, *_ = play.step([FIRST[CART]])
     assert brought.tolist() == pytest.approx([20.0 + 10.0 * to_cart - 0.1]) and terminated.all()
 
 
@@ -59,9 +60,9 @@ def test_what_cannot_be_chosen_is_punished() -> None:
 
 def test_stopping_terminates_and_the_end_of_time_truncates() -> None:
     made = scene([(0.0, 0.0), (2.0, 0.0)], [1], max_frames=EACH - 1)
-    _, terminated, truncated = played(made, "value").step([FIRST[END]])
+    _, terminated, truncated, _ = played(made, "value").step([FIRST[END]])
     assert (terminated.tolist(), truncated.tolist()) == ([True], [False])
-    rewards, terminated, truncated = played(made, "value").step([0])
+    rewards, terminated, truncated, _ = played(made, "value").step([0])
     assert (rewards.tolist(), terminated.tolist(), truncated.tolist()) == ([0.0], [False], [True])
 
 
@@ -69,7 +70,7 @@ def test_stopping_terminates_and_the_end_of_time_truncates() -> None:
 def test_the_rewards_of_episodes_add_up_to_their_value(carts: int) -> None:
     """Worked out from what was rescued when; with changed values, and with things that drift to safety."""
     scenes = [random_scene(seed, carts=carts, moving=True) for seed in range(6)]
-    play = Rewarded(Sketch(scenes, chancy_times(), 48, TRAINING, stop=False), FIRE)
+    play = Rewarded(OptionChoices(Sketch(scenes, chancy_times(), 48, TRAINING, stop=False), FIRE))
     seeds, chance, total = np.arange(48), np.random.default_rng(0), np.zeros(48)
     play.reset(seeds % 6, seeds)
     state = play.sketch.state

@@ -104,6 +104,9 @@ def test_spaces_are_those_of_the_simulator(task: str) -> None:
         ({"stop": 1}, "stop"),
         ({"render_mode": "rgb_array"}, "render_mode must be None"),
         ({"generated": (3, 2)}, "first must be"),
+        ({"generated": 25}, r"generated must be \(first, count\)"),
+        ({"generated": (25, 10**9)}, "the count of generated must be"),
+        ({"generated": (25, 2), "scenes": TWO}, "without scenes"),
     ],
 )
 def test_wrong_keywords_are_refused_at_once(wrong: dict[str, Any], said: str) -> None:
@@ -114,6 +117,15 @@ def test_wrong_keywords_are_refused_at_once(wrong: dict[str, Any], said: str) ->
 def test_scenes_have_the_length_of_their_split() -> None:
     assert [Settings.of("HazardFire-v1", split=split).max_frames for split in ("train", "hard")] == [1500, 900]
     assert Settings.of("HazardFire-v1", max_frames=70).max_frames == 70
+    assert Settings.of("HazardFire-v1", generated=(25, 1)).scene(0).max_frames == 1500
+    assert Settings.of("HazardFire-v1", generated=(25, 1), max_frames=70).scene(0).max_frames == 70
+
+
+def test_generated_scenes_are_asked_for_by_number() -> None:
+    made = Settings.of("HazardFire-v1", generated=(25, 2))
+    assert [made.number(name) for name in ("25", "26", None)] == [0, 1, None]
+    with pytest.raises(ValueError, match="reset option 'scene' must be one of 25, 26, got '27'"):
+        made.number("27")
 
 
 def test_many_at_once_are_made_by_the_same_id() -> None:

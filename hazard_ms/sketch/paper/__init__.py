@@ -1,0 +1,1 @@
+"""The six actions of the original's learner, and its map, in the sketch."""

@@ -84,6 +84,8 @@ class BuiltEnv(BaseEnv):
         self.episode.begin(env_idx, seeds[env_idx])
         starts = [self.specs[e].agent_start for e in env_idx.tolist()]
         self.agent.place(env_idx, torch.tensor([s.position for s in starts]), torch.tensor([s.heading for s in starts]))
+        if self.task.arrange is not None:
+            self.task.arrange(self.situation, env_idx)
         self.episode.see(self.agent)
         self.episode.begin_hazards(env_idx)
 

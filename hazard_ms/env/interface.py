@@ -101,7 +101,9 @@ def reward(env: HazardEnv) -> Iterator[Row]:
         if mode == "normalized_dense":
             more = f", {env.task.goal.largest:g}"
         chosen = " (in use)" if mode == env.reward_mode else ""
-        yield Row(f"{mode}{chosen}", (), "float32", "", "", 0.0, 0.0 if mode == "none" else INF, text + more)
+        low = {"dense": env.task.goal.least, "normalized_dense": env.task.goal.least / env.task.goal.largest}
+        high = 0.0 if mode == "none" else INF
+        yield Row(f"{mode}{chosen}", (), "float32", "", "", low.get(mode, 0.0), high, text + more)
 
 
 def info(env: HazardEnv) -> Iterator[Row]:

@@ -101,6 +101,9 @@ class PlanarRobot(Robot):
         qpos = self.robot.get_qpos()
         return torch.cat([qpos[:, :2], torch.zeros_like(qpos[:, :1])], dim=-1), qpos[:, 2].clone()
 
+    def base_velocity(self) -> Tensor:
+        return self.robot.get_qvel()[:, :2]
+
     def bag_position(self) -> Tensor:
         position, heading = self.base_pose()
         return position + turned(position.new_tensor(self.bag).expand_as(position), heading)

@@ -44,6 +44,10 @@ class Robot(abc.ABC):
         """Middle of the base on the floor [m], world frame, [E, 3]; its heading, anticlockwise from +x [rad], [E]."""
 
     @abc.abstractmethod
+    def base_velocity(self) -> Tensor:
+        """Velocity of the base over the floor [m/s], world frame, [E, 2]."""
+
+    @abc.abstractmethod
     def gripper_pose(self) -> tuple[Tensor, Tensor]:
         """Middle between the fingers [m], world frame, [E, 3], and the hand's rotation (w, x, y, z), [E, 4]."""
 

@@ -53,6 +53,7 @@ class Goal:
     dense: Callable[[Any], Any]  # reward of a frame, with hints on the way
     sparse: Callable[[Any], Any]  # reward of a frame, for what counts alone
     largest: float  # dense reward of one frame, by which the normalised one is divided
+    least: float = 0.0  # dense reward of one frame
     fail: Callable[[Any], Any] | None = None  # bool: the episode ends, it can no longer be achieved; None: never
     info: tuple[Term, ...] = ()  # further entries of `info`
     done: str = "done"  # why an episode ended that succeeded, in words: "all rescued"
@@ -72,6 +73,8 @@ class Task:
     splits: tuple[str, ...] = ("train", "test")
     name: str = ""  # "HazardFire-v1"; filled in by the registry, as is the next
     max_frames: int = 1500
+    # (Situation, environments that begin, [R]) -> None: puts robots elsewhere than their scenes say; None: it does not
+    arrange: Callable[[Any, Any], None] | None = None
 
     @property
     def all_scenes(self) -> tuple[str, ...]:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import torch
 
+from hazard_ms.agents.learned.map_policy import MapPolicy, MapShape
 from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
 from hazard_ms.agents.learned.weights import ENDING, contents
 
@@ -24,9 +26,21 @@ def stored(path: Path, task: str = "HazardFire-v1") -> Path:
     return path
 
 
+def stored_map(path: Path, task: str = "HazardFire-v1", **more: Any) -> Path:
+    """The file `path`, which holds an untrained policy over the six actions for `task` now, of a shape with `more`."""
+    torch.manual_seed(0)
+    shape = MapShape(TEMPERATURE * RANGES[task], **{"share": 0.125, **more})
+    packed, told = contents(MapPolicy(shape), task, {})
+    path.parent.mkdir(exist_ok=True, parents=True)
+    path.write_bytes(packed)
+    path.with_suffix(".json").write_text(told)
+    return path
+
+
 def ship(folder: Path) -> Path:
     """A folder with untrained policies of all learned agents, as the package has one."""
     for task in RANGES:
         for name in ("bc", "rl"):
             stored(folder / f"{name}_{task}{ENDING}", task)
+        stored_map(folder / f"rl_paper_{task}{ENDING}", task)
     return folder

@@ -1,0 +1,120 @@
+"""Practice of single motions: rooms without a hazard, in which a robot learns to walk to a thing, or to pick one up.
+
+Not part of the benchmark: the tasks are registered when this module is imported, as by
+`gym.make("hazard_ms.tasks.practice:HazardPickUp-v1")`.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from hazard_ms.episode.safe_places import BAG
+from hazard_ms.episode.situation import Situation
+from hazard_ms.hazards.presets import PRESETS
+from hazard_ms.registry import register_task
+from hazard_ms.spec import AgentStart, Body, Fixture, Goal, Room, SceneSpec, Task
+from hazard_ms.spec.checks import one_of
+from hazard_ms.tasks import practice_rewards as rewards
+from hazard_ms.tasks.practice_terms import PICK_UP_TERMS, WALK_TO_TERMS
+
+ROOM = (7.0, 6.0)  # of a practice room [m] [ours]
+COLUMNS, ROWS = (1.3, 3.5, 5.7), (1.5, 4.5)  # about where its six stands are, along x and y [m]: no arm reaches two
+SHIFT = 0.2  # most that a stand is off there [m]
+STAND_WIDTH, STAND_HEIGHT = (0.25, 0.4), (0.2, 0.85)  # least and most [m]; tables and low shelves are as high
+ON_FLOOR = 1 / 6  # chance that a thing lies on the floor instead, where it is hard to reach
+WIDTH, HEIGHT, MASS = (0.04, 0.12), (0.05, 0.25), 0.3  # of things, least and most [m]; [kg]
+SCENES = {"train": range(100), "test": range(100, 125)}  # numbers of rooms
+NEAR, FAR = 0.6, 0.85  # distance at which walks to a thing end, and pick-ups begin [m] (skills/motor/walking.py)
+ASKEW = 0.3  # most that the robot looks past a thing when a pick-up begins [rad]
+DISTANT = 2.0  # least distance at which a walk begins [m]
+BERTH = 0.15  # clearance at the start of a walk, beside the robot's own radius [m]
+DRAWS = 64  # places of which the first clear one is taken
+
+
+def scene(number: str, walking: bool) -> SceneSpec:
+    """The practice room "practice/NUMBER": six stands with a thing on each, or on one of them if it is for walking.
+
+    Raises ValueError for another name.
+    """
+    one_of(number, [name for split in SCENES for name in names(split)], "scene")
+    chance = np.random.default_rng(int(number.rpartition("/")[2]))
+    fixtures, bodies = list[Fixture](), list[Body]()
+    goal = int(chance.integers(len(COLUMNS) * len(ROWS)))
+    for i, (x, y) in enumerate((x, y) for x in COLUMNS for y in ROWS):
+        at = (x + chance.uniform(-SHIFT, SHIFT), y + chance.uniform(-SHIFT, SHIFT))
+        top, wide = float(chance.uniform(*STAND_HEIGHT)), float(chance.uniform(*STAND_WIDTH))
+        size = (*chance.uniform(*WIDTH, size=2).tolist(), float(chance.uniform(*HEIGHT)))
+        if chance.random() < ON_FLOOR and not walking:
+            top = 0.0
+        else:
+            fixtures.append(Fixture(f"stand_{i}", "table", "plain_box", (*at, 0.0), scale=(wide, wide, top)))
+        if i == goal or not walking:
+            bodies.append(Body(f"box_{i}", "box", "plain_box", (*at, top), scale=size, mass=MASS))
+    return SceneSpec(number, Room(ROOM), tuple(fixtures), tuple(bodies), ("box",), (), AgentStart((2.4, 3.0)))
+
+
+def names(split: str) -> tuple[str, ...]:
+    """Names of the rooms of a split."""
+    return tuple(f"practice/{number}" for number in SCENES[split])
+
+
+def stand_near(situation: Situation, rows: Tensor) -> None:
+    """Put the robots of the environments `rows`, [R], where a walk to one of the targets ends, roughly facing it."""
+    world = situation.world
+    draw = world.chance.uniform("practice start", 4)
+    every = world.target.float().cumsum(dim=1)  # numbers of the targets from 1
+    chosen = 1.0 + (draw[:, 0] * every[:, -1]).floor()
+    thing = (every >= chosen[:, None]).int().argmax(dim=1)
+    at = world.position[torch.arange(world.num_envs, device=world.device), thing, :2]
+    angle, distance = 2.0 * math.pi * draw[:, 1], NEAR + (FAR - NEAR) * draw[:, 2]
+    place = at - distance[:, None] * torch.stack([angle.cos(), angle.sin()], dim=-1)
+    heading = angle + ASKEW * (2.0 * draw[:, 3] - 1.0)
+    situation.agent.place(rows, place[rows], heading[rows])
+
+
+def stand_far(situation: Situation, rows: Tensor) -> None:
+    """Put the robots of the environments `rows`, [R], anywhere clear that is not close to a target."""
+    world = situation.world
+    draw = world.chance.uniform("practice start", DRAWS, 3)
+    margin = world.robot.radius + BERTH
+    points = margin + draw[..., :2] * (world.room[:, None] - 2.0 * margin)  # [E, DRAWS, 2]
+    gaps = rewards.gaps(situation, points)
+    away = torch.where(world.target[:, None], rewards.apart(situation, points), torch.inf).amin(dim=-1)
+    clear = (torch.where(world.exists[:, None], gaps, torch.inf).amin(dim=-1) > margin) & (away > DISTANT)
+    first = clear.int().argmax(dim=1)
+    e = torch.arange(world.num_envs, device=world.device)
+    situation.agent.place(rows, points[e, first][rows], (2.0 * math.pi * draw[e, first, 2])[rows])
+
+
+def practice(goal: Goal, walking: bool, physics: str) -> Task:
+    """A task of practice with the rates of the preset `physics`. Raises ValueError for an unknown preset."""
+    one_of(physics, PRESETS, "physics")
+    return Task(
+        scenes=names,
+        build=partial(scene, walking=walking),
+        hazards=(),
+        goal=goal,
+        safe_place=BAG,
+        observations=WALK_TO_TERMS if walking else PICK_UP_TERMS,
+        arrange=stand_far if walking else stand_near,
+        text="Walk to the thing and face it." if walking else "Take the thing before you into your hand.",
+    )
+
+
+def walk_to(physics: str = "paper") -> Task:
+    """The task HazardWalkTo-v1. Raises ValueError for an unknown preset."""
+    return practice(rewards.WALK_TO, True, physics)
+
+
+def pick_up(physics: str = "paper") -> Task:
+    """The task HazardPickUp-v1. Raises ValueError for an unknown preset."""
+    return practice(rewards.PICK_UP, False, physics)
+
+
+register_task("HazardWalkTo-v1", walk_to, rewards.WALK_FRAMES)
+register_task("HazardPickUp-v1", pick_up, rewards.PICK_UP_FRAMES)

@@ -84,7 +84,7 @@ class Learner:
         Raises:
             ValueError: For an unknown reward, and for no scenes.
         """
-        self._validation, self._times, self.settings = validation, times, settings
+        self._validation, self._times, self.settings, self._seed = validation, times, settings, seed
         self._share = 0.0  # of the training that is over
         self.curve: list[Check] = []
         shape = start.shape if start is not None else shape or shape_for(settings.actions, ranges)
@@ -165,6 +165,7 @@ class Learner:
             self.best.load_state_dict(state["best"])
             self.model.num_timesteps = int(state["decisions"])
             self.curve = [Check(**check) for check in state["curve"]]
+            self.model.set_random_seed(self._seed + self.model.num_timesteps)  # or the first episodes come again
         except Exception as error:  # torch raises errors of many kinds for a damaged file
             raise ValueError(f"the state of a training must be one that was saved, got {error}") from None
 
@@ -197,15 +198,19 @@ class _Watch(BaseCallback):
         self._values += [info["value"] for info in infos if "value" in info]
         return self._seconds() < self._most and not self._learner.stuck()
 
-    def _on_rollout_end(self) -> None:
-        if self._rollouts % self._learner.settings.check == 0:
+    def _on_rollout_start(self) -> None:
+        if self._rollouts % self._learner.settings.check == 0:  # before it plays on: what was played has been learnt
             self.check()
         self._rollouts += 1
+
+    def _on_rollout_end(self) -> None:
         share = self._learner.model.num_timesteps / self._decisions
         self._learner.progress(max(share, self._seconds() / self._most))
 
     def check(self) -> None:
-        """Score the policy, and tell it."""
+        """Score the policy, and tell it, unless it is as it was at the last check."""
+        if self._learner.curve and self._learner.curve[-1].decisions == self._learner.model.num_timesteps:
+            return
         made = self._learner.check(self._seconds(), self._values)
         self._values = []
         self._told(made)

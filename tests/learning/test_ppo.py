@@ -80,6 +80,29 @@ def test_an_interrupted_training_goes_on_as_it_was() -> None:
         second.resume(b"nothing")
 
 
+def test_an_interrupted_training_does_not_play_its_first_episodes_again() -> None:
+    first = learner()
+    first.train(32, 60.0, lambda _: None)
+    begun = [np.asarray(each.model.env.reset()) for each in (learner(), learner())]  # type: ignore[union-attr]
+    assert (begun[0] == begun[1]).all()
+    second = learner()
+    second.resume(first.saved())
+    assert (np.asarray(second.model.env.reset()) != begun[0]).any()  # type: ignore[union-attr]
+
+
+def test_what_is_saved_has_learnt_from_all_that_it_counts() -> None:
+    """The state at each check is that after the update on the decisions before it, and the first of nothing."""
+    made, steps = learner(), list[tuple[int, int]]()
+
+    def told(check: Check) -> None:
+        state = made.model.policy.optimizer.state_dict()["state"]
+        steps.append((check.decisions, int(state[0]["step"]) if state else 0))
+
+    made.train(96, 60.0, told)
+    updates = OURS.epochs * 32 // 16  # of a rollout: 32 decisions in batches of 16
+    assert steps == [(32 * k, updates * k) for k in range(4)]
+
+
 def test_training_ends_when_its_time_is_over_and_slows_down_until_then(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a clock that goes on by a second whenever it is read."""
     made, rates, clock = learner(), list[float](), itertools.count()

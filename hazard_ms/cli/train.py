@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -136,11 +137,9 @@ def ppo(
     ranges = level_ranges(env_id, physics)
     shape = shape_for(actions, ranges, **({"share": share, "masked": masked} if six else {}))
     begun = None if start is None else (load_map if six else load)(start, env_id)
-    command = (
-        f"hazard-ms train ppo -e {env_id} --seed {seed} --scenes {scenes} --reward {reward} --physics {physics}"
-        f"{f' --actions {actions} --share {share:g}' if six else ''}{' --masked' if masked else ''}"
-        f"{'' if start is None else f' --start {start}'}"
-    )
+    words = f"hazard-ms train ppo -e {env_id} --seed {seed} --scenes {scenes} --reward {reward} --physics {physics}"
+    words += f"{f' --actions {actions} --share {share:g}' if six else ''}{' --masked' if masked else ''}"
+    command = words if start is None else f"{words} --start {shlex.quote(str(start.resolve()))}"
     make_folder(output)
     name = "rl_paper" if six else "rl"
     facts = {"command": command, "version": __version__, "physics": physics, "validation": VALIDATION}

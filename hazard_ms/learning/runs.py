@@ -27,7 +27,7 @@ class Run:
     def __init__(self, path: Path, task: str, facts: Mapping[str, Any]) -> None:
         """Keep files beside `path`, NAME.safetensors; `facts`, plain data, say how the policy of `task` comes about.
 
-        Their `command` is that which resumes it.
+        Their `command` is that which resumes it, without its folder and without the numbers after which it ends.
         """
         self.path, self._task, self._facts = path, task, dict(facts)
 

@@ -1,4 +1,4 @@
-"""How many processes at once are worth starting."""
+"""The number of processor cores that a process may use."""
 
 from __future__ import annotations
 

@@ -151,6 +151,5 @@ class SetPolicy(nn.Module):
         columns: Sequence[str] = [column.name for column in self.layout.tables[name][1]]
         if name == "targets":
             return (rows[..., columns.index("value")] > 0) & (rows[..., columns.index("rescued")] == 0)
-        return (
-            rows[..., columns.index("known" if name == "carts" else "edge")] > 0
-        )  # nothing is offered without an edge
+        told = "known" if name == "carts" else "edge"  # no landmark is offered without an edge
+        return rows[..., columns.index(told)] > 0

@@ -109,7 +109,7 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         drawn = int(self.np_random.integers(SEEDS)) if seed is None else seed
         self._decision, _ = self.skills.reset(seed=drawn, options=options)
         self._choices.begin(drawn)
-        self._value, self._potential = self._rescued_value(), self._now()
+        self._value, self._potential = self._rescued_value(), self._potential_now()
         self._running = True
         return self._choices.see(self._decision), self._info("", Result(True), 0)
 
@@ -200,11 +200,13 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
     def _rewarded(self, allowed: bool) -> float:
         """The reward of the decision that has just ended; `allowed`: whether it could be taken."""
         value, standing = self._value, self._potential
-        self._value, self._potential = self._rescued_value(), self._now()
+        self._value, self._potential = self._rescued_value(), self._potential_now()
         return float(paper(standing, self._potential, allowed)) if self._reward == PAPER else self._value - value
 
-    def _now(self) -> float:
-        """The potential of the reward `paper`."""
+    def _potential_now(self) -> float:
+        """The potential of the reward `paper`; 0 with another reward."""
+        if self._reward != PAPER:
+            return 0.0
         base = self.skills.base
         world, containers = base.world, base.task.safe_place.containers
         place, held = world.position[0, :, :2], world.held[0]

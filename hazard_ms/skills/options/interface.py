@@ -33,8 +33,11 @@ def describe(encoder: Encoder) -> dict[str, list[Row]]:
     for name, count, text in OPTIONS:
         actions.append(Row(f"[{start}:{start + count}] {name}", (), "int64", "", "", start, start + count - 1, text))
         start += count
-    reward = Row("reward", (), "float", "", "", 0.0, 1.0, "value that this step rescued, as a share of all")
-    return {"observation": list(observation(encoder)), "action": actions, "reward": [reward], "info": list(INFO)}
+    rewards = [
+        Row("value (default)", (), "float", "", "", 0.0, 1.0, "value that this step rescued, as a share of all"),
+        Row("paper", (), "float", "", "", -INF, INF, "reward='paper': what the original's learner gets"),
+    ]
+    return {"observation": list(observation(encoder)), "action": actions, "reward": rewards, "info": list(INFO)}
 
 
 def observation(encoder: Encoder) -> list[Row]:

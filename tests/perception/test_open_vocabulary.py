@@ -44,6 +44,17 @@ def owl(folder: Path) -> None:
     transformers.Owlv2Processor(image_processor=images, tokenizer=tokenizer).save_pretrained(folder)
 
 
+def finds_what_was_asked_for(made: OpenVocabulary) -> None:
+    made.begin(WORDS)
+    rgb = np.random.default_rng(0).integers(0, 255, (HEIGHT, WIDTH, 3)).astype(np.uint8)
+    found = made.detect(rgb, np.full((HEIGHT, WIDTH), 2.0, np.float32))
+    assert found and {d.category for d in found} <= set(WORDS)
+    for detection in found:
+        left, top, right, bottom = detection.box
+        assert 0.3 <= detection.score <= 1.0 and 0 <= left < right <= WIDTH and 0 <= top < bottom <= HEIGHT
+        assert detection.mask.shape == (HEIGHT, WIDTH) and detection.mask.dtype == bool and detection.mask.any()
+
+
 def test_what_an_owl_finds_is_of_the_categories_that_were_asked_for(tmp_path: Path) -> None:
     import torch
 
@@ -55,14 +66,7 @@ def test_what_an_owl_finds_is_of_the_categories_that_were_asked_for(tmp_path: Pa
     for layer in last:  # so that scores are likenesses alone, and boxes are where they begin
         torch.nn.init.zeros_(layer.weight)
         torch.nn.init.zeros_(layer.bias)
-    made.begin(WORDS)
-    rgb = np.random.default_rng(0).integers(0, 255, (HEIGHT, WIDTH, 3)).astype(np.uint8)
-    found = made.detect(rgb, np.full((HEIGHT, WIDTH), 2.0, np.float32))
-    assert found and {d.category for d in found} <= set(WORDS)
-    for detection in found:
-        left, top, right, bottom = detection.box
-        assert detection.score >= 0.3 and 0 <= left < right <= WIDTH and 0 <= top < bottom <= HEIGHT
-        assert detection.mask.shape == (HEIGHT, WIDTH) and detection.mask.any()
+    finds_what_was_asked_for(made)
 
 
 def dino_and_sam(folder: Path) -> None:
@@ -105,14 +109,7 @@ def test_two_models_find_and_cut_out_what_was_asked_for(tmp_path: Path) -> None:
     torch.manual_seed(0)
     dino_and_sam(tmp_path)
     made = OpenVocabulary(str(tmp_path))
-    made.begin(WORDS)
-    rgb = np.random.default_rng(0).integers(0, 255, (HEIGHT, WIDTH, 3)).astype(np.uint8)
-    found = made.detect(rgb, np.full((HEIGHT, WIDTH), 2.0, np.float32))
-    assert found and {d.category for d in found} <= set(WORDS)
-    for detection in found:
-        left, top, right, bottom = detection.box
-        assert 0.3 < detection.score <= 1.0 and 0 <= left < right <= WIDTH and 0 <= top < bottom <= HEIGHT
-        assert detection.mask.shape == (HEIGHT, WIDTH) and detection.mask.dtype == bool and detection.mask.any()
+    finds_what_was_asked_for(made)
 
 
 def test_the_score_of_a_name_is_the_mean_of_its_tokens(tmp_path: Path) -> None:

@@ -73,14 +73,16 @@ class MaskRcnn(Detector):
         return [Detection(name, score, box, mask) for name, score, box, mask in every]
 
 
-def read_recipe(path: Path) -> dict[str, Any]:
-    """The network and its classes from the file beside the weights. Raises ValueError for one that is not as above."""
+def read_recipe(path: Path, networks: tuple[str, ...] = NETWORKS) -> dict[str, Any]:
+    """One of `networks` and its classes, from the file beside the weights. Raises ValueError for another file."""
     try:
         recipe: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
         classes = recipe["classes"]
-        one_of(recipe["network"], NETWORKS, "network")
+        one_of(recipe["network"], networks, "network")
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"{path} must hold the network and its classes, got {error!r:.200}") from None
+        raise ValueError(
+            f"{path} must hold the network {' or '.join(networks)} and its classes, got {error!r:.200}"
+        ) from None
     if not isinstance(classes, list) or not classes or len(set(map(str, classes))) < len(classes):
         raise ValueError(f"classes in {path} must be a list of different categories, got {classes!r:.100}")
     for name in classes:

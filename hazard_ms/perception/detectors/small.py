@@ -6,9 +6,7 @@ are one thing.
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import torch
@@ -16,11 +14,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from torch.nn import functional
 
-from hazard_ms.perception.detectors.mask_rcnn import read_weights
+from hazard_ms.perception.detectors.mask_rcnn import read_recipe, read_weights
 from hazard_ms.perception.detectors.small_network import SCALE, SmallNetwork, features
 from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
-from hazard_ms.spec.catalogue import CATEGORIES
-from hazard_ms.spec.checks import one_of
 
 NETWORK = "small"  # in the file beside the weights
 SHIPPED = Path(__file__).parents[1] / "weights" / "small.safetensors"
@@ -47,7 +43,7 @@ class Small(Detector):
                 "perception small must be given weights, small:FILE, got none, and the package has none yet: "
                 "`hazard-ms perception train DATA -o FOLDER --model small` trains them"
             )
-        self._classes = read_classes(file.with_suffix(".json"))
+        self._classes: list[str] = read_recipe(file.with_suffix(".json"), (NETWORK,))["classes"]
         made = SmallNetwork(len(self._classes) + 2)
         try:
             made.load_state_dict({name: value.float() for name, value in read_weights(file).items()})
@@ -156,18 +152,3 @@ def _joined(owner: NDArray[np.int64], votes: NDArray[np.float64]) -> NDArray[np.
             kept.append(k)
     joined: NDArray[np.int64] = numbers[into][mine]
     return joined
-
-
-def read_classes(path: Path) -> list[str]:
-    """The categories in the file beside the weights. Raises ValueError for one that does not hold them."""
-    try:
-        recipe: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        one_of(recipe["network"], (NETWORK,), "network")
-        classes = recipe["classes"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"{path} must hold the network small and its classes, got {error!r:.200}") from None
-    if not isinstance(classes, list) or not classes or len(set(map(str, classes))) < len(classes):
-        raise ValueError(f"classes in {path} must be a list of different categories, got {classes!r:.100}")
-    for name in classes:
-        one_of(name, CATEGORIES, f"a class in {path}")
-    return classes

@@ -4,8 +4,8 @@ With `tables` alone it plays nothing.
 
 Every agent plays the 25 scenes of each task's split `test` once, and the agents that are compared with `planner` play
 them three times with Fetch; raw results go to build/results, from where `hazard-ms report` and `hazard-ms regret` can
-read them. README.md and scores.csv beside this file are written anew from all that
-was played.
+read them. README.md and scores.csv beside this file are written anew; sweeps of which this machine has no raw results
+stay in them as they are.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ HERE = Path(__file__).parent
 RAW = HERE.parent / "build" / "results"
 MAIN = ("greedy", "mcts", "planner", "oracle")
 ALL = (*MAIN, "random", "rule", "oracle:known=true", "paper/greedy", "paper/rule", "paper/mcts")
+COLUMNS = ("task", "robot", "agent", "scene", "seed", "value", "bound", "frames", "ended", "rescued", "targets")
 TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
 COMPARED = ("greedy", "mcts", "planner")
 SCENES, SEEDS = 25, 75  # episodes of an agent, and of those that are compared
@@ -62,15 +63,30 @@ def bounds(env_id: str, robot: str, results: list[EpisodeResult]) -> dict[int, f
     return made
 
 
-def table(sweep: str, rows: csv.DictWriter[str]) -> str:
-    """The section of a sweep in the README; its episodes are added to `rows`. Empty if nothing was played."""
+def title(sweep: str) -> str:
+    """The heading of a sweep in the README."""
+    task, robot = sweep.split("-")
+    return f"## {task.capitalize()}, {robot}\n"
+
+
+def kept(sweep: str) -> tuple[str, list[dict[str, Any]]]:
+    """The section of a sweep in the README as it is, and its rows in scores.csv; empty if there are none."""
+    task, robot = sweep.split("-")
+    _, heading, rest = (HERE / "README.md").read_text(encoding="utf-8").partition(title(sweep))
+    with (HERE / "scores.csv").open(newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if (row["task"], row["robot"]) == (task, robot)]
+    return f"\n{heading}{rest.split(chr(10) + '## ')[0]}" if heading else "", rows
+
+
+def table(sweep: str) -> tuple[str, list[dict[str, Any]]]:
+    """The section of a sweep in the README, and its rows in scores.csv."""
     task, robot = sweep.split("-")
     results = [EpisodeResult.read(path) for path in sorted((RAW / sweep).glob("Hazard*.json"))]
     if not results:
-        return ""
-    best = bounds(TASKS[task], robot, results)
+        return kept(sweep)
+    best, rows = bounds(TASKS[task], robot, results), []
     for r in results:
-        rows.writerow(
+        rows.append(
             {
                 "task": task,
                 "robot": robot,
@@ -89,7 +105,7 @@ def table(sweep: str, rows: csv.DictWriter[str]) -> str:
             raise AssertionError(f"Value must not exceed its bound {best[r.seed]}, got {r.tally.value} of {r.agent}")
     told = subprocess.run([*COMMAND, "report", str(RAW / sweep), "--json"], check=True, capture_output=True, text=True)
     played = "; ".join((RAW / sweep / PLAYED).read_text(encoding="utf-8").splitlines())
-    lines = [f"\n## {task.capitalize()}, {robot}\n", f"Played at {played}.\n"]
+    lines = [f"\n{title(sweep)}", f"Played at {played}.\n"]
     lines += ["| agent | Value | Step | Damage | regret | rescued | episodes |", "|---|---|---|---|---|---|---|"]
     for group in json.loads(told.stdout)["groups"]:
         for name, agent in sorted(group["agents"].items(), key=lambda item: -item[1]["value"]["mean"]):
@@ -101,7 +117,7 @@ def table(sweep: str, rows: csv.DictWriter[str]) -> str:
         for pair in group["differences"]:
             if pair["agent"] == "planner" and pair["other"] != "random":
                 lines.append(f"- planner less {pair['other']}: {_interval(pair['value'], 100)}")
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines) + "\n", rows
 
 
 def _interval(told: dict[str, Any], scale: float) -> str:
@@ -120,13 +136,14 @@ def main(wanted: list[str]) -> None:
     chosen = [] if wanted == ["tables"] else [one_of(name, SWEEPS, "a sweep") for name in wanted] or [*SWEEPS]
     for sweep in chosen:
         play(sweep)
+    tables = [table(sweep) for sweep in SWEEPS]
     with (HERE / "scores.csv").open("w", newline="", encoding="utf-8") as file:
-        names = ("task", "robot", "agent", "scene", "seed", "value", "bound", "frames", "ended", "rescued", "targets")
-        rows = csv.DictWriter(file, names, lineterminator="\n")
-        rows.writeheader()
-        sections = [table(sweep, rows) for sweep in SWEEPS]
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        for _, rows in tables:
+            writer.writerows(rows)
     head = (HERE / "head.md").read_text(encoding="utf-8")
-    (HERE / "README.md").write_text(head + "".join(sections), encoding="utf-8")
+    (HERE / "README.md").write_text(head + "".join(text for text, _ in tables), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -6,10 +6,12 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import importlib.metadata
 import json
 import os
 import platform
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -28,7 +30,7 @@ FAILED = (ERROR, TOO_SLOW, DIED)  # how an episode ends that its agent, or the p
 PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "warp-lang", "numpy")  # whose versions can change an episode
 
 # fields that hold more data
-PLAIN = ("settings", "targets", "decisions", "links", "phase_seconds", "counters", "versions", "machine")
+PLAIN = ("settings", "targets", "decisions", "links", "phase_seconds", "counters", "versions", "machine", "files")
 
 
 class DamagedResultError(ValueError):
@@ -109,6 +111,7 @@ class EpisodeResult:
     clock: str = OFF  # by which hazards went on while the agent thought
     perception: str = TRUTH  # what told the agent of things
     counters: dict[str, Any] = field(default_factory=dict)  # the agent's own counts, such as calls of a model
+    files: dict[str, str] = field(default_factory=dict)  # SHA-256 of those that agent and perception name, by path
     versions: dict[str, str] = field(default_factory=lambda: versions())
     machine: dict[str, Any] = field(default_factory=lambda: machine())
     format: int = FORMAT
@@ -205,6 +208,12 @@ def machine() -> dict[str, Any]:
 
     gpu = torch.cuda.get_device_name(0) if torch.cuda.is_available() else None
     return {"system": f"{platform.system()} {platform.machine()}", "cores": os.cpu_count(), "gpu": gpu}
+
+
+def file_hashes(*texts: str) -> dict[str, str]:
+    """SHA-256 of the files that the texts of an agent and a perception name, such as weights, by path."""
+    named = {part for text in texts for part in re.split("[:,=]", text)}
+    return {part: hashlib.sha256(Path(part).read_bytes()).hexdigest() for part in sorted(named) if Path(part).is_file()}
 
 
 def result_files(folders: Sequence[Path]) -> list[Path]:

@@ -13,7 +13,7 @@ from hazard_ms.agents.thinking import OFF, frames_of, seconds_of
 from hazard_ms.evaluation.hashes import EVERY, extended
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.options import EpisodeOptions
-from hazard_ms.evaluation.result import BROKEN, DecisionRecord, EpisodeResult, Link, Played
+from hazard_ms.evaluation.result import BROKEN, DecisionRecord, EpisodeResult, Link, Played, file_hashes
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.skills.actions import wait
@@ -201,6 +201,7 @@ def result_of(options: EpisodeOptions, env: SkillEnv, played: Played) -> Episode
         clock=options.clock,
         perception=options.perception,
         counters=played.counters,
+        files=file_hashes(options.agent, options.perception),
     )
 
 

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import os
 from collections import Counter
+from pathlib import Path
 
 from hazard_ms.evaluation.options import EpisodeOptions, SweepOptions
 from hazard_ms.evaluation.report import report
-from hazard_ms.evaluation.result import BROKEN, FAILED, DamagedResultError, EpisodeResult
+from hazard_ms.evaluation.result import BROKEN, FAILED, DamagedResultError, EpisodeResult, file_hashes
 from hazard_ms.evaluation.spread import in_shard, shard, spread
 from hazard_ms.evaluation.workers import Job
 from hazard_ms.machine.files import make_folder
@@ -23,9 +24,9 @@ LONGEST_NAME = 255  # of a file, in the file systems of Linux and macOS [bytes]
 def evaluate(options: SweepOptions) -> int:
     """Play the missing episodes of this shard and print the table. Returns 1 if one broke or failed, else 0.
 
-    Files that hold no whole result are named, and their episodes played again, as are those that failed. Raises
-    ValueError for what cannot be played, where the folder holds results of another version, and where a result cannot
-    be written.
+    Files that hold no whole result are named, and their episodes played again, as are those that failed, and those of
+    an agent whose own files have changed since. Raises ValueError for what cannot be played, where the folder holds
+    results of another version, and where a result cannot be written.
     """
     from hazard_ms.agents.base import check_name  # loads torch
 
@@ -59,6 +60,13 @@ def evaluate(options: SweepOptions) -> int:
 
 
 def _check_names(options: SweepOptions, episodes: list[EpisodeOptions]) -> None:
+    agents: dict[Path, str] = {}
+    for e in episodes:
+        if agents.setdefault(options.place(e), e.agent) != e.agent:
+            raise ValueError(
+                f"agents must differ in more than punctuation, as their results are named by them: "
+                f"got {agents[options.place(e)]} and {e.agent}"
+            )
     longest = max((len(os.fsencode(options.place(e).name)) for e in episodes), default=0)
     if longest > LONGEST_NAME:
         raise ValueError(
@@ -77,6 +85,9 @@ def kept(options: SweepOptions, episode: EpisodeOptions) -> EpisodeResult | None
         return None
     if found is not None and found.ended in FAILED:
         print(f"{place} holds an episode that failed ({found.error}): it is played again", flush=True)
+        return None
+    if found is not None and found.files != file_hashes(episode.agent, episode.perception):
+        print(f"{place} was played with other files than there are now: its episode is played again", flush=True)
         return None
     return found
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from hazard_ms.evaluation import sweep
 from hazard_ms.evaluation.options import EnvOptions, SweepOptions
-from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult
+from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult, file_hashes
 from tests.worlds.results import result_of
 
 
@@ -184,6 +185,34 @@ def test_episodes_that_failed_are_played_again(tmp_path: Path, capsys: pytest.Ca
     kept = [sweep.kept(options, episode) is not None for episode in options.episode_options()]
     assert kept == [True, False, False]
     assert capsys.readouterr().out.count("holds an episode that failed") == 2
+
+
+def test_episodes_are_played_again_when_their_agent_has_other_weights(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The digest of "one" is that of FIPS 180-4's algorithm, by sha256sum."""
+    weights = tmp_path / "best.safetensors"
+    weights.write_bytes(b"one")
+    options = SweepOptions(agents=(f"rl:weights={weights}",), perception=f"small:{weights}", episodes=1)
+    options = replace(options, output=tmp_path)
+    (episode,) = options.episode_options()
+    digest = "7692c3ad3540bb803c020b3aee66cd8887123234ea0c6e7143c0add73ff431ed"
+    assert file_hashes(episode.agent, episode.perception) == {str(weights): digest}
+    place = options.place(episode)
+    replace(result_of(episode), files={str(weights): digest}).write(place)
+    assert sweep.kept(options, episode) is not None
+    weights.write_bytes(b"two")
+    assert sweep.kept(options, episode) is None
+    assert (
+        capsys.readouterr().out
+        == f"{place} was played with other files than there are now: its episode is played again\n"
+    )
+
+
+def test_agents_that_would_share_files_are_refused(tmp_path: Path) -> None:
+    agents = ("rl:weights=a/b.safetensors", "rl:weights=a.b.safetensors")
+    with pytest.raises(ValueError, match="got rl:weights=a/b.safetensors and rl:weights=a.b.safetensors"):
+        sweep.evaluate(SweepOptions(agents=agents, episodes=1, output=tmp_path))
 
 
 def test_an_unknown_agent_is_refused_before_anything_is_played(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hazard_ms.evaluation.metrics import Fate
 from hazard_ms.evaluation.options import EpisodeOptions
-from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.evaluation.result import EpisodeResult, file_hashes
 
 
 def result_of(episode: EpisodeOptions, saved: bool = False, ended: str = "time") -> EpisodeResult:
@@ -23,4 +23,5 @@ def result_of(episode: EpisodeOptions, saved: bool = False, ended: str = "time")
         targets=(fate, lost),
         decisions=(),
         command="",
+        files=file_hashes(episode.agent, episode.perception),
     )

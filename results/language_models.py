@@ -8,19 +8,15 @@ alone it plays nothing.
 from __future__ import annotations
 
 import importlib.util
-import subprocess
 import sys
 from collections import Counter
 from collections.abc import Sequence
-from pathlib import Path
 
 from hazard_ms.evaluation.comparison.pairing import difference
-from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.result import EpisodeResult
+from results.tables import HERE, TASKS, evaluate, results_in, value_of, words
 
-HERE = Path(__file__).parent
 RAW = HERE.parent / "build" / "language_models"
-TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
 SCRIPTED = "llm:base_url=scripted,model=greedy"
 SMALL = "llm:base_url=local,deadline=120"
 SMALL_SEED = 3  # of the split train
@@ -40,17 +36,16 @@ over episodes, and tokens means per call.
 
 def play(task: str) -> None:
     """Play what is missing of a task."""
-    command = [sys.executable, "-m", "hazard_ms.cli", "evaluate", "-e", TASKS[task]]
-    subprocess.run([*command, "-o", str(RAW / task), "--agents", "greedy", SCRIPTED], check=True)
+    evaluate(task, RAW / task, "--agents", "greedy", SCRIPTED)
     if importlib.util.find_spec(SMALL_MODEL) is not None:
         options = ["--split", "train", "-s", str(SMALL_SEED), "--episodes", "1", "--timeout", "600"]
-        subprocess.run([*command, *options, "-o", str(RAW / f"{task}-small"), "--agents", SMALL], check=True)
+        evaluate(task, RAW / f"{task}-small", *options, "--agents", SMALL)
 
 
 def read(folder: str) -> dict[str, list[EpisodeResult]]:
     """The results in a folder, by agent."""
     found: dict[str, list[EpisodeResult]] = {}
-    for result in map(EpisodeResult.read, sorted((RAW / folder).glob("Hazard*.json"))):
+    for result in results_in(RAW / folder):
         found.setdefault("greedy" if result.agent == "greedy" else "llm", []).append(result)
     return found
 
@@ -60,19 +55,13 @@ def row(task: str, name: str, results: Sequence[EpisodeResult], less: str = "-")
     total: Counter[str] = Counter()
     for result in results:
         total.update({counter: int(result.counters.get(counter, 0)) for counter in COUNTED})
-    value = words(scores([result.tally for result in results])["value"])
+    value = words(value_of(results))
     counts: list[object] = ["-"] * len(COUNTED)
     if total["calls"]:
         tokens = (round(total[counter] / total["calls"]) for counter in ("tokens_in", "tokens_out"))
         counts = [*(total[counter] for counter in COUNTED[:4]), *tokens]
     cells = [task, name, len(results), value, less, *counts]
     return f"| {' | '.join(map(str, cells))} |"
-
-
-def words(score: Score) -> str:
-    """A score in percent with its interval; without one for a single episode."""
-    mean, low, high = (100.0 * (end or 0.0) for end in (score.mean, score.low, score.high))
-    return f"{mean:.1f}" if low == high else f"{mean:.1f} [{low:.1f}, {high:.1f}]"
 
 
 def table() -> str:

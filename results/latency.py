@@ -8,24 +8,20 @@ from __future__ import annotations
 
 import csv
 import os
-import subprocess
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from hazard_ms.agents.base import Agent, agent
 from hazard_ms.agents.llm.choices import forced
 from hazard_ms.agents.thinking import Thought
-from hazard_ms.evaluation.metrics import scores
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.spec.checks import one_of
+from results.tables import HERE, TASKS, evaluate, percent, results_in, value_of
 
-HERE = Path(__file__).parent
 RAW = HERE.parent / "build" / "latency"
 CHART = HERE.parent / "docs" / "latency.svg"
-TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
 PLAYERS = {"planner": "planner", "model": "llm:base_url=scripted,model=greedy"}
 LABELS = {"planner": "planner", "model": "llm, scripted model"}  # in the chart
 DELAYS = (0, 1, 2, 5, 10)  # time for a decision [s]
@@ -54,17 +50,14 @@ class Slow(Agent):
 def play(task: str) -> None:
     """Play what is missing of a task."""
     agents = [f"results/latency.py:Slow:player={player},seconds={delay}" for delay in DELAYS for player in PLAYERS]
-    options = ["-e", TASKS[task], "--clock", "wall", "--split", "test", "-o", str(RAW / task)]
-    subprocess.run(
-        [sys.executable, "-m", "hazard_ms.cli", "evaluate", *options, "--agents", *agents], cwd=HERE.parent, check=True
-    )
+    evaluate(task, RAW / task, "--clock", "wall", "--split", "test", "--agents", *agents)
 
 
 def played() -> list[tuple[str, str, int, EpisodeResult]]:
     """The task, player and delay [s] of every episode that was played, and its result."""
     found = []
     for task in TASKS:
-        for result in map(EpisodeResult.read, sorted((RAW / task).glob("Hazard*.json"))):
+        for result in results_in(RAW / task):
             given = dict(pair.split("=") for pair in result.agent.rpartition(":")[2].split(","))
             found.append((task, given["player"], int(given["seconds"]), result))
     return sorted(found, key=lambda one: (*one[:3], one[3].seed))
@@ -103,8 +96,7 @@ def chart(episodes: Sequence[tuple[str, str, int, EpisodeResult]]) -> None:
                 mine = [one[3] for one in episodes if one[:3] == (task, player, delay)]
                 if not mine:
                     continue
-                value = scores([result.tally for result in mine])["value"]
-                mean, low, high = (100.0 * (end or 0.0) for end in (value.mean, value.low, value.high))
+                mean, low, high = percent(value_of(mine))
                 share = sum(map(thinking, mine)) / sum(result.frames for result in mine)
                 print(
                     f"{task}, {name}, {delay:2d} s: Value {mean:.1f} [{low:.1f}, {high:.1f}], "

@@ -16,7 +16,6 @@ import os
 import platform
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 from hazard_ms.evaluation.result import EpisodeResult
@@ -25,18 +24,16 @@ from hazard_ms.sketch.bound import bound
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.spec.checks import one_of
 from hazard_ms.tasks import task_of
+from results.tables import COMMAND, HERE, TASKS, evaluate, results_in
 
-HERE = Path(__file__).parent
 RAW = HERE.parent / "build" / "results"
 MAIN = ("greedy", "mcts", "planner", "oracle")
 ALL = (*MAIN, "random", "rule", "oracle:known=true", "paper/greedy", "paper/rule", "paper/mcts")
 COLUMNS = ("task", "robot", "agent", "scene", "seed", "value", "bound", "frames", "ended", "rescued", "targets")
-TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
 COMPARED = ("greedy", "mcts", "planner")
 SCENES, SEEDS = 25, 75  # episodes of an agent, and of those that are compared
 SWEEPS = {f"{task}-{robot}": ALL if robot == "fetch" else MAIN for robot in ("fetch", "g1") for task in TASKS}
 PLAYED = "played.txt"  # beside raw results: the commits and machines that they were played on, one a line
-COMMAND = [sys.executable, "-m", "hazard_ms.cli"]
 
 
 def play(sweep: str) -> None:
@@ -47,8 +44,8 @@ def play(sweep: str) -> None:
     before = note.read_text(encoding="utf-8").splitlines() if note.exists() else []
     note.write_text("".join(f"{line}\n" for line in dict.fromkeys([*before, here])), encoding="utf-8")
     for agents, episodes in ((SWEEPS[sweep], SCENES), *(((COMPARED, SEEDS),) if robot == "fetch" else ())):
-        options = ["-e", TASKS[task], "-r", robot, "--split", "test", "--episodes", str(episodes), "--workers", "2"]
-        subprocess.run([*COMMAND, "evaluate", *options, "-o", str(RAW / sweep), "--agents", *agents], check=False)
+        options = ["-r", robot, "--split", "test", "--episodes", str(episodes), "--workers", "2"]
+        evaluate(task, RAW / sweep, *options, "--agents", *agents, check=False)
 
 
 def bounds(env_id: str, robot: str, results: list[EpisodeResult]) -> dict[int, float]:
@@ -81,7 +78,7 @@ def kept(sweep: str) -> tuple[str, list[dict[str, Any]]]:
 def table(sweep: str) -> tuple[str, list[dict[str, Any]]]:
     """The section of a sweep in the README, and its rows in scores.csv."""
     task, robot = sweep.split("-")
-    results = [EpisodeResult.read(path) for path in sorted((RAW / sweep).glob("Hazard*.json"))]
+    results = results_in(RAW / sweep)
     if not results:
         return kept(sweep)
     best, rows = bounds(TASKS[task], robot, results), []

@@ -8,20 +8,15 @@ from __future__ import annotations
 
 import csv
 import os
-import subprocess
 import sys
-from collections.abc import Sequence
-from pathlib import Path
 from typing import NamedTuple
 
-from hazard_ms.evaluation.metrics import scores
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.spec.checks import one_of
+from results.tables import HERE, TASKS, evaluate, percent, results_in, value_of
 
-HERE = Path(__file__).parent
 RAW = HERE.parent / "build" / "perception_value"
 CHART = HERE.parent / "docs" / "perception_value.svg"
-TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
 AGENTS = ("greedy", "planner")
 MISSES = (0.0, 0.2, 0.4, 0.6)  # share of things that the detector does not find
 HOLDS = (1, 300)  # frames for which a thing that is missed stays missed
@@ -46,16 +41,15 @@ def detectors() -> dict[str, tuple[int, float]]:
 def play(task: str, episodes: int) -> None:
     """Play what is missing of a task."""
     for text in detectors():
-        words = ["-e", TASKS[task], "--split", "test", "--agents", *AGENTS, "--episodes", str(episodes)]
-        words += ["--perception", text, "-o", str(RAW / task)]
-        subprocess.run([sys.executable, "-m", "hazard_ms.cli", "evaluate", *words], cwd=HERE.parent, check=True)
+        words = ["--split", "test", "--agents", *AGENTS, "--episodes", str(episodes), "--perception", text]
+        evaluate(task, RAW / task, *words)
 
 
 def played() -> dict[Point, list[EpisodeResult]]:
     """The results of all episodes that were played, point by point."""
     found: dict[Point, list[EpisodeResult]] = {}
     for task in TASKS:
-        for result in map(EpisodeResult.read, sorted((RAW / task).glob("Hazard*.json"))):
+        for result in results_in(RAW / task):
             if result.perception in detectors():
                 found.setdefault(Point(task, result.agent, *detectors()[result.perception]), []).append(result)
     return dict(sorted(found.items()))
@@ -83,7 +77,7 @@ def chart(points: dict[Point, list[EpisodeResult]]) -> None:
     if not tasks:
         raise ValueError(f"{RAW} must hold results, got none; play them first")
     figure, axes = pyplot.subplots(1, len(tasks), figsize=(4.2 * len(tasks), 3.4), sharey=True, squeeze=False)
-    values = {point: interval(results) for point, results in points.items()}
+    values = {point: percent(value_of(results)) for point, results in points.items()}
     for point, (mean, low, high) in values.items():
         told = "truth" if point.hold == 0 else f"miss {point.miss:.1f} for {point.hold} frames"
         count = len(points[point])
@@ -108,13 +102,6 @@ def chart(points: dict[Point, list[EpisodeResult]]) -> None:
     axes[0][0].legend(loc="lower left", frameon=False, fontsize=8)
     figure.tight_layout()
     figure.savefig(CHART, metadata={"Date": None})
-
-
-def interval(results: Sequence[EpisodeResult]) -> tuple[float, float, float]:
-    """Mean Value and the ends of its 95 % interval [%]."""
-    value = scores([result.tally for result in results])["value"]
-    mean, low, high = (100.0 * (end or 0.0) for end in (value.mean, value.low, value.high))
-    return mean, low, high
 
 
 def main(words: list[str]) -> None:

@@ -1,0 +1,115 @@
+"""Trains policies and scores them in the simulator: `./run python results/learned.py [KIND-TASK-SEED...]`.
+
+Names are such as rl-fire-0; without names it makes all of KINDS, TASKS and SEEDS. Each policy learns in the sketch, by
+the command that learned.md names, and plays the 25 scenes of its task's split `test`, as do `greedy` and `planner`. It
+resumes where it stopped, and writes learned.md and the curves in rl/. With `tables` alone it makes nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from hazard_ms.evaluation.comparison.pairing import Episode, difference
+from hazard_ms.spec.checks import one_of
+from results.tables import COMMAND, HERE, TASKS, evaluate, results_in, value_of, words
+
+RAW = HERE.parent / "build" / "learned"
+PLAIN = HERE.parent / "build" / "results"  # where results/make.py plays the agents that are compared with
+SHIPPED = HERE.parent / "hazard_ms" / "agents" / "weights"
+KINDS = {"rl": ["ppo"], "bc": ["bc"], "rl_paper": ["ppo", "--actions", "paper"]}
+SEEDS = (0, 1, 2)
+# scenes of flood and wind take longer to make: half a million decisions in fewer of them is what an hour allows
+SCENES = {"fire": 225, "flood": 150, "wind": 60}
+DECISIONS = {"fire": 1_000_000, "flood": 600_000, "wind": 500_000}
+SIX_DECISIONS = 300_000  # of rl_paper, whose updates take ten times as long
+LONGEST = 600  # of a training: machines that do other things, too, must not change what it learns [min]
+HEAD = """# Learned policies
+
+Made by `./run python results/learned.py`. Each policy learned in the sketch, in scenes that belong to no split, and
+then played the 25 scenes of its task's split `test` in the simulator. Values are in percent, with 95 % bootstrap
+intervals over episodes, differences paired by episode. "Sketch" is the mean Value in 24 scenes of the sketch that chose
+the best moment of the training, beside that of `greedy` in the same scenes. The package brings the policies in bold:
+of each task and kind the one that is best in the sketch.
+
+| policy | seed | sketch | `greedy` there | Value | less `greedy` | less `planner` | share of `planner` | episodes |
+|---|---|---|---|---|---|---|---|---|
+"""
+
+
+def weights(name: str) -> Path:
+    """The file of the policy called `name`."""
+    kind, task, _ = name.split("-")
+    return RAW / name / f"{kind}_{TASKS[task]}.safetensors"
+
+
+def make(name: str) -> None:
+    """Train and score a policy, as far as that is missing."""
+    kind, task, seed = name.split("-")
+    options = [*KINDS[kind], "-e", TASKS[task], "-o", str(RAW / name), "--seed", seed, "--scenes", str(SCENES[task])]
+    if kind != "bc":
+        decisions = SIX_DECISIONS if kind == "rl_paper" else DECISIONS[task]
+        options += ["--decisions", str(decisions), "--minutes", str(LONGEST)]
+    if kind != "bc" or not weights(name).exists():  # trainings by reinforcement resume, and end at once if they ended
+        subprocess.run([*COMMAND, "train", *options], check=True)
+    evaluate(task, RAW / name, "--agents", f"{kind}:weights={weights(name)}")
+    evaluate(task, PLAIN / f"{task}-fetch", "--agents", "greedy", "planner")
+
+
+def values(folder: Path, agent: str) -> dict[Episode, float]:
+    """The Value of each episode of an agent that was played."""
+    return {(r.seed, r.scene): r.tally.value for r in results_in(folder) if r.agent.partition(":")[0] == agent}
+
+
+def sketched(name: str) -> tuple[float, float]:
+    """The mean Value of a policy in the sketch's validation scenes, and that of `greedy` there."""
+    told = json.loads(weights(name).with_suffix(".json").read_text(encoding="utf-8"))
+    if "rounds" in told:
+        best = max(told["rounds"], key=lambda each: each["student"])
+        return best["student"], best["greedy"]
+    return told["best"]["validation"], told["best"]["greedy"]
+
+
+def row(name: str) -> str:
+    """The row of a policy; empty if it has not played."""
+    kind, task, seed = name.split("-")
+    results = results_in(RAW / name)
+    if not results:
+        return ""
+    own, plain = values(RAW / name, kind), PLAIN / f"{task}-fetch"
+    greedy, planner = values(plain, "greedy"), values(plain, "planner")
+    common = set(own) & set(planner)
+    share = sum(own[e] for e in common) / max(sum(planner[e] for e in common), 1e-9)
+    found, there = sketched(name)
+    shipped = SHIPPED / weights(name).name
+    same = shipped.exists() and shipped.read_bytes() == weights(name).read_bytes()
+    cells = [f"{100 * found:.1f}", f"{100 * there:.1f}", words(value_of(results)), words(difference(own, greedy))]
+    cells += [words(difference(own, planner)), f"{share:.0%}", str(len(results))]
+    title = f"**{task}, {kind}**" if same else f"{task}, {kind}"
+    return f"| {title} | {seed} | {' | '.join(cells)} |\n"
+
+
+def curve(name: str) -> None:
+    """Keep the curve of a training."""
+    made = weights(name).with_suffix(".csv")
+    if made.exists():
+        shutil.copyfile(made, HERE / "rl" / f"{name}.csv")
+
+
+def main(wanted: list[str]) -> None:
+    """Make the policies called `wanted`, or all, and write what there is. Raises ValueError for unknown names."""
+    names = [f"{kind}-{task}-{seed}" for kind in KINDS for task in TASKS for seed in SEEDS]
+    for name in [] if wanted == ["tables"] else [one_of(each, names, "a policy") for each in wanted] or names:
+        make(name)
+    for name in names:
+        curve(name)
+    (HERE / "learned.md").write_text(HEAD + "".join(map(row, names)), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    main(sys.argv[1:])

@@ -1,0 +1,42 @@
+"""What the commands in this folder share: the tasks, the command that plays, and scores as they are written."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from hazard_ms.evaluation.metrics import Score, scores
+from hazard_ms.evaluation.result import EpisodeResult
+
+HERE = Path(__file__).parent
+TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
+COMMAND = [sys.executable, "-m", "hazard_ms.cli"]
+
+
+def evaluate(task: str, folder: Path, *words: str, check: bool = True) -> None:
+    """Play what is missing of a sweep of one of TASKS; `check`: whether to raise CalledProcessError where it fails."""
+    subprocess.run([*COMMAND, "evaluate", "-e", TASKS[task], "-o", str(folder), *words], cwd=HERE.parent, check=check)
+
+
+def results_in(folder: Path) -> list[EpisodeResult]:
+    """The results in a folder, in the order of their files' names."""
+    return [EpisodeResult.read(path) for path in sorted(folder.glob("Hazard*.json"))]
+
+
+def value_of(results: Sequence[EpisodeResult]) -> Score:
+    """The score Value of `results`, 0 to 1."""
+    return scores([result.tally for result in results])["value"]
+
+
+def percent(score: Score) -> tuple[float, float, float]:
+    """A score and the ends of its interval [%]."""
+    mean, low, high = (100.0 * (end or 0.0) for end in (score.mean, score.low, score.high))
+    return mean, low, high
+
+
+def words(score: Score) -> str:
+    """A score in percent with its interval; without one for a single episode."""
+    mean, low, high = percent(score)
+    return f"{mean:.1f}" if low == high else f"{mean:.1f} [{low:.1f}, {high:.1f}]"

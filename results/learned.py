@@ -51,13 +51,19 @@ def make(name: str) -> None:
     """Train and score a policy, as far as that is missing."""
     kind, task, seed = name.split("-")
     options = [*KINDS[kind], "-e", TASKS[task], "-o", str(RAW / name), "--seed", seed, "--scenes", str(SCENES[task])]
-    if kind != "bc":
-        decisions = SIX_DECISIONS if kind == "rl_paper" else DECISIONS[task]
+    decisions = 0 if kind == "bc" else SIX_DECISIONS if kind == "rl_paper" else DECISIONS[task]
+    if decisions:
         options += ["--decisions", str(decisions), "--minutes", str(LONGEST)]
-    if kind != "bc" or not weights(name).exists():  # trainings by reinforcement resume, and end at once if they ended
+    if not weights(name).exists() or learnt_from(name) < decisions:
         subprocess.run([*COMMAND, "train", *options], check=True)
     evaluate(task, RAW / name, "--agents", f"{kind}:weights={weights(name)}")
     evaluate(task, PLAIN / f"{task}-fetch", "--agents", "greedy", "planner")
+
+
+def learnt_from(name: str) -> float:
+    """The decisions that a policy has learnt from so far; 0 without a curve, as after behaviour cloning."""
+    made = weights(name).with_suffix(".csv")
+    return float(made.read_text(encoding="utf-8").splitlines()[-1].split(",")[0]) if made.exists() else 0.0
 
 
 def values(folder: Path, agent: str) -> dict[Episode, float]:

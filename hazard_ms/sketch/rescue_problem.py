@@ -82,7 +82,9 @@ class RescueScene:
         ways = future.positions(targets)[..., :2].astype(np.float64)  # [S, T, 2]
         rest = future.positions(carts)[0, :, :2].astype(np.float64)
         near = min(int(np.searchsorted(future.frames, outset.frame)), len(ways) - 1)
-        if np.linalg.norm(ways[near:] - ways[near], axis=-1).max(initial=0.0) > DRIFT:
+        # In rooms furniture lengthens walks more than drift does: with straight lines to where things float the oracle
+        # of floods had a mean Value of 0.73 in ten scenes of `train`, with ways round furniture 0.79.
+        if self.spec.room.open_air and np.linalg.norm(ways[near:] - ways[near], axis=-1).max(initial=0.0) > DRIFT:
             walk = straight_line(WALK * DETOUR)
             moving = MovingTravel(future.frames[near:], ways[near:], np.asarray(outset.place), walk, rest)
             return moving, WALK * ARRIVED - TURNING

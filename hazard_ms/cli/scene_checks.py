@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hazard_ms.assets.foreign import printable
+from hazard_ms.machine.processes import end_with_parent
 from hazard_ms.spec import Build, SceneSpec
 
 LONGEST = 120.0  # that the check of one scene may take before it counts as failed [s]
@@ -74,8 +75,8 @@ def check_all(names: Sequence[str], workers: int) -> int:
 
 
 def _in_processes(names: Sequence[str], workers: int) -> Iterator[CheckedScene]:
-    """The checked scenes in the order of `names`. A check that crashes or hangs is a problem, and ends here."""
-    with multiprocessing.get_context("spawn").Pool(min(workers, len(names))) as pool:  # leaving it ends all processes
+    """The checked scenes in the order of `names`. A check that crashes or hangs is a problem, and is ended."""
+    with multiprocessing.get_context("spawn").Pool(min(workers, len(names)), end_with_parent) as pool:
         waiting = [(name, pool.apply_async(check_one, (name,))) for name in names]
         for name, result in waiting:
             try:

@@ -11,7 +11,6 @@ import multiprocessing
 import os
 import signal
 import sys
-import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -21,6 +20,7 @@ from typing import NamedTuple
 
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import DIED, TOO_SLOW, EpisodeResult
+from hazard_ms.machine.processes import end_with_parent
 
 LIFETIME = 40  # episodes, after which a process is replaced: each leaves it 10 to 25 MB larger [measured]
 START = 900.0  # longest time until the first decision; where kernels are new, they are compiled [s] [ours]
@@ -198,15 +198,8 @@ def _one_thread() -> Iterator[None]:
 def _serve(connection: Connection, attempt: Attempt) -> None:
     """Do jobs until nobody gives any. Ctrl-C is for the process that started this one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    end_with_parent()
     with contextlib.suppress(EOFError, OSError):
         while True:
             connection.send(attempt(connection.recv(), connection.send))
             sys.stdout.flush()
-
-
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)

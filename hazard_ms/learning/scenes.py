@@ -11,6 +11,7 @@ import torch
 from tqdm import tqdm
 
 from hazard_ms.machine.cores import cores
+from hazard_ms.machine.processes import end_with_parent
 from hazard_ms.sketch.rescues.scene import SketchScene
 from hazard_ms.sketch.scenes import more_scenes
 
@@ -28,8 +29,14 @@ def generated(env_id: str, physics: str, numbers: Sequence[int], workers: int = 
     if most <= 1:
         return list(_watched(map(make, numbers), len(numbers)))
     spawned = multiprocessing.get_context("spawn")  # forks of a process that runs torch can stand still
-    with ProcessPoolExecutor(most, spawned, initializer=torch.set_num_threads, initargs=(1,)) as pool:
+    with ProcessPoolExecutor(most, spawned, initializer=_begin) as pool:
         return list(_watched(pool.map(make, numbers), len(numbers)))
+
+
+def _begin() -> None:
+    """Begin a process of those that make scenes: one for each core, so each with one thread."""
+    end_with_parent()
+    torch.set_num_threads(1)
 
 
 def _scene(env_id: str, physics: str, number: int) -> SketchScene:

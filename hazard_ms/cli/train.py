@@ -53,6 +53,8 @@ def bc(
     from hazard_ms.spec.checks import whole
 
     count = whole(scenes, 1, VALIDATION - SCENES, "scenes")
+    whole(rounds, 1, 1000, "rounds")
+    whole(episodes, 1, 10**7, "episodes")
     path = output / f"bc_{env_id}{ENDING}"
     make_folder(output)
     student = Student(level_ranges(env_id, physics), whole(seed, 0, 2**31, "seed"))
@@ -87,7 +89,7 @@ def ppo(
     reward: str | None = None,
     start: Path | None = None,
     masked: bool = False,
-    share: float = 0.5,
+    share: float | None = None,
     physics: Annotated[str, offer(PRESETS)] = "paper",
     workers: int = 0,
 ) -> int:
@@ -110,7 +112,7 @@ def ppo(
         reward: value or paper; by default value for options, paper for the six actions.
         start: File NAME.safetensors of a policy to begin with; by default an untrained one.
         masked: Of the six actions, only those that can be done are chosen.
-        share: Of the six actions' network: width of its layers, as a share of the original's.
+        share: Of the six actions' network: width of its layers, as a share of the original's; by default one half.
         physics: Preset of the hazards.
         workers: Processes that make scenes; 0: one for each processor.
     """
@@ -122,7 +124,8 @@ def ppo(
     from hazard_ms.spec.checks import one_of, whole
 
     try:
-        from hazard_ms.learning.ppo import Learner, shape_for
+        from hazard_ms.learning.checks import curve_of, ended
+        from hazard_ms.learning.ppo import SHARE, Learner, shape_for
         from hazard_ms.learning.runs import Run
         from hazard_ms.learning.settings import BY_ACTIONS
     except ModuleNotFoundError as missing:
@@ -134,19 +137,29 @@ def ppo(
     reward = settings.reward if reward is None else one_of(reward, ("value", "paper"), "reward")
     if masked and not six:
         raise ValueError("masked must be left out with actions options, which always have masks, got True")
+    if share is not None and not six:
+        raise ValueError(f"share must be left out with actions options, whose network has one width, got {share}")
+    if not minutes > 0:
+        raise ValueError(f"minutes must be positive, got {minutes}")
+    width, processes = SHARE if share is None else share, whole(workers, 0, 1000, "workers")
     ranges = level_ranges(env_id, physics)
-    shape = shape_for(actions, ranges, **({"share": share, "masked": masked} if six else {}))
+    shape = shape_for(actions, ranges, width, masked)
     begun = None if start is None else (load_map if six else load)(start, env_id)
+    if six and begun is not None and begun.shape != shape:
+        raise ValueError(f"share and masked must be those of the policy in start, {begun.shape}, got {width}, {masked}")
     words = f"hazard-ms train ppo -e {env_id} --seed {seed} --scenes {scenes} --reward {reward} --physics {physics}"
-    words += f"{f' --actions {actions} --share {share:g}' if six else ''}{' --masked' if masked else ''}"
+    words += f"{f' --actions {actions} --share {width:g}' if six else ''}{' --masked' if masked else ''}"
     command = words if start is None else f"{words} --start {shlex.quote(str(start.resolve()))}"
     make_folder(output)
     name = "rl_paper" if six else "rl"
     facts = {"command": command, "version": __version__, "physics": physics, "validation": VALIDATION}
     run = Run(output / f"{name}_{env_id}{ENDING}", env_id, facts)
     state = run.state()
+    if state is not None and ended(curve_of(state), settings, wanted, minutes):
+        print(f"{run.path} has learnt for as long as that, or no longer gets better")
+        return 0
     numbers = [*range(SCENES, SCENES + count), *range(VALIDATION, VALIDATION + VALIDATION_SCENES)]
-    made = generated(env_id, physics, numbers, whole(workers, 0, 1000, "workers"))
+    made = generated(env_id, physics, numbers, processes)
     learner = Learner(made[:count], made[count:], ranges, times_of("fetch"), seed, reward, begun, settings, shape)
     if state is not None:
         learner.resume(state)
@@ -167,19 +180,19 @@ def score(
         env_id: Task of the policy.
         physics: Preset of the hazards.
     """
+    from hazard_ms.agents.learned.map_policy import MapPolicy
     from hazard_ms.agents.learned.weights import load, load_map, sees_map
     from hazard_ms.learning.comparison import six_table, table
     from hazard_ms.learning.playing import MapPlayer, Player
     from hazard_ms.sketch.scenes import more_scenes
     from hazard_ms.sketch.skill_times import load as times_of
 
-    six = MapPlayer(load_map(weights, env_id)).play if sees_map(weights) else None
-    options = None if six is not None else Player(load(weights, env_id)).play
+    policy = load_map(weights, env_id) if sees_map(weights) else load(weights, env_id)
     scenes, times = more_scenes(env_id, physics, VALIDATION, VALIDATION_SCENES), times_of("fetch")
-    if six is not None:
-        print(six_table(scenes, times, {str(weights): six}))
-    if options is not None:
-        print(table(scenes, times, {str(weights): options}))
+    if isinstance(policy, MapPolicy):
+        print(six_table(scenes, times, {str(weights): MapPlayer(policy).play}))
+    else:
+        print(table(scenes, times, {str(weights): Player(policy).play}))
     return 0
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import io
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from hazard_ms.agents.learned.map_policy import MapPolicy, MapShape
 from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
 from hazard_ms.agents.learned.weights import stored
 from hazard_ms.learning.actor_critic import ActorCritic
+from hazard_ms.learning.checks import Check, curve_of, ended
 from hazard_ms.learning.cloning import JUDGE, scores
 from hazard_ms.learning.playing import MapPlayer, Player, six_scores
 from hazard_ms.learning.settings import OURS, Settings
@@ -39,18 +40,6 @@ from hazard_ms.sketch.skill_times import SkillTimes
 WIDTH, HEADS, BLOCKS = 32, 4, 1  # of the policy over options: three times as quick as that of behaviour cloning
 SHARE = 0.5  # of the widths of the original's network: policies for all tasks stay below 1.5 MB
 FEW = 3  # validation scenes whose mean Value is kept with a policy, to see later whether it still plays alike
-
-
-@dataclass(frozen=True)
-class Check:
-    """The worth of a policy at some time of its training."""
-
-    decisions: int  # so far
-    seconds: float  # so far, wall time, without what came before the training
-    training: float  # mean Value of the episodes that ended since the last check; if none did, as then
-    validation: float  # mean Value in the validation scenes
-    greedy: float  # that of the policy `greedy` in the same episodes
-    best: float  # greatest validation so far
 
 
 class Learner:
@@ -122,10 +111,9 @@ class Learner:
         for name, number in (("decisions", decisions), ("minutes", minutes)):
             if not number > 0:
                 raise ValueError(f"{name} must be positive, got {number}")
-        left = decisions - self.model.num_timesteps
-        if left > 0 and not self.stuck():
+        if not ended(self.curve, self.settings, decisions, minutes):
             watch = _Watch(self, decisions, minutes, told)
-            self.model.learn(left, callback=watch, reset_num_timesteps=False)
+            self.model.learn(decisions - self.model.num_timesteps, callback=watch, reset_num_timesteps=False)
             watch.check()
 
     def check(self, seconds: float, values: Sequence[float]) -> Check:
@@ -160,19 +148,14 @@ class Learner:
         """Go on from what `saved` gave. Raises ValueError for anything else."""
         try:
             state = torch.load(io.BytesIO(packed), weights_only=True)
+            self.curve = curve_of(packed)
             self.model.policy.load_state_dict(state["policy"])
             self.model.policy.optimizer.load_state_dict(state["optimiser"])
             self.best.load_state_dict(state["best"])
             self.model.num_timesteps = int(state["decisions"])
-            self.curve = [Check(**check) for check in state["curve"]]
             self.model.set_random_seed(self._seed + self.model.num_timesteps)  # or the first episodes come again
         except Exception as error:  # torch raises errors of many kinds for a damaged file
             raise ValueError(f"the state of a training must be one that was saved, got {error}") from None
-
-    def stuck(self) -> bool:
-        """Whether there was no better policy for as many checks as its settings have patience."""
-        best = max(range(len(self.curve)), key=lambda k: self.curve[k].validation, default=0)
-        return 0 < self.settings.patience < len(self.curve) - best
 
     def progress(self, share: float) -> None:
         """Bring rates to what they are when this `share` of the training is over."""
@@ -181,14 +164,17 @@ class Learner:
 
 
 class _Watch(BaseCallback):
-    """Keeps the time of a training, and checks the policy every CHECK updates."""
+    """Keeps the time of a training, and checks the policy every so many updates.
+
+    It ends a training only between updates, so that what was played has been learnt from.
+    """
 
     def __init__(self, learner: Learner, decisions: int, minutes: float, told: Callable[[Check], None]) -> None:
         super().__init__()
         self._learner, self._decisions, self._most, self._told = learner, decisions, 60.0 * minutes, told
         self._start = time.monotonic() - (learner.curve[-1].seconds if learner.curve else 0.0)
         self._values: list[float] = []
-        self._rollouts = 0
+        self._rollouts, self._over = 0, False
 
     def _seconds(self) -> float:
         return time.monotonic() - self._start
@@ -196,12 +182,16 @@ class _Watch(BaseCallback):
     def _on_step(self) -> bool:
         infos: list[dict[str, Any]] = self.locals["infos"]
         self._values += [info["value"] for info in infos if "value" in info]
-        return self._seconds() < self._most and not self._learner.stuck()
+        if self._over:  # the step that was made since will never be learnt from
+            self._learner.model.num_timesteps -= self.training_env.num_envs
+        return not self._over
 
     def _on_rollout_start(self) -> None:
         if self._rollouts % self._learner.settings.check == 0:  # before it plays on: what was played has been learnt
             self.check()
         self._rollouts += 1
+        learner = self._learner
+        self._over = self._seconds() >= self._most or ended(learner.curve, learner.settings, self._decisions, np.inf)
 
     def _on_rollout_end(self) -> None:
         share = self._learner.model.num_timesteps / self._decisions
@@ -220,11 +210,16 @@ def _between(ends: tuple[float, float], share: float) -> float:
     return ends[0] + share * (ends[1] - ends[0])
 
 
-def shape_for(actions: str, ranges: Sequence[tuple[float, float]], **more: Any) -> Shape | MapShape:
-    """The usual shape of a policy for "options" or "paper" that learns in the sketch; `more` of it."""
+def shape_for(
+    actions: str, ranges: Sequence[tuple[float, float]], share: float = SHARE, masked: bool = False
+) -> Shape | MapShape:
+    """The usual shape of a policy for "options" or "paper" that learns in the sketch.
+
+    `share` of the widths of the original's network, and whether actions are `masked`, are those of "paper".
+    """
     if actions == OPTIONS:
         return Shape(tuple(ranges), WIDTH, HEADS, BLOCKS, MISSING)
-    return MapShape(tuple(ranges), **{"share": SHARE, "ignored": MISSING_PLANES, "at_things": True, **more})
+    return MapShape(tuple(ranges), share=share, masked=masked, ignored=MISSING_PLANES, at_things=True)
 
 
 def value_of(policy: SetPolicy | MapPolicy, scenes: Sequence[SketchScene], times: SkillTimes) -> float:

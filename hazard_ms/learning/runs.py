@@ -15,7 +15,8 @@ from typing import Any
 import torch
 
 from hazard_ms.agents.learned.weights import contents
-from hazard_ms.learning.ppo import Check, Learner
+from hazard_ms.learning.checks import Check
+from hazard_ms.learning.ppo import Learner
 from hazard_ms.machine.files import write_together
 
 RESUMABLE, CURVE = ".training", ".csv"

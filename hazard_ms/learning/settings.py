@@ -20,13 +20,13 @@ class Settings:
     batch: int  # decisions of a step of the optimiser
     epochs: int  # passes over the decisions of an update
     rates: tuple[float, float]  # of learning, at the beginning and at the end
-    entropy: tuple[float, float]  # worth of chance, at the beginning and at the end
+    entropy: tuple[float, float]  # its coefficient in the loss, at the beginning and at the end
     discount: float
-    trace: float  # lambda of the advantages
+    trace: float  # GAE lambda
     clip: float
     check: int  # updates from one look at validation scenes to the next
     patience: int  # checks without a better policy after which learning ends; 0: it goes on
-    scale: float  # factor on rewards: rewards of 20 drown what the policy learns beside what the critic does
+    scale: float  # factor on rewards: with rewards of 20 the critic's loss swamps the policy's
     decisions: int  # to learn from, unless others are asked for
     reward: str  # unless another is asked for
 

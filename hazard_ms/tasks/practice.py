@@ -23,7 +23,7 @@ from hazard_ms.tasks import practice_rewards as rewards
 from hazard_ms.tasks.practice_terms import PICK_UP_TERMS, WALK_TO_TERMS
 
 ROOM = (7.0, 6.0)  # of a practice room [m] [ours]
-COLUMNS, ROWS = (1.3, 3.5, 5.7), (1.5, 4.5)  # about where its six stands are, along x and y [m]: no arm reaches two
+COLUMNS, ROWS = (1.4, 3.5, 5.6), (1.5, 4.5)  # about where its six stands are, along x and y [m]: no arm reaches two
 SHIFT = 0.2  # most that a stand is off there [m]
 STAND_WIDTH, STAND_HEIGHT = (0.25, 0.4), (0.2, 0.85)  # least and most [m]; tables and low shelves are as high
 ON_FLOOR = 1 / 6  # chance that a thing lies on the floor instead, where it is hard to reach
@@ -92,7 +92,7 @@ def stand_far(situation: Situation, rows: Tensor) -> None:
 
 
 def practice(goal: Goal, walking: bool, physics: str) -> Task:
-    """A task of practice with the rates of the preset `physics`. Raises ValueError for an unknown preset."""
+    """A task of practice. `physics` changes nothing without hazards; ValueError is raised for an unknown preset."""
     one_of(physics, PRESETS, "physics")
     return Task(
         scenes=names,

@@ -11,7 +11,7 @@ from hazard_ms.spec import Term
 from hazard_ms.tasks import practice_rewards as rewards
 
 AROUND = 3  # nearest pieces of furniture that a walk observes
-FAR = 10.0  # where furniture counts as being that is not there [m]
+FAR = 10.0  # away, where what is no furniture counts as being [m]
 BASE = ("ahead", "left", "up")
 
 
@@ -43,7 +43,6 @@ def furniture(situation: Situation) -> Tensor:
     off = torch.maximum(torch.minimum(at, world.position[..., :2] + half), world.position[..., :2] - half) - at
     fixed = world.exists & ~world.movable
     off = torch.where(fixed[..., None], off, FAR)
-    off = torch.cat([off, off.new_full((len(off), AROUND, 2), FAR)], dim=1)  # for rooms with less furniture
     order = off.norm(dim=-1).argsort(dim=1)[:, :AROUND, None].expand(-1, -1, 2)
     near = torch.cat([off.gather(1, order), torch.zeros_like(order[..., :1], dtype=off.dtype)], dim=-1)
     return rewards.in_base(situation, near)[..., :2].flatten(1)

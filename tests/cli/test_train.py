@@ -11,6 +11,7 @@ from hazard_ms.agents.learned.weights import load, load_map
 from hazard_ms.cli import train
 from hazard_ms.cli.__main__ import main
 from hazard_ms.skills.options.choices import ACTIONS
+from tests.worlds.policies import stored_map
 
 FIRE = "HazardFire-v1"
 
@@ -67,6 +68,8 @@ def test_the_six_actions_are_trained_resumed_and_scored(tmp_path: Path, capsys: 
     assert load_map(path, FIRE).shape.share == 0.125
     assert main([*plain, "--decisions", "1024"]) == 0
     assert "goes on after 512 decisions" in capsys.readouterr().out
+    assert main([*plain, "--decisions", "1024"]) == 0
+    assert capsys.readouterr().out == f"{path} has learnt for as long as that, or no longer gets better\n"
     assert main(["train", "score", str(path), "-e", FIRE]) == 0
     out = capsys.readouterr().out
     assert str(path) in out and "random six actions" in out and "greedy, over options" in out
@@ -77,14 +80,20 @@ def test_actions_are_those_of_environments() -> None:
 
 
 def test_what_cannot_be_trained_or_scored_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["train", "bc", "-e", FIRE, "-o", str(tmp_path), "--scenes", "0"]) == 2
-    assert "scenes must be a whole number from 1 to 975" in capsys.readouterr().err
+    for name, most in (("scenes", 975), ("rounds", 1000), ("episodes", 10**7)):
+        assert main(["train", "bc", "-e", FIRE, "-o", str(tmp_path), f"--{name}", "0"]) == 2
+        assert f"{name} must be a whole number from 1 to {most}" in capsys.readouterr().err
+    given = str(stored_map(tmp_path / "given.safetensors"))
     ppo = ["train", "ppo", "-e", FIRE, "-o", str(tmp_path)]
     for wrong, said in (
         (["--decisions", "0"], "decisions must be a whole number"),
         (["--reward", "gold"], "reward must be one of value, paper"),
         (["--actions", "papr"], "did you mean 'paper'"),
         (["--masked"], "masked must be left out with actions options"),
+        (["--share", "0.25"], "share must be left out with actions options, whose network has one width, got 0.25"),
+        (["--minutes", "nan"], "minutes must be positive, got nan"),
+        (["--actions", "paper", "--start", given, "--masked"], "share and masked must be those of the policy in start"),
+        (["--actions", "paper", "--start", given, "--share", "1"], "share and masked must be those of the policy"),
         (["--actions", "paper", "--share", "2"], "share of a policy must be from 1/32 to 1"),
         (["--start", str(tmp_path / "none.safetensors")], "none.safetensors must hold a policy"),
     ):

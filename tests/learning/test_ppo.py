@@ -12,8 +12,9 @@ import torch
 from hazard_ms.agents.learned.set_policy import SetPolicy
 from hazard_ms.learning import ppo
 from hazard_ms.learning.actor_critic import ActorCritic
+from hazard_ms.learning.checks import Check
 from hazard_ms.learning.cloning import scores
-from hazard_ms.learning.ppo import Check, Learner
+from hazard_ms.learning.ppo import Learner
 from hazard_ms.learning.runs import line
 from hazard_ms.learning.settings import OURS
 from hazard_ms.sketch.rescues.scene import Ints
@@ -108,7 +109,14 @@ def test_training_ends_when_its_time_is_over_and_slows_down_until_then(monkeypat
     made, rates, clock = learner(), list[float](), itertools.count()
     monkeypatch.setattr(ppo.time, "monotonic", lambda: float(next(clock)))
     made.train(10**6, 1.0, lambda _: rates.append(made.model.policy.optimizer.param_groups[0]["lr"]))
-    assert 8 * 4 * 2 < made.model.num_timesteps < 8 * 4 * 8 and 59 < made.curve[-1].seconds < 64
+    assert 32 * 2 < made.model.num_timesteps < 32 * 30 and 59 < made.curve[-1].seconds < 64
+    state = made.model.policy.optimizer.state_dict()["state"]
+    assert int(state[0]["step"]) == OURS.epochs * made.model.num_timesteps // 16, (
+        "it has learnt from all that it counts"
+    )
+    before = made.model.num_timesteps
+    made.train(10**6, 1.0, lambda _: pytest.fail("it is over"))
+    assert made.model.num_timesteps == before
     assert rates == sorted(rates, reverse=True) and rates[-1] < 0.5 * rates[0]
     made.progress(1.0)
     found = (made.model.lr_schedule(0.5), made.model.ent_coef)

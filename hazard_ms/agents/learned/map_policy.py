@@ -3,7 +3,7 @@
     maximum of 2 x 2, convolution to 32 planes, maximum, 64, maximum, 128, maximum, 64, 32, then layers of 512 and 256
 
 Convolutions are of 3 x 3 cells; a ReLU follows each layer. The marks of the agent are negative, and a maximum would
-lose them, so that this plane is turned around first. `share` makes all layers narrower.
+lose them, so the sign of this plane is flipped first. `share` makes all layers narrower.
 """
 
 from __future__ import annotations

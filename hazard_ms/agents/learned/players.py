@@ -5,6 +5,7 @@ The package brings weights of some tasks (SHIPPED); `weights=FILE` takes others.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
@@ -43,6 +44,13 @@ def weights_file(given: str, name: str, task: str, made_by: str) -> Path:
     return path
 
 
+def check_hazards(ranges: Sequence[tuple[float, float]], brief: Brief) -> None:
+    """Raises ValueError unless a policy that learned with hazards of the usual levels `ranges` can play an episode."""
+    if len(ranges) != len(brief.hazards):
+        told = ", ".join(hazard.name for hazard in brief.hazards)
+        raise ValueError(f"weights must be of a policy for as many hazards as there are ({told}), got {len(ranges)}")
+
+
 class Learned(Agent):
     """Asks a policy which option is best, and plays it to its end. It sees nothing but what all agents see."""
 
@@ -57,12 +65,13 @@ class Learned(Agent):
     def reset(self, brief: Brief) -> None:
         """Begin an episode. Nothing is random.
 
-        Raises ValueError if the file holds no policy for its task, and if the package brings none.
+        Raises ValueError if the file holds no policy for its task and as many hazards, and if the package brings none.
         """
         if self._loaded is None or self._loaded[0] != brief.task:
             path = weights_file(self._weights, self.name, brief.task, self.made_by)
             self._loaded = brief.task, load(path, brief.task, self.made_by)
         self._policy = self._loaded[1]
+        check_hazards(self._policy.shape.ranges, brief)
         self._encoder = Encoder(self._policy.shape.ranges, brief.radius)
         self._options = Options()
         self._playing: tuple[Option, Macro] | None = None
@@ -125,12 +134,13 @@ class RlPaper(Agent):
     def reset(self, brief: Brief) -> None:
         """Begin an episode, and a sequence of random numbers that `brief.random_seed` determines.
 
-        Raises ValueError if the file holds no policy for its task, and if the package brings none.
+        Raises ValueError if the file holds no policy for its task and as many hazards, and if the package brings none.
         """
         if self._loaded is None or self._loaded[0] != brief.task:
             path = weights_file(self._weights, self.name, brief.task, self.made_by)
             self._loaded = brief.task, load_map(path, brief.task, self.made_by)
         self._policy = self._loaded[1]
+        check_hazards(self._policy.shape.ranges, brief)
         # "RLP": not the stream of another agent with the same seed
         self._chance = np.random.default_rng([brief.random_seed, 0x524C50])
         self._actions = SixActions(brief.random_seed)

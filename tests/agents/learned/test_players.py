@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import pytest
@@ -100,3 +101,12 @@ def test_weights_of_the_package_are_found_by_task(name: str, tmp_path: Path, mon
     (tmp_path / f"{name}_HazardFire-v1.safetensors").unlink()
     with pytest.raises(ValueError, match="brings none for HazardFire-v1"):
         agent(name).reset(brief())
+
+
+@pytest.mark.parametrize("name", ["rl", "rl_paper"])
+def test_a_policy_for_other_hazards_is_refused(name: str, tmp_path: Path) -> None:
+    store = stored_map if name == "rl_paper" else stored
+    player, told = agent(f"{name}:weights={store(tmp_path / 'one.safetensors')}"), brief()
+    player.reset(told)
+    with pytest.raises(ValueError, match=r"as many hazards as there are \(fire, fire\), got 1"):
+        player.reset(dataclasses.replace(told, hazards=told.hazards * 2))

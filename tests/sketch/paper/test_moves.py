@@ -85,11 +85,6 @@ def test_what_an_action_is_worth(what: str) -> None:
         assert float(reward[0]) == pytest.approx(-5.1) and int(play.sketch.state.frame[0]) == start + IDLE
 
 
-def test_there_are_ten_situations_for_each_safe_place_and_half_of_them_are_punished() -> None:
-    for situations in (BAG_SITUATIONS, CART_SITUATIONS):
-        assert len(situations) >= 10 and sum(not can for _, _, _, can, _ in situations.values()) >= 5
-
-
 def test_a_rescue_in_pieces_takes_as_long_as_one_option() -> None:
     """Two metres of walking, a pick-up and the bag, however it is cut; only the settling is shared out."""
     whole = round(WALK * 1.5 + SETTLE) + PICK_FRAMES + BAG_FRAMES

@@ -12,6 +12,7 @@ import torch
 from hazard_ms.evaluation.choices import SEVERITIES as OFFERED
 from hazard_ms.evaluation.options import EnvOptions, EpisodeOptions, SweepOptions
 from hazard_ms.hazards import presets
+from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.severity import SEVERITIES, USUAL
 from hazard_ms.tasks import task_of
 from tests.worlds.wind_worlds import Thing, begin, street
@@ -46,12 +47,10 @@ def test_inflows_are_those_of_a_free_weir(severity: str) -> None:
 @EVERY
 def test_fires_grow_to_a_megawatt_in_the_published_time(severity: str) -> None:
     assert SEVERITIES[severity].fire_growth * MEGAWATT[severity] ** 2 == pytest.approx(1055.0, rel=0.01)
-    fire = presets.fire("realistic", severity)
-    assert fire == dataclasses.replace(  # type: ignore[type-var]
-        presets.fire("realistic"),
-        growth=SEVERITIES[severity].fire_growth,
-        first_release=SEVERITIES[severity].fire_start,
-    )
+    fire, usual = presets.fire("realistic", severity), presets.fire("realistic")
+    assert isinstance(fire, Blaze) and isinstance(usual, Blaze)
+    level = SEVERITIES[severity]
+    assert fire == dataclasses.replace(usual, growth=level.fire_growth, first_release=level.fire_start)
 
 
 @pytest.mark.parametrize("make", [presets.fire, presets.flood, presets.wind])

@@ -51,9 +51,9 @@ HEADER = (
 
 
 def rows(tasks: Sequence[str], scenes: int) -> Iterator[Row]:
-    """The rows of every preset and severity of `tasks`, over the first scenes of their split `train`.
+    """The rows of every preset and severity of `tasks`, over `scenes` of their split `train`, evenly spread.
 
-    Seeds are the numbers of the scenes. Raises ValueError for unknown tasks, and for more scenes than there are.
+    Seeds are 0, 1, ... Raises ValueError for unknown tasks, and for more scenes than there are.
     """
     for task in tasks:
         one_of(task, RESCUES, "env_id")
@@ -63,10 +63,11 @@ def rows(tasks: Sequence[str], scenes: int) -> Iterator[Row]:
 
 
 def row(name: str, physics: str, severity: str, scenes: int) -> Row:
-    """The row of one task, preset and severity over the first `scenes`."""
+    """The row of one task, preset and severity over this number of `scenes`."""
     task = task_of(name, physics, None, severity)
     names = tuple(task.scenes("train"))
-    specs = [task.build(scene) for scene in names[: whole(scenes, 1, min(MOST_SCENES, len(names)), "scenes")]]
+    count = whole(scenes, 1, min(MOST_SCENES, len(names)), "scenes")
+    specs = [task.build(names[k * len(names) // count]) for k in range(count)]
     ends = [task.max_frames * (k + 1) // QUARTERS for k in range(QUARTERS)]
     found = [fates(recorded(task, physics, spec, seed), spec, ends) for seed, spec in enumerate(specs)]
     moved, damaged = np.concatenate(found, axis=-1)
@@ -86,7 +87,8 @@ def fates(line: Timeline, spec: SceneSpec, ends: Sequence[int]) -> np.ndarray:
 
 def report(tasks: Sequence[str], scenes: int) -> Iterator[str]:
     """The lines of the table, each as soon as it is known."""
-    yield f"{scenes} scenes of `train`, nobody acts; shares of the targets after 1/4, 1/2, 3/4 and all of an episode"
+    yield f"{scenes} scenes of `train`, evenly spread, in which nobody acts."
+    yield "Shares of the targets after 1/4, 1/2, 3/4 and all of an episode:\n"
     yield HEADER
     for found in rows(tasks, scenes):
         yield found.line

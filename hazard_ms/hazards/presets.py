@@ -49,6 +49,7 @@ _WIND = {
         pressure=True,
         roughness=0.03,  # open ground [docs/physics.md 3.3]
         pavement=0.001,  # asphalt [docs/physics.md 3.3]
+        lift=0.4,  # suction of 0.7 above less 0.3 below [docs/physics.md 3.3]
         gust_intensity=0.172,  # 1 / ln(10 m / 0.03 m)
         sheltered=True,
         sweeping_share=1.0,  # the agent drifts at the speed at which its robot really slides [docs/physics.md 3.3]

@@ -33,6 +33,7 @@ NODES = wp.constant(wp.vec4(-0.8611363116, -0.3399810436, 0.3399810436, 0.861136
 WEIGHTS = wp.constant(wp.vec4(0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226))
 CELL = wp.constant(0.5)  # edge of a cell of a map of shelter [m] [ours]
 LOWEST = wp.constant(0.5)  # height below which fixtures shelter nothing [m] [ours]
+THIN = wp.constant(1e-6)  # least half height [m], so that 0 / 0 cannot occur
 _TINY = wp.constant(1e-9)  # least speed [m/s] and mass [kg], so that 0 / 0 cannot occur
 
 

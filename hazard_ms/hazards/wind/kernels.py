@@ -30,6 +30,7 @@ class Rules:
     gust_intensity: float
     roughness: float
     pavement: float
+    lift: float
 
 
 @wp.struct
@@ -133,7 +134,8 @@ def in_uniform_flow(e: int, b: int, dt: float, rules: Rules, air: Air, bodies: B
 def in_profile(e: int, b: int, dt: float, rules: Rules, air: Air, bodies: Bodies) -> tuple[wp.vec3, wp.vec3]:
     """Force [N] and torque [N m] on a body, integrated over its height from its lowest point to its highest.
 
-    Its area across the flow counts as spread evenly over that height: exact for upright boxes.
+    Its area across the flow counts as spread evenly over that height: exact for upright boxes. Air that streams over
+    what lies on the ground lifts it, too.
     """
     here = air.felt[e, b] * air.speed[e]
     if wp.abs(here) <= CALM:
@@ -157,7 +159,22 @@ def in_profile(e: int, b: int, dt: float, rules: Rules, air: Air, bodies: Bodies
     if rules.pressure:
         turn = turn + main * (axes * laws.pressure_arm(to_body(axes, laws.unit(whole)), size))
         turn = turn + spin_drag(bodies.angular_velocity[e, b], axes, size, mass, laws.DENSITY, dt, 0.0)
-    return held * whole + main * air.sway[e, b], turn
+    return held * whole + main * air.sway[e, b] + suction(e, b, half, rules, air, bodies), turn
+
+
+@wp.func
+def suction(e: int, b: int, half: float, rules: Rules, air: Air, bodies: Bodies) -> wp.vec3:
+    """Lift [N] on a body of half height `half` [m].
+
+    It is gone where the gap below is as high as the body itself: air that gets in there makes the pressures equal.
+    """
+    point, axes = bodies.position[e, b], axes_of(bodies.rotation[e, b])
+    near = wp.clamp(1.5 - 0.5 * point[2] / wp.max(half, laws.THIN), 0.0, 1.0)
+    here = air.felt[e, b] * speed_at(e, point + wp.vec3(0.0, 0.0, half), rules, air)
+    over = wp.vec2(here * air.heading[e][0], here * air.heading[e][1])
+    over -= wp.vec2(bodies.velocity[e, b][0], bodies.velocity[e, b][1])
+    plan = laws.projected_area(to_body(axes, wp.vec3(0.0, 0.0, 1.0)), bodies.extent[e, b])
+    return wp.vec3(0.0, 0.0, near * rules.lift * 0.5 * laws.DENSITY * plan * wp.dot(over, over))
 
 
 @wp.kernel

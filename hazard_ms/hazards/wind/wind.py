@@ -15,8 +15,8 @@ cart has settled: it feels nothing, for ever. Constants: docs/physics.md 1.3; wh
 the pressure upwind of the centre, and the logarithmic profile, over which force and torque are integrated from a
 thing's base to its top. There the new velocity is a weighted mean of the thing's own and of those of the air that
 meets it, so wind alone makes no thing faster than its gusts, in any direction. Wind damages nothing. Things that it
-carries away stop at the enclosure that `Room.beyond` sets. Limits: no lift, no added mass; things do not shelter one
-another.
+carries away stop at the enclosure that `Room.beyond` sets. Limits: no lift off the ground, no added mass; things do not
+shelter one another.
 """
 
 from __future__ import annotations
@@ -97,6 +97,7 @@ class Wind(Hazard):
     # roughness length of the surroundings, for the logarithmic profile [m]; 0: no profile, the wind at the centre
     roughness: float = 0.0
     pavement: float = 0.0  # roughness length of what things lie on, for the lowest metre of air [m]; 0: as around
+    lift: float = 0.0  # coefficient of lift of what lies on the ground in a profile, on its area seen from above
     gust_intensity: float = 0.0  # standard deviation of the wind's speed over its mean
     gust_time: float = 5.0  # correlation time of gusts [s] [docs/physics.md W-20]
     sheltered: bool = False  # fixtures have a lee
@@ -109,7 +110,7 @@ class Wind(Hazard):
         for name in ("scale", "gain", "gust_time", "sweeping_share"):
             if not 0 < getattr(self, name) < math.inf:
                 raise ValueError(f"{name} must be a positive number, got {getattr(self, name)}")
-        for name in ("turbulence", "torque", "roughness", "pavement", "gust_intensity"):
+        for name in ("turbulence", "torque", "roughness", "pavement", "lift", "gust_intensity"):
             if not 0 <= getattr(self, name) < REFERENCE:
                 raise ValueError(f"{name} must be at least 0 and below {REFERENCE}, got {getattr(self, name)}")
         if self.roughness and not (self.implicit and self.projected and self.crossflow):

@@ -165,9 +165,9 @@ def at_height(roughness: float, height: float, pavement: float = 0.0) -> float:
 
 
 def in_street(extent: tuple[float, float, float], speed: float) -> float:
-    """Force [N] of a storm of a mean `speed` [m/s] at 10 m on a box that stands on the pavement."""
+    """Force [N] along a storm of a mean `speed` [m/s] at 10 m on a box that stands on the pavement."""
     law = dataclasses.replace(REAL, scale=1.0, gust_intensity=0.0, sheltered=False)
-    return float(push(law, street([Thing(extent, HEAVY)], (speed, 0.0))).force.norm())
+    return float(push(law, street([Thing(extent, HEAVY)], (speed, 0.0))).force[0, 0, 0])
 
 
 @functools.cache

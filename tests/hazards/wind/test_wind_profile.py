@@ -18,7 +18,8 @@ from hazard_ms.hazards.wind.wind import Wind
 from tests.worlds.fire_worlds import about_z
 from tests.worlds.wind_worlds import Block, Thing, begin, push, street
 
-LAW = dataclasses.replace(wind("realistic"), scale=1.0, gust_intensity=0.0, sheltered=False)
+LIFTS = dataclasses.replace(wind("realistic"), scale=1.0, gust_intensity=0.0, sheltered=False)
+LAW = dataclasses.replace(LIFTS, lift=0.0)
 RHO, BOX = 1.225, 1.05  # density of air [kg/m^3], drag coefficient of boxes [-]
 HEAVY = 1e9  # so heavy that the step is of no account [kg]
 PHONE = Thing((0.15, 0.075, 0.01), HEAVY, category="box")
@@ -142,3 +143,30 @@ def test_a_lee_counts_at_each_height() -> None:
 def test_a_profile_needs_the_whole_relative_velocity() -> None:
     with pytest.raises(ValueError, match="roughness must be 0 without implicit, projected and crossflow, got 0.03"):
         Wind(roughness=0.03)
+
+
+@pytest.mark.parametrize("u10", STORMS)
+@pytest.mark.parametrize("name", THINGS)
+def test_air_over_what_lies_on_the_ground_lifts_it(name: str, u10: float) -> None:
+    """0.4 rho u^2 / 2 on its area from above, u at its top; at half its height above the ground half of it, and none
+    from its own height on. It neither pushes nor turns.
+    """
+    length, width, height = THINGS[name].extent
+    lying = push(LIFTS, street([THINGS[name]], (0.0, u10)))
+    plain = push(LAW, street([THINGS[name]], (0.0, u10)))
+    want = 0.4 * 0.5 * RHO * length * width * air(u10, height) ** 2
+    assert float(lying.force[0, 0, 2]) == pytest.approx(want, rel=1e-3)
+    assert torch.equal(lying.force[..., :2], plain.force[..., :2])
+    assert lying.torque is not None and plain.torque is not None and torch.equal(lying.torque, plain.torque)
+    for gap, share in ((0.5, 0.5), (1.0, 0.0), (3.0, 0.0)):
+        raised = dataclasses.replace(THINGS[name], at=(8.0, 8.0, gap * height))
+        got = float(push(LIFTS, street([raised], (0.0, u10))).force[0, 0, 2])
+        top = 0.4 * 0.5 * RHO * length * width * air(u10, (1 + gap) * height) ** 2
+        assert got == pytest.approx(share * top, rel=5e-3, abs=1e-5 * top)
+
+
+def test_a_banknote_takes_off_in_a_severe_storm_and_not_in_a_moderate_one() -> None:
+    """1 g of 0.12 x 0.06 m, 0.5 mm high as it never lies flat, of which the air must lift the weight."""
+    for u10, flies in ((17.0, False), (28.0, True)):
+        note = dataclasses.replace(BANKNOTE, mass=1e-3)
+        assert (float(push(LIFTS, street([note], (u10, 0.0))).force[0, 0, 2]) > 1e-3 * 9.81) == flies

@@ -1,4 +1,4 @@
-"""Cases of wind: W of docs/physics.md 2.3."""
+"""Cases of wind: W of docs/physics.md 2.3, all but W-23: no hazard has a power law for its profile."""
 
 from __future__ import annotations
 
@@ -53,8 +53,6 @@ BOXES = {"phone": (0.15, 0.075, 0.01), "banknote": (0.12, 0.06, 0.0005), "carton
 W26 = {("phone", 17.0): 0.0044464, ("phone", 28.0): 0.012062, ("phone", 40.0): 0.024617}
 W26 |= {("banknote", 17.0): 5.9083e-05, ("banknote", 28.0): 1.6028e-04, ("banknote", 40.0): 3.2711e-04}
 W26 |= {("carton", 17.0): 2.9916, ("carton", 28.0): 8.1157, ("carton", 40.0): 16.563}
-# Cases of docs/physics.md that have no run here, and why
-MISSING = {"W-23": "the power law: no hazard uses it, the profile is logarithmic"}
 
 
 def of_motion() -> Iterator[Case]:

@@ -121,9 +121,9 @@ def resets(env_id: str, **keywords: Any) -> str:
     return f"reset: {fresh}, one built before {np.median(again):.2f} s ({max(again):.2f})"
 
 
-def greedy_episode(env_id: str, seed: int) -> str:
+def greedy_episode(env_id: str, seed: int, **keywords: Any) -> str:
     """The line on a whole greedy episode, after a first look that compiles the shaders."""
-    made = SkillEnv.make(env_id)
+    made = SkillEnv.make(env_id, **keywords)
     made.reset(seed=seed)
     made.step(Action(EXPLORE))
     start = time.perf_counter()
@@ -135,20 +135,22 @@ def greedy_episode(env_id: str, seed: int) -> str:
     return f"greedy episode, seed {seed}: {what} in {seconds:.1f} s: {per}"
 
 
-def report(env_id: str, frames: int, seed: int, episode: bool) -> str:
-    """The table that `hazard-ms bench` prints. Raises ValueError for an unknown task and for too few frames."""
-    EnvOptions(env_id).check()
+def report(env_id: str, frames: int, seed: int, episode: bool, physics: str = "paper", severity: str = "severe") -> str:
+    """The table that `hazard-ms bench` prints. Raises ValueError for unknown names and for too few frames."""
+    EnvOptions(env_id, physics=physics, severity=severity).check()
+    strong = {"physics": physics, "severity": severity}
     whole(frames, FEWEST, MOST, "frames")
     lines = [machine_line(), ""]
     for title, keywords in (
         ("state", {"obs_mode": "state", "render_backend": "none"}),
         ("rgb+depth+segmentation, 256 pixels", {"obs_mode": "rgb+depth+segmentation"}),
     ):
-        found = phases(env_id, frames if title == "state" else max(frames // 10, FEWEST), seed, **keywords)
+        count = frames if title == "state" else max(frames // 10, FEWEST)
+        found = phases(env_id, count, seed, **keywords, **strong)
         total = sum(found["phases_us"].values())
         speed = f"{found['frames_per_second']:.0f} frames/s, median {found['median_us']:.0f} us a frame"
         lines.append(f"{env_id}, {title}: {found['bodies']} things, {found['moving']} of them move")
-        lines += [f"  {speed}, hazards {found['hooks']:.1%} of it", "  " + resets(env_id, **keywords)]
+        lines += [f"  {speed}, hazards {found['hooks']:.1%} of it", "  " + resets(env_id, **keywords, **strong)]
         lines += [f"  {name:10s} {us:9.1f} us  {100 * us / total:5.1f} %" for name, us in found["phases_us"].items()]
         lines.append("")
-    return "\n".join([*lines, greedy_episode(env_id, seed)] if episode else lines)
+    return "\n".join([*lines, greedy_episode(env_id, seed, **strong)] if episode else lines)

@@ -1,4 +1,4 @@
-"""The command `hazard-ms bench`; it imports what it needs when it is called."""
+"""The commands `hazard-ms bench` and `danger`; each imports what it needs when it is called."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 from hazard_ms import registry
-from hazard_ms.evaluation.choices import flag, offer
+from hazard_ms.evaluation.choices import PRESETS, SEVERITIES, flag, offer
 
 PICTURES_SHARE = 10  # frames for one picture: pictures take that much longer [ours]
 FEWEST_PICTURES = 3  # of which a median is taken [ours]
@@ -16,6 +16,8 @@ def bench(
     env_id: Annotated[str, offer(registry.TASKS), flag("-e")] = "HazardFire-v1",
     frames: int = 600,
     seed: Annotated[int, flag("-s")] = 0,
+    physics: Annotated[str, offer(PRESETS)] = "paper",
+    severity: Annotated[str, offer(SEVERITIES)] = "severe",
     episode: bool = True,
     effects: Annotated[bool, flag("--effects", old="looks")] = False,
     kernels: bool = False,
@@ -30,6 +32,8 @@ def bench(
         env_id: Task.
         frames: Frames to average over.
         seed: Seed of the episode.
+        physics: Preset of the hazards.
+        severity: How strong the hazards of the preset realistic are.
         episode: Also play a whole greedy episode.
         effects: Only print what the effects of each mode cost in a picture.
         kernels: Only print what the kernels of flood and wind cost for 1,024 environments of 64 bodies on one thread.
@@ -51,7 +55,21 @@ def bench(
     else:
         from hazard_ms.bench.frames import report
 
-        print(report(env_id, frames, seed, episode))
+        print(report(env_id, frames, seed, episode, physics, severity))
+    return 0
+
+
+def danger(env_id: Annotated[tuple[str, ...], flag("-e")] = (), scenes: int = 25) -> int:
+    """Print how many targets the hazards move and damage over time if nobody acts, for every preset and severity.
+
+    Args:
+        env_id: Tasks; fire, flood and wind if not given.
+        scenes: Number of training scenes of each.
+    """
+    from hazard_ms.bench.danger import RESCUES, report
+
+    for line in report(env_id or RESCUES, scenes):
+        print(line, flush=True)
     return 0
 
 

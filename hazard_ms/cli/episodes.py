@@ -49,7 +49,7 @@ def _filmed(episode: EpisodeOptions, path: Path, every: int) -> EpisodeResult:
     from hazard_ms.pictures.film import Film
 
     camera = {"width": RENDERED[0], "height": RENDERED[1]}
-    subtitle = f"agent {episode.agent}, seed {episode.seed}, {episode.physics} physics"
+    subtitle = f"agent {episode.agent}, seed {episode.seed}, {' '.join([*episode.strength, episode.physics])} physics"
     make_folder(path.parent)
     with drafts(*(path.with_suffix(suffix) for suffix in SUFFIXES)) as (shot, told, shown):
         with Film(shot, subtitle, every) as film:

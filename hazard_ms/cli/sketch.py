@@ -138,20 +138,21 @@ def _score(result: EpisodeResult) -> SceneScore:
     return SceneScore(result.scene, result.seed, tally.value, float(tally.last_rescue), float(tally.rescued))
 
 
-def _settings(result: EpisodeResult) -> tuple[str, str, tuple[str, ...] | None]:
-    """The preset, the robot and the chosen hazards of an episode."""
-    hazards = result.settings.get("hazards")
-    return str(result.settings["physics"]), str(result.settings["robot_uids"]), tuple(hazards) if hazards else None
+def _settings(result: EpisodeResult) -> tuple[str, str, tuple[str, ...] | None, str]:
+    """The preset, the robot, the chosen hazards and the severity of an episode."""
+    told = result.settings
+    hazards = tuple(told["hazards"]) if told.get("hazards") else None
+    return str(told["physics"]), str(told["robot_uids"]), hazards, str(told.get("severity", "severe"))
 
 
 def _scene(
-    env_id: str, name: str, seed: int, max_frames: int, settings: tuple[str, str, tuple[str, ...] | None]
+    env_id: str, name: str, seed: int, max_frames: int, settings: tuple[str, str, tuple[str, ...] | None, str]
 ) -> SketchScene:
     """The scene of an episode in the sketch."""
     from hazard_ms.sketch.scenes import scenes_of
 
-    physics, robot, hazards = settings
-    return scenes_of(env_id, [name], [seed], physics, robot, max_frames, hazards)[0]
+    physics, robot, hazards, severity = settings
+    return scenes_of(env_id, [name], [seed], physics, robot, max_frames, hazards, severity)[0]
 
 
 SketchCommand = (

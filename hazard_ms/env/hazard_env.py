@@ -20,6 +20,7 @@ from hazard_ms.env.spaces import bounded
 from hazard_ms.episode import rewards, snapshot
 from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
+from hazard_ms.hazards.severity import USUAL
 from hazard_ms.registry import TASKS
 from hazard_ms.registry.announce import importable
 from hazard_ms.scenes.choice import SceneChoice, SceneTurns
@@ -56,6 +57,7 @@ class HazardEnv(BuiltEnv):
         split: str = "train",
         scenes: Any = None,
         physics: str = "paper",
+        severity: str = USUAL,
         hazards: Sequence[str] | None = None,
         affects_agent: bool = False,
         robot_uids: Any = "fetch",
@@ -72,15 +74,15 @@ class HazardEnv(BuiltEnv):
             split: Which scenes the seeds choose from, and how long episodes last.
             scenes: JSON file of a scene, folder of them, or list of both: the seeds choose from these instead.
             physics: Preset of the hazards.
+            severity: How strong the hazards of `realistic` are: moderate, severe or extreme.
             hazards: Of HazardCompound-v1: some of the registered hazards.
             affects_agent: Whether the hazards act on the robot.
             robot_uids: The rescuer, by our name of it or by ManiSkill's; also a tuple of one.
             deterministic: Rebuild the scene for every episode, so that a seed gives the same bits (about 1 s a reset).
             scene_every: With `deterministic=False`, n: every n-th reset without a seed draws a new scene; 0: none does.
                 What they draw follows from the last seed, so that a training run sees the same scenes again.
-            effects: How hazards look: full, fast or off. Never changes physics or labels.
-            lighting: day, evening, night, failing (lamps go out during the episode), random (by the seed). Never
-                changes physics or labels.
+            effects: How hazards look: full, fast or off. Never changes physics or labels, and nor does lighting.
+            lighting: day, evening, night, failing (lamps go out during the episode), random (by the seed).
             **maniskill_keywords: As in ManiSkill, but for these. num_envs: more than one needs a GPU. obs_mode: state
                 modes need no renderer. render_backend: auto (the default) picks a GPU, else the CPU, else none.
                 reconfiguration_freq: by default as `deterministic` and `scene_every` say, which it replaces.
@@ -90,7 +92,8 @@ class HazardEnv(BuiltEnv):
         """
         keywords.check_names(maniskill_keywords, HazardEnv.__init__)
         self.physics = checks.one_of(physics, PRESETS, "physics")
-        made = playing(task_of(task, self.physics, hazards), scenes)
+        made = playing(task_of(task, self.physics, hazards, severity), scenes)
+        self.severity = severity
         self.choice = SceneChoice(made, split)
         self.task = dataclasses.replace(made, max_frames=TASKS[task].frames(split))
         self._most_frames = self.task.max_frames
@@ -142,8 +145,7 @@ class HazardEnv(BuiltEnv):
     def _other_scenes(self, seed: Any) -> bool:
         """Whether these seeds choose other scenes than those that are built."""
         self._set_main_rng(seed)
-        chosen = self.choice.names(None, np.resize(self._main_seed, self.num_envs))
-        return chosen != [s.name for s in self.specs]
+        return self.choice.names(None, np.resize(self._main_seed, self.num_envs)) != [s.name for s in self.specs]
 
     def step(self, action: Any) -> tuple[Any, Tensor, Tensor, Tensor, dict[str, Any]]:
         """Let one frame pass.
@@ -173,8 +175,7 @@ class HazardEnv(BuiltEnv):
     def observation_table(self) -> ObservationTable:
         """The meaning of each number of observations, and its range."""
         levels = {hazard.name: hazard.level for hazard in self.task.hazards}
-        joints = self.agent.robot.active_joints
-        return ObservationTable(joints, self.task.observations, levels, self._most_frames)
+        return ObservationTable(self.agent.robot.active_joints, self.task.observations, levels, self._most_frames)
 
     def limit_of(self, frames: int) -> int:
         """The limit that gymnasium's `frames` stands for: that of the split if `frames` is the task's usual one."""
@@ -189,8 +190,7 @@ class HazardEnv(BuiltEnv):
     @cached_property
     def single_observation_space(self) -> gym.Space[Any]:
         """The space of one environment's observations, with true bounds."""
-        state = to_numpy(self._get_obs_state_dict({}))
-        return bounded(to_numpy(self._init_raw_obs), self.observation_table, state)
+        return bounded(to_numpy(self._init_raw_obs), self.observation_table, to_numpy(self._get_obs_state_dict({})))
 
     def evaluate(self) -> dict[str, Tensor]:
         return rewards.evaluate(self.task.goal, self.situation)

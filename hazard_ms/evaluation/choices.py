@@ -12,8 +12,9 @@ from typing import Any
 import tyro
 from tyro.constructors import PrimitiveConstructorSpec
 
-# As hazards.presets, simulation.lighting, env and scenes.splits name them; tests/cli compares them.
+# As hazards.presets, hazards.severity, simulation.lighting, env and scenes.splits name them; tests/cli compares them.
 PRESETS = ("paper", "shipped", "realistic")
+SEVERITIES = ("moderate", "severe", "extreme")
 LIGHTINGS = ("day", "evening", "night", "failing", "random")
 EFFECTS = ("full", "fast", "off")
 SPLITS = ("train", "test", "large", "new_objects", "hard")

@@ -12,7 +12,7 @@ import tyro
 
 from hazard_ms import registry
 from hazard_ms.agents.thinking import CLOCKS, OFF
-from hazard_ms.evaluation.choices import BACKENDS, EFFECTS, LIGHTINGS, PRESETS, SPLITS, flag, offer
+from hazard_ms.evaluation.choices import BACKENDS, EFFECTS, LIGHTINGS, PRESETS, SEVERITIES, SPLITS, flag, offer
 from hazard_ms.registry.detectors import DETECTORS, TRUTH
 from hazard_ms.spec.order import natural
 
@@ -33,6 +33,8 @@ class EnvOptions:
     """Split from which seeds choose scenes; large and new_objects are for tasks in rooms; in hard, time is shorter."""
     physics: Annotated[str, offer(PRESETS)] = "paper"
     """Preset of the hazards."""
+    severity: Annotated[str, offer(SEVERITIES)] = "severe"
+    """How strong the hazards of the preset realistic are."""
     hazards: tuple[Annotated[str, offer(registry.HAZARDS)], ...] = ()
     """Hazards of HazardCompound-v1; its usual ones if not given."""
     robot_uids: Annotated[str, offer(registry.ROBOTS), flag("-r", "--robot-uids", old="robot")] = "fetch"
@@ -48,15 +50,15 @@ class EnvOptions:
 
     def check(self) -> None:
         """Load the modules of `load`, and check every name. Raises ValueError for what cannot be played."""
+        from hazard_ms.hazards.severity import chosen
         from hazard_ms.spec.checks import one_of  # loads torch
 
         for module in self.load:
             registry.load_plugin(module)
-        one_of(self.env_id, registry.TASKS, "env_id")
-        one_of(self.robot_uids, registry.ROBOTS, "robot_uids")
-        one_of(self.physics, PRESETS, "physics")
-        one_of(self.lighting, LIGHTINGS, "lighting")
-        one_of(self.effects, EFFECTS, "effects")
+        known = {"env_id": registry.TASKS, "robot_uids": registry.ROBOTS, "physics": PRESETS}
+        for what, names in {**known, "lighting": LIGHTINGS, "effects": EFFECTS}.items():
+            one_of(getattr(self, what), names, what)
+        chosen(self.severity, self.physics)
         for name in self.hazards:
             one_of(name, registry.HAZARDS, "hazards")
 
@@ -68,20 +70,28 @@ class EnvOptions:
     @property
     def settings(self) -> dict[str, Any]:
         """Keywords of gym.make that change the episode; light and effects only where they are not the usual ones."""
-        names = ["split", "physics", "robot_uids", "affects_agent"]
-        names += [name for name in ("lighting", "effects") if getattr(self, name) != _default(name)]
-        made = {name: getattr(self, name) for name in names}
+        names = ["split", "physics", *["severity" for _ in self.strength], "robot_uids", "affects_agent"]
+        made = {name: getattr(self, name) for name in [*names, *self.unusual("lighting", "effects")]}
         return {**made, "hazards": list(self.hazards)} if self.hazards else made
+
+    @property
+    def strength(self) -> list[str]:
+        """The severity, where the preset has several."""
+        return [self.severity] if self.physics == "realistic" else []
+
+    def unusual(self, *names: str) -> list[str]:
+        """Those of the options called `names` that differ from their defaults."""
+        return [n for n in names if getattr(self, n) != EnvOptions.__dataclass_fields__[n].default]
 
     @property
     def words(self) -> list[str]:
         """Command-line words that give the same environment again."""
         made = ["-e", self.env_id, "--split", self.split, "--physics", self.physics]
-        for name in ("robot_uids", "lighting", "effects"):
-            made += [_flag(name), getattr(self, name)] if getattr(self, name) != _default(name) else []
+        for name in self.unusual("severity", "robot_uids", "lighting", "effects"):
+            made += ["--" + name.replace("_", "-"), getattr(self, name)]
         made += ["--affects-agent"] if self.affects_agent else []
         for name in ("hazards", "load"):
-            made += [_flag(name), *getattr(self, name)] if getattr(self, name) else []
+            made += ["--" + name.replace("_", "-"), *getattr(self, name)] if getattr(self, name) else []
         return made
 
 
@@ -233,16 +243,8 @@ class SweepOptions:
         """The file of an episode's result."""
         e = episode
         scenes = e.split if e.scene is None else re.sub(r"[^\w.-]+", ".", Path(e.scene).stem)
-        setting = [e.env_id, *e.hazards, scenes, e.physics, e.robot_uids] + ["affected"] * e.affects_agent
-        setting += [getattr(e, name) for name in ("lighting", "effects") if getattr(e, name) != _default(name)]
+        setting = [e.env_id, *e.hazards, scenes, e.physics, *e.strength, e.robot_uids] + ["affected"] * e.affects_agent
+        setting += [getattr(e, name) for name in e.unusual("lighting", "effects")]
         setting += [f"clock.{e.clock}"] * (e.clock != OFF) + [e.perception] * (e.perception != TRUTH)
         name = re.sub(r"[^\w.-]+", ".", "-".join([*setting, e.agent]))
         return self.output / f"{name}-{e.seed:04d}.json"
-
-
-def _default(name: str) -> Any:
-    return EnvOptions.__dataclass_fields__[name].default
-
-
-def _flag(name: str) -> str:
-    return "--" + name.replace("_", "-")

@@ -31,7 +31,8 @@ def report(options: SweepOptions, results: Sequence[EpisodeResult], failed: Sequ
 def title(options: SweepOptions) -> str:
     """The line that says what was played."""
     env = options.env
-    settings = [f"split {env.split}", f"physics {env.physics}", f"robot {env.robot_uids}"]
+    physics = " ".join([env.physics, *env.strength])
+    settings = [f"split {env.split}", f"physics {physics}", f"robot {env.robot_uids}"]
     settings += ["agent affected"] * env.affects_agent
     settings += [f"{name} {env.settings[name]}" for name in ("lighting", "effects") if name in env.settings]
     settings += [] if options.clock == OFF else [f"clock {options.clock}"]

@@ -8,12 +8,17 @@ realistic  published engineering laws and material data, SI units and seconds, t
 
 from __future__ import annotations
 
+import dataclasses
+import inspect
+from typing import Any
+
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.hazards.fire.fire import Fire
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.flood.flood import Flood
 from hazard_ms.hazards.flood.water import Water
-from hazard_ms.hazards.wind.wind import Wind
+from hazard_ms.hazards.severity import SCALED, SEVERITIES, USUAL, chosen
+from hazard_ms.hazards.wind.wind import FASTEST, SLOWEST, Wind
 from hazard_ms.registry import HAZARDS, find, load
 
 FREQUENCIES = {  # frames and physics steps per second: a frame is one env step
@@ -35,7 +40,6 @@ _WIND = {
         scale=1.0, gain=100.0, implicit=False, projected=False, fixed_length=False, sweeping_share=0.2813746
     ),
     "realistic": Wind(
-        scale=4.8,  # 12 to 24 m/s at 10 m: Beaufort 6 to 9 [docs/physics.md 4.4]
         gain=1.0,
         crossflow=True,
         turbulence=0.0,
@@ -44,6 +48,8 @@ _WIND = {
         shaped=True,
         pressure=True,
         roughness=0.03,  # open ground [docs/physics.md 3.3]
+        pavement=0.001,  # asphalt [docs/physics.md 3.3]
+        lift=0.4,  # suction of 0.7 above less 0.3 below [docs/physics.md 3.3]
         gust_intensity=0.172,  # 1 / ln(10 m / 0.03 m)
         sheltered=True,
         sweeping_share=1.0,  # the agent drifts at the speed at which its robot really slides [docs/physics.md 3.3]
@@ -68,19 +74,29 @@ _FLOOD = {
 }
 
 
-def fire(preset: str) -> Fire | Blaze:
-    """The fire of `preset`. Raises ValueError for an unknown preset."""
-    return _FIRE[known(preset)]
+def fire(preset: str, severity: str = USUAL) -> Fire | Blaze:
+    """The fire of `preset`, as severe as `severity` says. Raises ValueError for an unknown one of both."""
+    law, level = _FIRE[known(preset)], SEVERITIES[chosen(severity, preset)]
+    if not isinstance(law, Blaze):
+        return law
+    return dataclasses.replace(law, growth=level.fire_growth, first_release=level.fire_start)
 
 
-def flood(preset: str) -> Flood:
-    """The flood of `preset`. Raises ValueError for an unknown preset."""
-    return _FLOOD[known(preset, tuple(_FLOOD))]
+def flood(preset: str, severity: str = USUAL) -> Flood:
+    """The flood of `preset`, as severe as `severity` says. Raises ValueError for an unknown one of both."""
+    law, level = _FLOOD[known(preset, tuple(_FLOOD))], SEVERITIES[chosen(severity, preset)]
+    if preset != SCALED:
+        return law
+    share = level.inflow / SEVERITIES[USUAL].inflow
+    return dataclasses.replace(law, rise_rate=share * law.rise_rate, current=share * law.current)
 
 
-def wind(preset: str) -> Wind:
-    """The wind of `preset`. Raises ValueError for an unknown preset."""
-    return _WIND[known(preset, tuple(_WIND))]
+def wind(preset: str, severity: str = USUAL) -> Wind:
+    """The wind of `preset`, as severe as `severity` says. Raises ValueError for an unknown one of both."""
+    law, level = _WIND[known(preset, tuple(_WIND))], SEVERITIES[chosen(severity, preset)]
+    if preset != SCALED:
+        return law
+    return dataclasses.replace(law, scale=level.wind / (0.5 * (SLOWEST + FASTEST)))
 
 
 def known(preset: str, presets: tuple[str, ...] = PRESETS) -> str:
@@ -90,9 +106,25 @@ def known(preset: str, presets: tuple[str, ...] = PRESETS) -> str:
     return preset
 
 
-def hazard(name: str, preset: str) -> Hazard:
-    """The registered hazard called `name` with the parameters of `preset`. Raises ValueError for an unknown one."""
-    made = load(find(HAZARDS, name, "hazard").maker)(preset)
+def hazard(name: str, preset: str, severity: str = USUAL) -> Hazard:
+    """The registered hazard called `name` with the parameters of `preset`, as severe as `severity` says.
+
+    Raises ValueError for an unknown one, and for a severity that the hazard does not have.
+    """
+    maker = load(find(HAZARDS, name, "hazard").maker)
+    made = maker(preset, **severity_for(maker, name, preset, severity))
     if not isinstance(made, Hazard):
         raise ValueError(f"the maker of {name!r} must give a Hazard, got {type(made).__name__}")
     return made
+
+
+def severity_for(maker: Any, name: str, preset: str, severity: str) -> dict[str, str]:
+    """Keywords by which the `maker` of what is called `name` learns of `severity`: none for the usual one.
+
+    Raises ValueError for a severity that the preset or the maker does not have.
+    """
+    if chosen(severity, preset) == USUAL:
+        return {}
+    if "severity" not in inspect.signature(maker).parameters:
+        raise ValueError(f"severity must be {USUAL!r} for {name}, which has no other, got {severity!r}")
+    return {"severity": severity}

@@ -68,7 +68,8 @@ def capture(options: CaptureOptions) -> int:
 
 def _scenes(options: CaptureOptions) -> tuple[str, ...]:
     """Names of all scenes of the split. Raises ValueError for a split that the task does not have."""
-    task = task_of(options.env.env_id, options.env.physics, options.env.hazards or None)
+    env = options.env
+    task = task_of(env.env_id, env.physics, env.hazards or None, env.severity)
     one_of(options.env.split, task.splits, "split")
     return tuple(task.scenes(options.env.split))
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from hazard_ms.hazards.severity import USUAL
 from hazard_ms.robots import robot_class
 from hazard_ms.scenes.splits import SCENES, spare_scene
 from hazard_ms.simulation.building import extent_of
@@ -44,12 +45,13 @@ def scenes_of(
     robot: str = "fetch",
     max_frames: int | None = None,
     hazards: Sequence[str] | None = None,
+    severity: str = USUAL,
 ) -> list[SketchScene]:
     """The scenes called `names` of a task, each with the fate that the seed of the same number gives it.
 
     `max_frames`: length of an episode at most, by default that of the task. Raises ValueError for unknown names.
     """
-    task = _lasting(task_of(env_id, physics, hazards), max_frames)
+    task = _lasting(task_of(env_id, physics, hazards, severity), max_frames)
     return [sketch_scene(task, physics, task.build(n), seed, robot) for n, seed in zip(names, seeds, strict=True)]
 
 

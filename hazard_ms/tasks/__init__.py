@@ -5,15 +5,19 @@ from __future__ import annotations
 import dataclasses
 import inspect
 from collections.abc import Sequence
+from typing import Any
 
+from hazard_ms.hazards.presets import severity_for
+from hazard_ms.hazards.severity import USUAL
 from hazard_ms.registry import TASKS, find, load
 from hazard_ms.spec import Task
 
 
-def task_of(name: str, physics: str, hazards: Sequence[str] | None = None) -> Task:
+def task_of(name: str, physics: str, hazards: Sequence[str] | None = None, severity: str = USUAL) -> Task:
     """The registered task called `name` with the `physics` of a preset, and with `hazards` if they can be chosen.
 
-    Raises ValueError for an unknown name or preset, and for `hazards` of a task that has its own.
+    Raises ValueError for an unknown name, preset or severity, and for `hazards` or a severity that the task does not
+    let one choose.
     """
     entry = find(TASKS, name, "task")
     maker = load(entry.maker)
@@ -21,7 +25,8 @@ def task_of(name: str, physics: str, hazards: Sequence[str] | None = None) -> Ta
         raise ValueError(
             f"hazards must be None for {name}, which has its own (HazardCompound-v1 has not), got {hazards!r}"
         )
-    made = maker(physics) if hazards is None else maker(physics, hazards=hazards)
+    options: dict[str, Any] = severity_for(maker, name, physics, severity)
+    made = maker(physics, **options) if hazards is None else maker(physics, hazards=hazards, **options)
     if not isinstance(made, Task):
         raise ValueError(f"the maker of {name!r} must give a Task, got {type(made).__name__}")
     return dataclasses.replace(made, name=name, max_frames=entry.max_frames)

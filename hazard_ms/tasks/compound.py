@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.hazards.presets import hazard
+from hazard_ms.hazards.severity import USUAL
 from hazard_ms.registry import HAZARDS
 from hazard_ms.spec import Task
 from hazard_ms.tasks.rescue import rescue
@@ -18,7 +19,7 @@ from hazard_ms.tasks.rescue import rescue
 DEFAULT = ("flood", "fire")  # hazards of the task unless others are asked for
 
 
-def hazard_compound(physics: str = "paper", hazards: Sequence[str] = DEFAULT) -> Task:
+def hazard_compound(physics: str = "paper", hazards: Sequence[str] = DEFAULT, severity: str = USUAL) -> Task:
     """The task HazardCompound-v1 with these `hazards`, each with the physics of a preset.
 
     Raises ValueError for no hazards, unknown ones, the same one twice, and ones that use each other's fields.
@@ -26,7 +27,7 @@ def hazard_compound(physics: str = "paper", hazards: Sequence[str] = DEFAULT) ->
     known = isinstance(hazards, (list, tuple)) and all(isinstance(h, str) and h in HAZARDS for h in hazards)
     if not known or not hazards or len(set(hazards)) < len(hazards):
         raise ValueError(f"hazards must be some of {', '.join(HAZARDS)}, each once, got {hazards!r}")
-    return rescue(in_order([hazard(name, physics) for name in HAZARDS if name in hazards]))
+    return rescue(in_order([hazard(name, physics, severity) for name in HAZARDS if name in hazards]))
 
 
 def in_order(hazards: Sequence[Hazard]) -> tuple[Hazard, ...]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from hazard_ms.hazards.presets import flood
+from hazard_ms.hazards.severity import USUAL
 from hazard_ms.spec import Task
 from hazard_ms.tasks.rescue import rescue
 
 
-def hazard_flood(physics: str = "paper") -> Task:
-    """The task HazardFlood-v1 with the physics of a preset. Raises ValueError for an unknown preset."""
-    return rescue([flood(physics)])
+def hazard_flood(physics: str = "paper", severity: str = USUAL) -> Task:
+    """The task HazardFlood-v1 with the physics of a preset. Raises ValueError for unknown names."""
+    return rescue([flood(physics, severity)])

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from hazard_ms.hazards.presets import wind
+from hazard_ms.hazards.severity import USUAL
 from hazard_ms.spec import Task
 from hazard_ms.tasks.rescue import rescue
 
 
-def hazard_wind(physics: str = "paper") -> Task:
-    """The task HazardWind-v1 with the physics of a preset. Raises ValueError for an unknown preset."""
-    return rescue([wind(physics)])
+def hazard_wind(physics: str = "paper", severity: str = USUAL) -> Task:
+    """The task HazardWind-v1 with the physics of a preset. Raises ValueError for unknown names."""
+    return rescue([wind(physics, severity)])

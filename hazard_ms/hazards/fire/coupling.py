@@ -22,8 +22,7 @@ WET = 0.005  # water over the base of a thing, or over the floor, that wets it [
 BOILING = 100.0  # boiling temperature of water [C]
 NEVER = 2**40  # birth of a flame that has gone out [frame]
 PER_WIND = 0.0842  # logarithm of the rate of spread per speed of the wind [s/m]
-# Largest wind at 1 m over the scene's wind: scale 4.8, a gust of two deviations, the profile of open ground [ours]
-STRONGEST = 3.0
+FASTEST = 15.0  # wind at 1 m beyond which fire spreads no faster: some 25 m/s at 10 m, where McArthur's index ends [M]
 ABOVE_FLOOR = 1.0  # height at which the wind counts [m] [ours]
 # Unit vectors of the directions of spread, in the order of `spread.neighbour`
 DIRECTION_VECTORS = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
@@ -46,11 +45,8 @@ def drench(state: FireState, world: World) -> None:
 
 
 def fastest(wind: tuple[float, float]) -> float:
-    """Largest factor on the rate of spread in a scene of this `wind` [m/s].
-
-    The preset `realistic` blows harder than the scene says.
-    """
-    return math.exp(PER_WIND * STRONGEST * math.hypot(*wind))
+    """Largest factor on the rate of spread in a scene of this `wind` [m/s]: 1 where there is none."""
+    return math.exp(PER_WIND * FASTEST) if any(wind) else 1.0
 
 
 def drift(world: World, place: Tensor) -> Tensor | None:
@@ -61,4 +57,5 @@ def drift(world: World, place: Tensor) -> Tensor | None:
     if "air" not in world.fields:
         return None
     wind = world.fields["air"](place + place.new_tensor([0.0, 0.0, ABOVE_FLOOR]))
+    wind = wind * (FASTEST / wind.norm(dim=-1, keepdim=True).clamp(min=FASTEST))
     return torch.exp(PER_WIND * wind @ place.new_tensor(DIRECTION_VECTORS).T)

@@ -21,8 +21,19 @@ DENSITY = wp.constant(1.225)  # density of air [kg/m^3] [HAZARD wind/wind_utils.
 # 0.3 (1 - sin angle) [ours]
 LEADING = wp.constant(0.2)
 REFERENCE = wp.constant(10.0)  # height at which meteorologists measure wind [m]
+# Depth of the layer of air that has adapted to the pavement: a tenth of the fetch of some 10 m of street behind each
+# kerb [Garratt 1992: internal boundary layers grow as 0.1 of the fetch]
+JOIN = wp.constant(1.0)  # [m]
+# Height of the tops of the stones, on which things lie, above the zero plane of their profile, in roughness lengths:
+# stones of height k have a roughness length of 0.1 k and a zero plane at 0.7 k [Garratt 1992; Oke 1987]
+TOPS = wp.constant(3.0)
+# Gauss-Legendre rule of four points, in half heights of a body [Abramowitz & Stegun 1964, 25.4.30]
+POINTS = wp.constant(4)
+NODES = wp.constant(wp.vec4(-0.8611363116, -0.3399810436, 0.3399810436, 0.8611363116))
+WEIGHTS = wp.constant(wp.vec4(0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226))
 CELL = wp.constant(0.5)  # edge of a cell of a map of shelter [m] [ours]
 LOWEST = wp.constant(0.5)  # height below which fixtures shelter nothing [m] [ours]
+THIN = wp.constant(1e-6)  # least half height [m], so that 0 / 0 cannot occur
 _TINY = wp.constant(1e-9)  # least speed [m/s] and mass [kg], so that 0 / 0 cannot occur
 
 
@@ -33,6 +44,12 @@ def drag(slip: float, strength: float, mass: float, dt: float, implicit: bool) -
     if implicit:
         return rate * slip / (1.0 + rate * (dt / m))
     return slip * wp.min(rate, m / dt)
+
+
+@wp.func
+def per_mass(rate: float, mass: float) -> float:
+    """Rate [1/s] at which a pull of `rate` [kg/s] changes the speed of a `mass` [kg]."""
+    return rate / wp.max(mass, _TINY)
 
 
 @wp.func
@@ -58,12 +75,26 @@ def unit(slip: wp.vec3) -> wp.vec3:
 
 
 @wp.func
-def profile(height: float, roughness: float) -> float:
+def logarithmic(height: float, roughness: float) -> float:
     """Share of the wind at 10 m that blows at `height` [m] over ground of `roughness` [m], by the logarithmic law.
 
     It is 0 below the height of the roughness.
     """
     return wp.log(wp.max(height, roughness) / roughness) / wp.log(REFERENCE / roughness)
+
+
+@wp.func
+def profile(height: float, roughness: float, pavement: float) -> float:
+    """Share of the wind at 10 m that blows at `height` [m] above the ground on which things lie.
+
+    Above JOIN it is the profile of surroundings of `roughness` [m]; below, that of a pavement of roughness `pavement`
+    [m], counted from TOPS of these lengths below the ground, so that the wind on the ground itself is not 0. Without
+    a pavement, 0, the profile of the surroundings goes on to the ground.
+    """
+    if pavement == 0.0:
+        return logarithmic(height, roughness)
+    raised = wp.clamp(height, 0.0, JOIN) / pavement + TOPS
+    return logarithmic(wp.max(height, JOIN), roughness) * wp.log(raised) / wp.log(JOIN / pavement + TOPS)
 
 
 @wp.func

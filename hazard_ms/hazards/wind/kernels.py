@@ -29,6 +29,8 @@ class Rules:
     sheltered: bool
     gust_intensity: float
     roughness: float
+    pavement: float
+    lift: float
 
 
 @wp.struct
@@ -53,7 +55,16 @@ def open_speed(mean: float, gust: float, height: float, rules: Rules) -> float:
     """Speed of the air along its heading [m/s] at `height` [m] in the open, from its `mean` [m/s] and the `gust`."""
     here = mean * (1.0 + rules.gust_intensity * gust)
     if rules.roughness > 0.0:
-        here = here * laws.profile(height, rules.roughness)
+        here = here * laws.profile(height, rules.roughness, rules.pavement)
+    return here
+
+
+@wp.func
+def speed_at(e: int, point: wp.vec3, rules: Rules, air: Air) -> float:
+    """Speed of the air along its heading [m/s] at a `point` [m] of environment `e`, behind what shelters it."""
+    here = open_speed(air.speed[e], air.gust[e], point[2], rules)
+    if rules.sheltered:
+        here = here * laws.share(e, point, air.corner[e], air.loss, air.cause)
     return here
 
 
@@ -61,11 +72,7 @@ def open_speed(mean: float, gust: float, height: float, rules: Rules) -> float:
 def speeds(rules: Rules, air: Air, points: wp.array2d(dtype=wp.vec3), found: wp.array2d(dtype=float)):
     """Write the speed of the air along its heading [m/s] at every one of the `points` [m]."""
     e, p = wp.tid()
-    point = points[e, p]
-    here = open_speed(air.speed[e], air.gust[e], point[2], rules)
-    if rules.sheltered:
-        here = here * laws.share(e, point, air.corner[e], air.loss, air.cause)
-    found[e, p] = here
+    found[e, p] = speed_at(e, points[e, p], rules, air)
 
 
 @wp.kernel
@@ -97,30 +104,12 @@ def turbulence(
     air.twist[e, b] = (0.5 * turning * height) * wp.cross(along, wp.vec3(x[1], y[1], z[1]))
 
 
-@wp.kernel
-def push(
-    dt: float,
-    rules: Rules,
-    air: Air,
-    bodies: Bodies,
-    force: wp.array2d(dtype=wp.vec3),
-    torque: wp.array2d(dtype=wp.vec3),
-):
-    """Write the force [N] and torque [N m] of the wind on every body over the next `dt` [s]."""
-    e, b = wp.tid()
-    force[e, b] = wp.vec3()
-    torque[e, b] = wp.vec3()
-    if not bodies.exists[e, b] or not bodies.movable[e, b]:
-        return
-    if bodies.safe[e, b] or bodies.held[e, b] or air.settled[e, b]:
-        return
-    point = bodies.position[e, b]
-    here = open_speed(air.speed[e], air.gust[e], point[2], rules)
-    if rules.sheltered:
-        here = here * laws.share(e, point, air.corner[e], air.loss, air.cause)
-    here = air.felt[e, b] * here
+@wp.func
+def in_uniform_flow(e: int, b: int, dt: float, rules: Rules, air: Air, bodies: Bodies) -> tuple[wp.vec3, wp.vec3]:
+    """Force [N] and torque [N m] on a body in the wind at its centre."""
+    here = air.felt[e, b] * speed_at(e, bodies.position[e, b], rules, air)
     if wp.abs(here) <= CALM:
-        return
+        return wp.vec3(), wp.vec3()
     axes, size, mass = axes_of(bodies.rotation[e, b]), bodies.extent[e, b], bodies.mass[e, b]
     direction = wp.vec3(air.heading[e][0], air.heading[e][1], 0.0)
     slip = here - wp.dot(bodies.velocity[e, b], direction)
@@ -138,5 +127,78 @@ def push(
     if rules.pressure:
         turn = turn + main * (axes * laws.pressure_arm(across, size))
         turn = turn + spin_drag(bodies.angular_velocity[e, b], axes, size, mass, laws.DENSITY, dt, 0.0)
-    force[e, b] = main * (direction + air.sway[e, b])
-    torque[e, b] = turn
+    return main * (direction + air.sway[e, b]), turn
+
+
+@wp.func
+def in_profile(e: int, b: int, dt: float, rules: Rules, air: Air, bodies: Bodies) -> tuple[wp.vec3, wp.vec3]:
+    """Force [N] and torque [N m] on a body, integrated over its height from its lowest point to its highest.
+
+    Its area across the flow counts as spread evenly over that height: exact for upright boxes. Air that streams over
+    what lies on the ground lifts it, too.
+    """
+    here = air.felt[e, b] * air.speed[e]
+    if wp.abs(here) <= CALM:
+        return wp.vec3(), wp.vec3()
+    axes, size, mass = axes_of(bodies.rotation[e, b]), bodies.extent[e, b], bodies.mass[e, b]
+    heading = wp.vec3(air.heading[e][0], air.heading[e][1], 0.0)
+    half = 0.5 * spans(axes, size)[2]
+    whole, moment, rate = wp.vec3(), wp.vec3(), float(0.0)
+    for k in range(laws.POINTS):
+        up = wp.vec3(0.0, 0.0, laws.NODES[k] * half)
+        here = air.felt[e, b] * speed_at(e, bodies.position[e, b] + up, rules, air)
+        relative = here * heading - bodies.velocity[e, b]
+        area = laws.projected_area(to_body(axes, laws.unit(relative)), size)
+        pull = laws.WEIGHTS[k] * air.strength[e, b] * laws.DENSITY * area * wp.length(relative)
+        whole += pull * relative
+        moment += wp.cross(up, pull * relative)
+        rate += pull
+    held = 1.0 / (1.0 + laws.per_mass(rate, mass) * dt)
+    main = held * wp.length(whole)
+    turn = held * moment + main * air.twist[e, b]
+    if rules.pressure:
+        turn = turn + main * (axes * laws.pressure_arm(to_body(axes, laws.unit(whole)), size))
+        turn = turn + spin_drag(bodies.angular_velocity[e, b], axes, size, mass, laws.DENSITY, dt, 0.0)
+    return held * whole + main * air.sway[e, b] + suction(e, b, half, rules, air, bodies), turn
+
+
+@wp.func
+def suction(e: int, b: int, half: float, rules: Rules, air: Air, bodies: Bodies) -> wp.vec3:
+    """Lift [N] on a body of half height `half` [m].
+
+    It is gone where the gap below is as high as the body itself: air that gets in there makes the pressures equal.
+    """
+    point, axes = bodies.position[e, b], axes_of(bodies.rotation[e, b])
+    near = wp.clamp(1.5 - 0.5 * point[2] / wp.max(half, laws.THIN), 0.0, 1.0)
+    here = air.felt[e, b] * speed_at(e, point + wp.vec3(0.0, 0.0, half), rules, air)
+    over = wp.vec2(here * air.heading[e][0], here * air.heading[e][1])
+    over -= wp.vec2(bodies.velocity[e, b][0], bodies.velocity[e, b][1])
+    plan = laws.projected_area(to_body(axes, wp.vec3(0.0, 0.0, 1.0)), bodies.extent[e, b])
+    return wp.vec3(0.0, 0.0, near * rules.lift * 0.5 * laws.DENSITY * plan * wp.dot(over, over))
+
+
+@wp.kernel
+def push(
+    dt: float,
+    rules: Rules,
+    air: Air,
+    bodies: Bodies,
+    force: wp.array2d(dtype=wp.vec3),
+    torque: wp.array2d(dtype=wp.vec3),
+):
+    """Write the force [N] and torque [N m] of the wind on every body over the next `dt` [s]."""
+    e, b = wp.tid()
+    force[e, b] = wp.vec3()
+    torque[e, b] = wp.vec3()
+    if not bodies.exists[e, b] or not bodies.movable[e, b]:
+        return
+    if bodies.safe[e, b] or bodies.held[e, b] or air.settled[e, b]:
+        return
+    if rules.roughness > 0.0:
+        pushed, turned = in_profile(e, b, dt, rules, air, bodies)
+        force[e, b] = pushed
+        torque[e, b] = turned
+    else:
+        pushed, turned = in_uniform_flow(e, b, dt, rules, air, bodies)
+        force[e, b] = pushed
+        torque[e, b] = turned

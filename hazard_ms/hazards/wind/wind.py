@@ -5,13 +5,18 @@ Forces and random vectors are Warp kernels; gusts, the lee and the agent, about 
     F = F1 + r x F1,   F1 = gain rho A |s| s,   s = felt wind - velocity along the wind,   torque = F1 x r' h / 2
 
 The felt wind is the scene's wind / (1 + resistance); r and r' are drawn anew in every frame (none in the first), h is
-the height of the thing's box. The step is exact for a free body (hazard_ms.hazards.wind.air), so no thing outruns the
-wind. What lies in a cart has settled: it feels nothing, for ever. Constants: docs/physics.md 1.3; what the presets
-change: docs/physics.md 1.5, R9 to R13.
+the height of the thing's box. The step is exact for a free body (hazard_ms.hazards.wind.air), so along the wind the
+main force never makes a thing faster than the wind. Across it nothing brakes what r pushes: as in the original, the
+sideways speed of a light thing is a random walk that can pass that of the wind (docs/physics.md W-15). What lies in a
+cart has settled: it feels nothing, for ever. Constants: docs/physics.md 1.3; what the presets change: docs/physics.md
+1.5, R9 to R13.
 
-`realistic` is the same with c = Cd / 2 for the gain, the whole relative velocity, gusts, the logarithmic profile,
-sheltered lees, and as a torque the pressure upwind of the centre. Wind damages nothing. Things that it carries away
-stop at the enclosure that `Room.beyond` sets. Limits: no lift, no added mass; things do not shelter one another.
+`realistic` is the same with c = Cd / 2 for the gain, the whole relative velocity, gusts, sheltered lees, as a torque
+the pressure upwind of the centre, and the logarithmic profile, over which force and torque are integrated from a
+thing's base to its top. There the new velocity is a weighted mean of the thing's own and of those of the air that
+meets it, so wind alone makes no thing faster than its gusts, in any direction. Wind damages nothing. Things that it
+carries away stop at the enclosure that `Room.beyond` sets. Limits: no lift off the ground, no added mass; things do not
+shelter one another.
 """
 
 from __future__ import annotations
@@ -89,7 +94,10 @@ class Wind(Hazard):
     resistances: bool = True  # those of the catalogue count up to 10, else only those that a scene sets
     shaped: bool = False  # the catalogue's Cd / 2 is one more factor
     pressure: bool = False  # it acts upwind of the centre, so plates turn broadside on, and air slows turning
-    roughness: float = 0.0  # roughness length of the ground, for the logarithmic profile [m]; 0: no profile
+    # roughness length of the surroundings, for the logarithmic profile [m]; 0: no profile, the wind at the centre
+    roughness: float = 0.0
+    pavement: float = 0.0  # roughness length of what things lie on, for the lowest metre of air [m]; 0: as around
+    lift: float = 0.0  # coefficient of lift of what lies on the ground in a profile, on its area seen from above
     gust_intensity: float = 0.0  # standard deviation of the wind's speed over its mean
     gust_time: float = 5.0  # correlation time of gusts [s] [docs/physics.md W-20]
     sheltered: bool = False  # fixtures have a lee
@@ -102,9 +110,11 @@ class Wind(Hazard):
         for name in ("scale", "gain", "gust_time", "sweeping_share"):
             if not 0 < getattr(self, name) < math.inf:
                 raise ValueError(f"{name} must be a positive number, got {getattr(self, name)}")
-        for name in ("turbulence", "torque", "roughness", "gust_intensity"):
+        for name in ("turbulence", "torque", "roughness", "pavement", "lift", "gust_intensity"):
             if not 0 <= getattr(self, name) < REFERENCE:
                 raise ValueError(f"{name} must be at least 0 and below {REFERENCE}, got {getattr(self, name)}")
+        if self.roughness and not (self.implicit and self.projected and self.crossflow):
+            raise ValueError(f"roughness must be 0 without implicit, projected and crossflow, got {self.roughness}")
 
     def sizes(self, world: World) -> dict[str, int]:
         deep, wide = shelter.map_size(world) if self.sheltered else (1, 1)

@@ -10,9 +10,8 @@ import numpy as np
 import torch
 
 from hazard_ms.hazards.presets import wind
-from hazard_ms.hazards.wind import gusts
 from hazard_ms.hazards.wind.wind import Wind
-from hazard_ms.validation.experiments.yard import STILL, Thing, Yard, begin, push, run, street
+from hazard_ms.validation.experiments.yard import STILL, Block, Thing, Yard, begin, push, run, street
 
 LAW = Wind(gain=1.0, scale=1.0, **STILL)  # rho A v^2: the paper's, without its gain
 SHIPPED = dataclasses.replace(wind("shipped"), **STILL)
@@ -115,37 +114,84 @@ def turbulence(preset: str) -> torch.Tensor:
     return state.sway[:, 0]
 
 
-def at_height(roughness: float, height: float) -> float:
-    """Wind at a height [m] over ground of a roughness [m] over that at 10 m."""
-    law, world = dataclasses.replace(REAL, roughness=roughness, gust_intensity=0.0, sheltered=False), street([Thing()])
+@functools.cache
+def twist() -> torch.Tensor:
+    """Torque over the force along the wind [m], [DRAWS, 3], on the default Thing; the wind blows along x."""
+    law = wind("shipped")
+    world = street([Thing(mass=HEAVY)], copies=DRAWS)
+    state = begin(law, world)
+    run(law, state, world, 1, 0.01)
+    made = law.force(state, world, 0.01)
+    assert made.torque is not None
+    return made.torque[:, 0] / made.force[:, 0, :1]
+
+
+@functools.cache
+def wandering(rate: int) -> float:
+    """Standard deviation of the sideways speed [m/s] of 5 t after 1 s at `rate` frames a second in the original."""
+    law = dataclasses.replace(wind("shipped"), torque=0.0)
+    world = street([box(0.06, 5000.0)], copies=DRAWS // 5)
+    state, speed = begin(law, world), torch.zeros(DRAWS // 5)
+    for _ in range(rate):
+        run(law, state, world, 1, 1 / rate)
+        speed += law.force(state, world, 1 / rate).force[:, 0, 1] / (5000.0 * rate)
+    return float(speed.std())
+
+
+def in_cart(thing: int) -> float:
+    """Force and torque [N, N m] on a `thing` after two frames: 0 lies in a cart, 1 on it, 2 beside the cart."""
+    heap = [Thing((0.1, 0.1, 0.1), at=at) for at in ((9.0, 12.0, 0.5), (9.0, 12.0, 0.59), (11.0, 12.0, 0.0))]
+    law, world = wind("paper"), street(heap, blocks=[Block("cart", (9.0, 12.0, 0.0), (0.53, 0.93, 1.03))])
+    state = begin(law, world)
+    run(law, state, world, 2)
+    made = law.force(state, world, 0.01)
+    assert made.torque is not None
+    return float((made.force.norm(dim=-1) + made.torque.norm(dim=-1))[0, thing])
+
+
+def slip_lost(law: Wind) -> float:
+    """Share of its slip that 0.1 g of 0.06 m^2 loses in a step of 1 s."""
+    world = street([box(0.06, 1e-4)])
+    return float(push(law, world, 1.0).force[0, 0, 0]) / 1e-4 / 3.7
+
+
+def at_height(roughness: float, height: float, pavement: float = 0.0) -> float:
+    """Wind at a height [m] over ground of a roughness [m], or on a pavement of one, over that at 10 m."""
+    law = dataclasses.replace(REAL, roughness=roughness, pavement=pavement, gust_intensity=0.0, sheltered=False)
+    world = street([Thing()])
     return float(law.image(begin(law, world), world, torch.tensor([[[8.0, 8.0, height]]]))) / float(
         math.hypot(*world.specs[0].wind) * law.scale
     )
 
 
+def in_street(extent: tuple[float, float, float], speed: float) -> float:
+    """Force [N] along a storm of a mean `speed` [m/s] at 10 m on a box that stands on the pavement."""
+    law = dataclasses.replace(REAL, scale=1.0, gust_intensity=0.0, sheltered=False)
+    return float(push(law, street([Thing(extent, HEAVY)], (speed, 0.0))).force[0, 0, 0])
+
+
 @functools.cache
-def gust_series(time: float, dt: float = 0.1) -> np.ndarray:
-    """Gusts of 200 streets over 600 s in standard deviations [-], [6000, 200]."""
-    law = dataclasses.replace(REAL, gust_time=time, sheltered=False)
-    world = street([Thing()], copies=200)
-    state, made = begin(law, world), []
+def gusty(time: float, intensity: float, dt: float = 0.2) -> np.ndarray:
+    """Wind at 10 m over the mean one in 200 streets for 600 s [-], [3000, 200]."""
+    law = dataclasses.replace(REAL, scale=1.0, gust_time=time, gust_intensity=intensity, sheltered=False)
+    world = street([Thing()], (1.0, 0.0), copies=200)
+    state, made, point = begin(law, world), [], torch.tensor([[[8.0, 8.0, 10.0]]]).expand(200, 1, 3)
     for _ in range(round(600 / dt)):
-        world.chance.tick()
-        state.gust.copy_(gusts.gust(state.gust, dt, time, world.chance.normal("wind.gust")))
-        made.append(state.gust.numpy().copy())
+        run(law, state, world, 1, dt)
+        made.append(law.speed_at(state, world, point)[:, 0].numpy())
     return np.array(made)
 
 
-def three_seconds(time: float) -> np.ndarray:
-    """Means of `gust_series` over 3 s [-], [N, 200]."""
-    total = np.cumsum(np.vstack([np.zeros((1, 200)), gust_series(time)]), axis=0)
-    return np.asarray((total[30:] - total[:-30]) / 30)
+def three_seconds(wind: np.ndarray, dt: float = 0.2) -> np.ndarray:
+    """Means over 3 s of a series, [N, 200]."""
+    total, many = np.cumsum(np.vstack([np.zeros((1, wind.shape[1])), wind]), axis=0), round(3 / dt)
+    return np.asarray((total[many:] - total[:-many]) / many)
 
 
 def gust_factor(case: tuple[float, float]) -> float:
     """Mean over 200 streets of the largest 3-s mean over the 600-s mean; correlation time [s] and intensity given."""
-    time, intensity = case
-    return float(((1 + intensity * three_seconds(time).max(0)) / (1 + intensity * gust_series(time).mean(0))).mean())
+    blown = gusty(*case)
+    return float((three_seconds(blown).max(0) / blown.mean(0)).mean())
 
 
 @functools.cache

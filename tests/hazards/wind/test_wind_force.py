@@ -207,3 +207,24 @@ def test_the_realistic_air_slows_turning(angle: float) -> None:
     assert got[0, 0].tolist() == pytest.approx(
         [0.0, 0.0, -RHO * 0.2 * (0.4**4 + 0.3**4) * 81.0 / 64], rel=1e-3, abs=1e-7
     )
+
+
+@pytest.mark.parametrize(("preset", "dt", "steps"), [("shipped", 0.01, 1), ("paper", 1 / 120, 4)])
+def test_only_along_the_wind_does_nothing_outrun_it_in_paper_and_shipped(preset: str, dt: float, steps: int) -> None:
+    """A feather that something holds back along the wind: each step turns the whole slip U into a push of m U / dt, of
+    which the share r goes sideways, where nothing brakes it. After N frames that is 0.05 sqrt(0.01 s / frame) U per
+    step, times sqrt(N): more than the wind itself after 400 frames or fewer.
+    """
+    law = dataclasses.replace(wind(preset), torque=0.0)
+    world = street([Thing((0.2, 0.3, 0.2), 1e-6)], (2.85, 0.0), copies=400)
+    state, frames = begin(law, world), 450
+    for _ in range(frames):
+        run(law, state, world, 1, steps * dt)
+        for _ in range(steps):
+            force = law.force(state, world, dt).force
+            assert float(force[..., 0].max()) * dt / 1e-6 <= 2.85 * law.scale * (1 + 1e-5)
+            world.velocity[..., 1:] += force[..., 1:] * dt / 1e-6
+    across = world.velocity[..., 1:].std()
+    want = 0.05 * math.sqrt(0.01 / (steps * dt)) * steps * 2.85 * law.scale * math.sqrt(frames)
+    assert float(across) == pytest.approx(want, rel=4 * math.sqrt(0.5 / 800))
+    assert float(across) > 2.85 * law.scale

@@ -64,12 +64,13 @@ class Blaze(Hazard):
         4.5  # seconds of fire per second: 0.15 s in a frame of 1/30 s [docs/physics.md 3.1, flame spread]
     )
     radiant: float = 0.35  # share of the heat that is radiated, where no measurement tells [docs/physics.md 4.4]
+    growth: float = fuels.FAST  # of fires on the floor, and of those with which a scene begins [kW/s^2]
     first_release: float = fuels.BASKET  # heat release of the fires with which a scene begins [kW]
     horizon: float = 50.0  # length of episodes that the floor window and the roster have room for [s]
     agent_bound: float = 10.0  # flux that keeps the agent out: the limit of class III [kW/m^2] [docs/physics.md 3.1]
 
     def __post_init__(self) -> None:
-        for name in ("every", "time_scale", "first_release", "horizon", "agent_bound"):
+        for name in ("every", "time_scale", "growth", "first_release", "horizon", "agent_bound"):
             if not 0 < getattr(self, name) < math.inf:
                 raise ValueError(f"{name} must be a positive number, got {getattr(self, name)}")
         if not 0 < self.radiant < 1:
@@ -124,7 +125,7 @@ class Blaze(Hazard):
         """The fires of each environment: B things, then F flames on the floor."""
         there = world.exists & ~world.safe & (state.status == BURNING)
         things = burning.release(state.course, state.burn_age) * there
-        flames = torch.minimum(burning.t_squared(fuels.FAST, state.flame_age), state.flame_peak)
+        flames = torch.minimum(burning.t_squared(self.growth, state.flame_age), state.flame_peak)
         flames = flames * lit(state, world.frame)
         base = world.base_of(world.position, world.rotation, world.extent)
         own = (4.0 / math.pi * world.extent[..., 0] * world.extent[..., 1]).sqrt()

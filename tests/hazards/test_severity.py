@@ -1,0 +1,95 @@
+"""`severity`: it scales the danger of `realistic`, each number is that of its source, and it travels everywhere."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import math
+
+import pytest
+import torch
+
+from hazard_ms.evaluation.choices import SEVERITIES as OFFERED
+from hazard_ms.evaluation.options import EnvOptions, EpisodeOptions, SweepOptions
+from hazard_ms.hazards import presets
+from hazard_ms.hazards.fire.realistic.blaze import Blaze
+from hazard_ms.hazards.severity import SEVERITIES, USUAL
+from hazard_ms.tasks import task_of
+from tests.worlds.wind_worlds import Thing, begin, street
+
+EVERY = pytest.mark.parametrize("severity", SEVERITIES)
+STORMS = {"moderate": 17.0, "severe": 28.0, "extreme": 40.0}  # [m/s at 10 m]
+OUTSIDE = {"moderate": 0.3, "severe": 0.5, "extreme": 1.0}  # depth of the water outside the door [m]
+MEGAWATT = {"moderate": 300.0, "severe": 150.0, "extreme": 75.0}  # time to 1,055 kW [s] [NFPA 204]
+
+
+@EVERY
+def test_storms_blow_at_10_m_as_fast_as_they_are_named(severity: str) -> None:
+    """In the mean over streets without a wind of their own; none is weaker than 2/3 or stronger than 4/3 of it."""
+    law = dataclasses.replace(presets.wind("realistic", severity), gust_intensity=0.0, sheltered=False)
+    world = street([Thing()], (0.0, 0.0), copies=4000)
+    speeds = law.image(begin(law, world), world, torch.tensor([[[8.0, 8.0, 10.0]]]))[:, 0]
+    storm = STORMS[severity]
+    assert float(speeds.mean()) == pytest.approx(storm, rel=4 * 0.193 / math.sqrt(4000))
+    assert float(speeds.min()) >= 2 / 3 * storm * 0.999 and float(speeds.max()) <= 4 / 3 * storm * 1.001
+
+
+@EVERY
+def test_inflows_are_those_of_a_free_weir(severity: str) -> None:
+    """L-28: q = 0.4 b sqrt(2 g) h^1.5 through a door of 0.9 m; 0.5638 m3/s at 0.5 m."""
+    want = 0.4 * 0.9 * math.sqrt(2 * 9.81) * OUTSIDE[severity] ** 1.5
+    assert SEVERITIES[severity].inflow == pytest.approx(want, rel=1e-6)
+    assert SEVERITIES["severe"].inflow == pytest.approx(0.5638, abs=1e-4)
+    rates = {name: presets.flood("realistic", name).rise_rate for name in SEVERITIES}
+    assert rates[severity] / rates["severe"] == pytest.approx((OUTSIDE[severity] / 0.5) ** 1.5)
+
+
+@EVERY
+def test_fires_grow_to_a_megawatt_in_the_published_time(severity: str) -> None:
+    assert SEVERITIES[severity].fire_growth * MEGAWATT[severity] ** 2 == pytest.approx(1055.0, rel=0.01)
+    fire, usual = presets.fire("realistic", severity), presets.fire("realistic")
+    assert isinstance(fire, Blaze) and isinstance(usual, Blaze)
+    level = SEVERITIES[severity]
+    assert fire == dataclasses.replace(usual, growth=level.fire_growth, first_release=level.fire_start)
+
+
+@pytest.mark.parametrize("make", [presets.fire, presets.flood, presets.wind])
+def test_each_step_is_more_dangerous_and_only_realistic_has_them(make: object) -> None:
+    assert callable(make)
+    assert make("realistic") == make("realistic", USUAL) != make("realistic", "extreme")
+    for preset in ("paper", "shipped"):
+        assert make(preset, USUAL) == make(preset)
+        with pytest.raises(
+            ValueError, match="severity must be 'severe' for all physics but 'realistic', got 'extreme'"
+        ):
+            make(preset, "extreme")
+    with pytest.raises(ValueError, match="severity must be one of moderate, severe, extreme, got 'mild'"):
+        make("realistic", "mild")
+    numbers = [dataclasses.astuple(SEVERITIES[name]) for name in STORMS]
+    assert all(a < b < c for a, b, c in zip(*numbers, strict=True))
+
+
+@pytest.mark.parametrize("name", ["HazardFire-v1", "HazardFlood-v1", "HazardWind-v1", "HazardCompound-v1"])
+def test_every_rescue_hands_it_to_its_hazards(name: str) -> None:
+    task = task_of(name, "realistic", None, "extreme")
+    assert task.hazards == tuple(presets.hazard(h.name, "realistic", "extreme") for h in task.hazards)
+    assert task.hazards != task_of(name, "realistic").hazards
+
+
+def test_tasks_without_severities_refuse_all_but_the_usual_one() -> None:
+    importlib.import_module("hazard_ms.tasks.practice")  # registers them
+    assert task_of("HazardWalkTo-v1", "realistic", None, USUAL).hazards == ()
+    with pytest.raises(ValueError, match="severity must be 'severe' for HazardWalkTo-v1, which has no other"):
+        task_of("HazardWalkTo-v1", "realistic", None, "extreme")
+
+
+def test_options_name_it_where_physics_is_realistic() -> None:
+    assert OFFERED == tuple(SEVERITIES)
+    real = EpisodeOptions("HazardWind-v1", physics="realistic", severity="extreme")
+    real.check()
+    assert real.settings["severity"] == "extreme" and "--severity extreme" in real.command
+    assert "severity" not in EpisodeOptions("HazardWind-v1").settings
+    places = {SweepOptions().place(dataclasses.replace(real, severity=name)) for name in SEVERITIES}
+    assert len(places) == len(SEVERITIES)
+    with pytest.raises(ValueError, match="severity must be 'severe'"):
+        EnvOptions(severity="moderate").check()

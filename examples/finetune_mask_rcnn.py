@@ -53,7 +53,10 @@ def network(classes: int, weights: Path | None, size: int) -> torch.nn.Module:
     made = maskrcnn_resnet50_fpn_v2(weights=None, weights_backbone=None, num_classes=1 + classes, min_size=size)
     if weights is not None:
         given = torch.load(weights, map_location="cpu", weights_only=True)
-        made.load_state_dict({k: v for k, v in given.items() if not k.startswith(HEADS)}, strict=False)
+        told = made.load_state_dict({k: v for k, v in given.items() if not k.startswith(HEADS)}, strict=False)
+        lack = [key for key in told.missing_keys if not key.startswith(HEADS)]
+        if lack or told.unexpected_keys:
+            raise SystemExit(f"{weights} must hold maskrcnn_resnet50_fpn_v2, got {list(given)[:3]} and so on")
     return made
 
 

@@ -135,9 +135,9 @@ def _whole(place: Path, options: CaptureOptions) -> bool:
     recipe = layout.read_scene(place)["recipe"]
     wanted = json.loads(layout.text_of(options.recipe))
     if recipe != wanted:
-        others = {k: recipe.get(k) for k in wanted if recipe.get(k) != wanted[k]}
+        others = {k: recipe.get(k) for k in {**recipe, **wanted} if recipe.get(k) != wanted.get(k)}
         raise ValueError(
-            f"output must hold pictures with { ({k: wanted[k] for k in others}) } only, got {place} with {others}; "
+            f"output must hold pictures with { ({k: wanted.get(k) for k in others}) } only, got {place} with {others}; "
             "name another folder"
         )
     return True

@@ -12,7 +12,8 @@ from hazard_ms.evaluation.options import MOST, MOST_WORKERS, EnvOptions, Episode
 
 VARIED = "varied"  # light or effects are drawn anew for every stop or picture
 SMALLEST, LARGEST = 64, 4096  # edge of a picture [pixels] [ours]
-FOV = 68.755  # field of view of a picture [degrees] [ours]
+ANGLE = 1.2  # usual field of view of a picture [rad] [ours]
+FOV = 68.755  # the same, rounded [degrees]
 NARROWEST, WIDEST = 10.0, 150.0  # of them [degrees] [ours]
 MOST_SAMPLES = 65536  # samples per pixel [ours]
 
@@ -29,7 +30,7 @@ class CaptureOptions:
     size: int = 512
     """Width and height of a picture in pixels."""
     fov: float = FOV
-    """Field of view in degrees; that of the robots' head cameras is 120."""
+    """Field of view in degrees; the robots' head cameras have 120."""
     shader: Literal["default", "rt-fast", "rt"] = "default"
     """Raster (default), or ray-traced, which takes seconds a picture."""
     spp: int = 4
@@ -84,7 +85,7 @@ class CaptureOptions:
     @property
     def angle(self) -> float:
         """The field of view [rad]."""
-        return math.radians(self.fov)
+        return ANGLE if self.fov == FOV else math.radians(self.fov)
 
     def episode(self, scene: str, seed: int) -> EpisodeOptions:
         """The episode of `scene` in which nobody acts."""

@@ -140,7 +140,7 @@ def test_pictures_may_have_any_size(weights: Path) -> None:
     size = 50  # no multiple of what the network halves
     detector.aim(*camera(size))
     found = detector.detect(np.zeros((size, size, 3), np.uint8), depth_to(0.0, size).astype(np.float32))
-    assert all(one.mask.shape == (size, size) and one.category in CLASSES for one in found)
+    assert found and all(one.mask.shape == (size, size) and one.category in CLASSES for one in found)
 
 
 def test_the_weights_take_less_than_three_megabytes(weights: Path) -> None:

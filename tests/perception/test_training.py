@@ -15,10 +15,11 @@ import pytest
 import torch
 
 from hazard_ms.perception.detectors.mask_rcnn import RESNET18, MaskRcnn, network
+from hazard_ms.perception.layout import category_ids
 from hazard_ms.perception.training.mask_rcnn import MaskRcnnStudent, begun
 from hazard_ms.perception.training.options import TrainOptions
 from hazard_ms.perception.training.pictures import read
-from hazard_ms.perception.training.run import train
+from hazard_ms.perception.training.run import student, train
 from hazard_ms.perception.training.validation import spread
 from hazard_ms.sensing.detection.perception import perception
 from tests.worlds.drawn_pictures import draw
@@ -82,6 +83,8 @@ def test_an_interrupted_training_ends_with_the_same_weights(model: str, data: Pa
     assert one["step"] == other["step"] == 3
     for name, value in one["student"]["network"].items():
         assert torch.equal(value, other["student"]["network"][name]), name
+    shipped = [(f / f"{model}.safetensors").read_bytes() for f in (whole.output, halves.output)]
+    assert shipped[0] == shipped[1]
 
 
 def _stopped_after(step: int) -> Any:
@@ -104,7 +107,7 @@ def test_a_finished_training_goes_on_with_more_steps_and_not_with_another_seed(
     first = options(data, tmp_path, validate=(), steps=1)
     train(first)
     train(replace(first, steps=2))
-    assert "goes on after 1 steps" in capsys.readouterr().out
+    assert "resumes at step 1" in capsys.readouterr().out
     with pytest.raises(ValueError, match="must be of the training .* give another folder, or delete it"):
         train(replace(first, seed=1))
     (tmp_path / "small.training").write_bytes(b"no state")
@@ -149,18 +152,52 @@ def test_weights_of_a_network_with_other_classes_are_taken_but_for_their_heads(d
 
 def test_boxes_labels_and_masks_stay_together_in_the_mirror(data: Path) -> None:
     (picture, *_) = pictures = read((data,), "train")
-    student = MaskRcnnStudent(pictures, 2, SIDE, None)
+    learner = MaskRcnnStudent(pictures, 2, SIDE, None)
     mirrored = set()
     for seed in range(8):
         torch.manual_seed(seed)
-        colours, target = student.example(picture)
+        colours, target = learner.example(picture)
         assert colours.dtype == torch.float32 and 0.0 <= float(colours.min()) <= float(colours.max()) <= 1.0
         assert len(target["labels"]) == len(target["masks"]) == len(picture.things)
         for box, mask in zip(target["boxes"].tolist(), target["masks"], strict=True):
             y, x = np.nonzero(mask.numpy())
             assert box == [x.min(), y.min(), x.max() + 1, y.max() + 1]
+        for label, mask in zip(target["labels"].tolist(), target["masks"], strict=True):
+            red, _, blue = colours[:, mask].mean(1).tolist()
+            assert learner.classes[label - 1] == ("apple" if red > blue else "box")
         mirrored.add(tuple(target["boxes"][0].tolist()))
     assert len(mirrored) == 2
+
+
+@pytest.mark.parametrize("model", ["small", "mask_rcnn"])
+def test_a_training_does_not_go_on_with_things_of_other_kinds(model: str, data: Path, tmp_path: Path) -> None:
+    """A dataset of apples alone, to which boxes are added."""
+    asked = options(data, tmp_path / "out", model=model, validate=(), steps=1)
+    pictures = read((data,), "train")
+    apple = category_ids()["apple"]
+    apples = [replace(p, things=tuple(t for t in p.things if t["category_id"] == apple)) for p in pictures]
+    begun_with = student(asked, apples)
+    assert begun_with.classes == ["apple"]
+    with pytest.raises(ValueError, match="DATA must hold only categories that the training began with, got box, too"):
+        student(asked, pictures, {"recipe": begun_with.recipe()})
+
+
+def test_a_training_resumes_without_the_weights_that_it_began_with(data: Path, tmp_path: Path) -> None:
+    """And pictures keep the size with which those weights were learned."""
+    train(options(data, tmp_path / "first", model="mask_rcnn", validate=(), steps=1, every=1))
+    weights = tmp_path / "first" / "mask_rcnn.safetensors"
+    assert begun(weights, None)[2] == 64 and begun(weights, 96)[2] == 96
+    fine = {"weights": str(weights), "size": None}
+    second = options(data, tmp_path / "second", fine, model="mask_rcnn", validate=(), steps=1)
+    train(second)
+    assert json.loads((tmp_path / "second" / "mask_rcnn.json").read_text())["size"] == 64
+    weights.unlink()
+    train(replace(second, steps=2))
+
+
+def test_pictures_of_several_sizes_are_cropped_to_the_smallest(data: Path, tmp_path: Path) -> None:
+    larger = draw(tmp_path / "larger", "train", 2, 2 * SIDE)
+    train(options(data, tmp_path / "out", {"data": (data, larger), "size": 96}, validate=(), batch=8, steps=2))
 
 
 def test_pictures_to_look_at_are_spread_evenly() -> None:

@@ -1,4 +1,4 @@
-"""Our own small detector: it looks at colours and depth, and takes tens of milliseconds of one core.
+"""Our own small detector: it looks at colours and depth, and takes 0.1 s of one core.
 
 Its network tells the category of every pixel and where the middle of its thing is. Pixels that point at the same place
 are one thing.
@@ -104,9 +104,9 @@ def things(chances: NDArray[np.float32], offsets: NDArray[np.float32], classes: 
         mine = owner == number
         if mine.sum() < FEWEST:
             continue
-        mean = chances[1:-1, rows[mine], columns[mine]].mean(1)
-        best = int(mean.argmax())
         mask = _without_strays(rows[mine], columns[mine], (height, width))
+        mean = chances[1:-1, mask].mean(1)
+        best = int(mean.argmax())
         found.append(Detection(classes[best], float(mean[best]), box_of(mask), mask))
     return found
 

@@ -16,7 +16,7 @@ from torchvision.transforms import v2
 
 from hazard_ms.perception.detectors.mask_rcnn import NETWORKS, RESNET18, MaskRcnn, network, read_recipe, read_weights
 from hazard_ms.perception.layout import category_ids
-from hazard_ms.perception.training.pictures import Picture, names_of
+from hazard_ms.perception.training.pictures import Picture, classes_of, names_of
 from hazard_ms.perception.training.student import Student, device, half_precision
 
 FINE, COARSE = 0.005, 0.01  # rates of learning with trained and with random weights, for 2 pictures a step [ours]
@@ -35,21 +35,24 @@ class MaskRcnnStudent(Student):
         batch: int,
         size: int | None,
         weights: Path | None,
-        classes: list[str] | None = None,
+        recipe: Mapping[str, Any] | None = None,
     ) -> None:
         """Learn from `pictures`, `batch` at a time, brought to `size` [pixels]; begin with `weights`, or untrained.
 
-        `classes`: those of a training that goes on.
+        `recipe`: that of a training that goes on, which needs no `weights` any more.
 
-        Raises ValueError for weights that cannot be used, and for pictures in which nothing is annotated.
+        Raises ValueError for weights that cannot be used, for pictures in which nothing is annotated, and for
+        categories that the recipe does not have.
         """
         self._pictures, self._batch = [picture for picture in pictures if picture.things], batch
-        self.classes = classes or names_of(pictures)
-        if not self.classes:
-            raise ValueError("DATA must hold annotated things, got none")
+        self.classes = classes_of(names_of(pictures), recipe)
         self._device = device()
         self._half = self._device.type == "cuda" and half_precision(self._device)
-        name, start = (RESNET18, None) if weights is None else begun(weights, size)
+        name, start = RESNET18, None
+        if recipe is not None:
+            name, size = recipe["network"], recipe.get("size")
+        elif weights is not None:
+            name, start, size = begun(weights, size)
         self._recipe: dict[str, Any] = {"network": name, "classes": self.classes} | ({"size": size} if size else {})
         self.network = network(name, 1 + len(self.classes), size)
         if start is not None:
@@ -57,7 +60,7 @@ class MaskRcnnStudent(Student):
         self.network.to(self._device)
         numbers = category_ids()
         self._labels = {numbers[category]: k for k, category in enumerate(self.classes, start=1)}
-        self._rate = (COARSE if start is None else FINE) * batch / 2
+        self._rate = (COARSE if weights is None else FINE) * batch / 2
         learning = [p for p in self.network.parameters() if p.requires_grad]
         self.optimiser = torch.optim.SGD(learning, self._rate, momentum=MOMENTUM, weight_decay=DECAY)
         self._changed = v2.Compose(
@@ -104,13 +107,15 @@ class MaskRcnnStudent(Student):
         return self._recipe
 
 
-def begun(path: Path, size: int | None) -> tuple[str, dict[str, Tensor]]:
-    """The network of which `path` holds trained weights, and these, [...] [-] by name, without those of its classes.
+def begun(path: Path, size: int | None) -> tuple[str, dict[str, Tensor], int | None]:
+    """The network of which `path` holds trained weights, these, [...] [-] by name, without its heads, and its size.
 
-    A file NAME.json beside it names the network; without, it is the one that they fit. Raises ValueError if none does.
+    A file NAME.json beside it names the network and, unless `size` [pixels] is given, the size; without, it is the
+    network that they fit. Raises ValueError if none does.
     """
     beside = path.with_suffix(".json")
-    names = (read_recipe(beside)["network"],) if beside.is_file() else NETWORKS
+    recipe = read_recipe(beside) if beside.is_file() else {}
+    names, size = (recipe["network"],) if recipe else NETWORKS, size or recipe.get("size")
     kept = {name: value for name, value in read_weights(path).items() if not name.startswith(HEADS)}
     faults = []
     for name in names:
@@ -122,6 +127,6 @@ def begun(path: Path, size: int | None) -> tuple[str, dict[str, Tensor]]:
             continue
         lack = [key for key in lack if not key.startswith(HEADS) and not key.endswith("num_batches_tracked")]
         if not lack and not spare:
-            return name, kept
+            return name, kept, size
         faults.append(f"{name}: {len(lack)} tensors are missing and {len(spare)} are not known")
     raise ValueError(f"weights must be those of a Mask R-CNN of torchvision, got {path}: {'; '.join(faults):.300}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -32,7 +33,7 @@ class TrainOptions:
     split: str = "train"
     """Split to learn from."""
     validate: tuple[Path, ...] = ()
-    """Datasets on which the network is scored, in rooms that it has not seen."""
+    """Datasets on which the network is scored, in rooms that it did not learn from."""
     validate_split: str = "test"
     """Split of these."""
     epochs: float = 12.0
@@ -48,11 +49,11 @@ class TrainOptions:
     batch: int | None = None
     """Pictures or crops of a step; by default 2, small 8."""
     size: int | None = None
-    """Shorter side to which Mask R-CNN brings pictures (by default 192 untrained, else torchvision's), or side of
-    the crops of small (128), in pixels."""
+    """Shorter side to which Mask R-CNN brings pictures (by default 192 untrained, else as `weights` learned, or
+    torchvision's), or side of the crops of small (128, a multiple of 16), in pixels."""
 
     def check(self) -> None:
-        """Check all options. Raises ValueError for those that cannot be."""
+        """Check all options. Raises ValueError for invalid ones."""
         from hazard_ms.spec.checks import whole  # loads numpy
 
         if not self.data:
@@ -60,6 +61,8 @@ class TrainOptions:
         for name, number in (("epochs", self.epochs), ("minutes", self.minutes)):
             if not number > 0:
                 raise ValueError(f"{name} must be positive, got {number!r}")
+        if not math.isfinite(self.epochs):
+            raise ValueError(f"epochs must be finite, got {self.epochs!r}: give --steps instead")
         for name, count, most in (("steps", self.steps, MOST_STEPS), ("batch", self.batch, MOST_BATCH)):
             if count is not None:
                 whole(count, 1, most, name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -82,6 +82,19 @@ def names_of(pictures: Sequence[Picture]) -> list[str]:
     """The categories of all annotated things, in the order of the catalogue's ids."""
     names = {number: name for name, number in layout.category_ids().items()}
     return [names[number] for number in sorted({t["category_id"] for picture in pictures for t in picture.things})]
+
+
+def classes_of(found: list[str], recipe: Mapping[str, Any] | None) -> list[str]:
+    """The classes that a network learns: those that were `found` in pictures, or those of the `recipe` it began with.
+
+    Raises ValueError if nothing was found, and for what the recipe does not have.
+    """
+    if not found:
+        raise ValueError("DATA must hold annotated things of the kinds that the model tells, got none")
+    classes = found if recipe is None else list(recipe["classes"])
+    if new := sorted(set(found) - set(classes)):
+        raise ValueError(f"DATA must hold only categories that the training began with, got {', '.join(new)}, too")
+    return classes
 
 
 @functools.lru_cache(maxsize=64)

@@ -1,8 +1,8 @@
 """A training and its files, which are written together at every check.
 
 MODEL.safetensors and MODEL.json are what `--perception` loads, MODEL.csv and MODEL.svg show the curve, and
-MODEL.training holds all that is needed to go on. What is drawn at a step depends on the seed and the step alone, so
-that a training that was interrupted goes on as if it had not been.
+MODEL.training holds all that is needed to resume. What is drawn at a step depends on the seed and the step alone, so
+that an interrupted training continues exactly as if it had not been.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from hazard_ms.perception.training.pictures import Picture, read, truth_of
 from hazard_ms.perception.training.student import Student
 from hazard_ms.perception.training.validation import results_of, spread
 
-STEEPEST = 10.0  # length to which longer gradients are cut [ours]
-LOOKED_AT = 60  # validation pictures on which a network is scored on the way; at the end it is on all of them [ours]
+MAX_GRADIENT_NORM = 10.0  # to which longer gradients are cut [ours]
+SCORED = 60  # validation pictures on which a network is scored on the way; at the end it is on all of them [ours]
 SCORES = {"box": "bbox", "mask": "segm"}
 ENDING, RESUMABLE = ".safetensors", ".training"
 
@@ -43,37 +43,37 @@ def train(options: TrainOptions) -> int:
     if options.validate:
         coco.tools()
     pictures = read(options.data, options.split)
-    seen = read(options.validate, options.validate_split) if options.validate else []
+    validation = read(options.validate, options.validate_split) if options.validate else []
     make_folder(options.output)
     path = options.output / f"{options.model}{ENDING}"
     before = _before(path, options.command)
     torch.manual_seed(options.seed)
-    threads = torch.get_num_threads()
-    try:
-        run = Run(path, options, student(options, pictures, before), seen)
-        if before is not None:
-            run.resume(before)
-        steps = options.steps or max(1, math.ceil(options.epochs * len(pictures) / options.batch_size))
-        print(f"{len(pictures)} pictures, {len(run.student.classes)} categories, {steps:,} steps", flush=True)
-        run.train(steps, options.minutes)
-    finally:
-        torch.set_num_threads(threads)
+    run = Run(path, options, student(options, pictures, before), validation)
+    if before is not None:
+        run.resume(before)
+    steps = options.steps or max(1, math.ceil(options.epochs * len(pictures) / options.batch_size))
+    print(f"{len(pictures)} pictures, {len(run.student.classes)} categories, {steps:,} steps", flush=True)
+    run.train(steps, options.minutes)
     print(f"hazard-ms evaluate -e {options.data[0].name} --perception {options.model}:{path}")
     return 0
 
 
 def student(options: TrainOptions, pictures: Sequence[Picture], before: dict[str, Any] | None = None) -> Student:
-    """The network that `options` ask for, with its pictures; `before`: what is kept of a training that goes on."""
+    """The network that `options` ask for, with its pictures; `before`: what is kept of a training that goes on.
+
+    Raises ValueError for pictures of things that such a training did not begin with.
+    """
+    recipe = before["recipe"] if before else None
     size = options.size or (SIZES[options.model] if options.weights == UNTRAINED else None)
     if options.model == "small":
         from hazard_ms.perception.training.small import SmallStudent
 
         assert size is not None
-        return SmallStudent(pictures, options.batch_size, size, before["classes"] if before else None)
+        return SmallStudent(pictures, options.batch_size, size, recipe)
     from hazard_ms.perception.training.mask_rcnn import MaskRcnnStudent
 
     weights = None if options.weights == UNTRAINED else Path(options.weights)
-    return MaskRcnnStudent(pictures, options.batch_size, size, weights, before["classes"] if before else None)
+    return MaskRcnnStudent(pictures, options.batch_size, size, weights, recipe)
 
 
 def _before(path: Path, command: str) -> dict[str, Any] | None:
@@ -99,9 +99,9 @@ def _before(path: Path, command: str) -> dict[str, Any] | None:
 class Run:
     """Trains a student, scores it on the way, and keeps what it becomes."""
 
-    def __init__(self, path: Path, options: TrainOptions, student: Student, seen: Sequence[Picture]) -> None:
-        """Keep files beside `path`, NAME.safetensors; `seen`: the pictures on which it is scored."""
-        self.path, self.student, self._options, self._seen = path, student, options, list(seen)
+    def __init__(self, path: Path, options: TrainOptions, student: Student, validation: Sequence[Picture]) -> None:
+        """Keep files beside `path`, NAME.safetensors; `validation`: the pictures on which it is scored."""
+        self.path, self.student, self._options, self._validation = path, student, options, list(validation)
         self.rows: list[dict[str, float]] = []  # of the curve, one for each check
         self._step, self._seconds = 0, 0.0
         self._sums: dict[str, float] = {}  # of the parts of the loss since the last check
@@ -115,7 +115,7 @@ class Run:
         except Exception as error:  # torch raises errors of many kinds for what does not fit
             kept = self.path.with_suffix(RESUMABLE)
             raise ValueError(f"{kept} must be the state of this training, got {error!r:.200}; delete it") from None
-        print(f"goes on after {self._step:,} steps", flush=True)
+        print(f"resumes at step {self._step:,}", flush=True)
 
     def train(self, steps: int, minutes: float) -> None:
         """Learn until there were `steps` in all, or for `minutes` in all, and print how it gets on."""
@@ -128,7 +128,7 @@ class Run:
                 self._check(steps, minutes)
         if self._count:
             self._check(steps, minutes)
-        if self._seen:
+        if self._validation:
             print(self.scores(), flush=True)
 
     def _learn(self, share: float) -> None:
@@ -146,7 +146,9 @@ class Run:
             )
         student.optimiser.zero_grad(set_to_none=True)
         loss.backward()
-        torch.nn.utils.clip_grad_norm_(student.network.parameters(), STEEPEST)
+        norm = torch.nn.utils.clip_grad_norm_(student.network.parameters(), MAX_GRADIENT_NORM)
+        if not bool(torch.isfinite(norm)):
+            raise ValueError(f"gradients must stay finite, got {float(norm)} at step {self._step}: try another --seed")
         student.optimiser.step()
         student.learned()
         self._step += 1
@@ -159,8 +161,8 @@ class Run:
         row = {"step": float(self._step), "seconds": self._seconds}
         row |= {name: total / self._count for name, total in self._sums.items()}
         self._sums, self._count = {}, 0
-        if self._seen:
-            row |= self._looked(spread(self._seen, LOOKED_AT))
+        if self._validation:
+            row |= self._scored(spread(self._validation, SCORED))
         last = self.rows[-1] if self.rows else {"step": 0.0, "seconds": 0.0}
         rate = (row["step"] - last["step"]) / max(row["seconds"] - last["seconds"], 1e-9)
         self.rows.append(row)
@@ -169,7 +171,7 @@ class Run:
         told = ", ".join(f"{name} {value:.3f}" for name, value in row.items() if name not in ("step", "seconds"))
         print(f"{self._step:,} steps, {rate:.2f}/s: {told}; {max(left, 0.0):.0f} min left", flush=True)
 
-    def _looked(self, pictures: Sequence[Picture]) -> dict[str, float]:
+    def _scored(self, pictures: Sequence[Picture]) -> dict[str, float]:
         """AP and AP50 of boxes and masks on some pictures."""
         truth = truth_of(pictures, self.student.classes)
         found = results_of(self.student.detector(), pictures)
@@ -180,14 +182,14 @@ class Run:
 
     def scores(self) -> str:
         """Tables of the network's average precision on all validation pictures, by hazard state, area and distance."""
-        truth = truth_of(self._seen, self.student.classes)
-        found = results_of(self.student.detector(), self._seen)
+        truth = truth_of(self._validation, self.student.classes)
+        found = results_of(self.student.detector(), self._validation)
         return "\n".join(f"{KINDS[kind]}\n\n{table(truth, found, kind)}" for kind in KINDS)
 
     def _write(self) -> None:
         recipe = {**self.student.recipe(), "command": self._options.command, "step": self._step}
         packed = io.BytesIO()
-        kept = {"command": self._options.command, "classes": self.student.classes, "rows": self.rows}
+        kept = {"command": self._options.command, "recipe": self.student.recipe(), "rows": self.rows}
         torch.save({**kept, "student": self.student.state(), "step": self._step, "seconds": self._seconds}, packed)
         parts: dict[str, str | bytes] = {
             ENDING: save(self.student.weights()),

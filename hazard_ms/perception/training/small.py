@@ -1,4 +1,4 @@
-"""The training of our own small detector: crops around things, each thing counting alike however small it is."""
+"""The training of our own small detector: crops around things, whose pixels count more the fewer a thing has."""
 
 from __future__ import annotations
 
@@ -17,17 +17,16 @@ from torch.nn import functional
 from hazard_ms.perception.detectors.small import NETWORK, Small
 from hazard_ms.perception.detectors.small_network import REACH, SCALE, SmallNetwork, features
 from hazard_ms.perception.layout import category_ids
-from hazard_ms.perception.training.pictures import Picture, names_of
+from hazard_ms.perception.training.pictures import Picture, classes_of, names_of
 from hazard_ms.perception.training.student import Student, device, half_precision
 from hazard_ms.spec.catalogue import CATEGORIES
 
 # [ours], all of them
-CROP = 128  # side of what is cut out of a picture [pixels]
 OF_THINGS = 0.8  # share of crops that are cut around a thing; the others are cut anywhere
-SWAY = 48  # by which such a thing may be beside the middle of its crop [pixels]
+OFF_CENTRE = 0.375  # by which such a thing may be beside the middle of its crop, as a share of the side
 RATE, WARM, DECAY = 2e-3, 200, 1e-4  # highest rate of learning; steps until then; decay of weights
-KEPT = 0.999  # share of the averaged weights that a step leaves
-USUAL = 256  # pixels of a thing that counts as one
+AVERAGE_DECAY = 0.999  # share of the averaged weights that a step leaves
+USUAL = 256  # area of a thing whose pixels have the weight 1 [pixels]
 LEAST, MOST = 0.5, 4.0  # weight of a pixel of large and of small things
 OF_STRUCTURE, OF_OTHERS = 0.4, 0.5  # weight of a pixel of floor and walls, and of things that are not known
 HARD = 1.0  # exponent by which pixels that are known for sure count less (focal loss)
@@ -51,18 +50,23 @@ class Crop(NamedTuple):
 class SmallStudent(Student):
     """The small network, an average of its weights over the last steps, and the pictures that it learns from."""
 
-    def __init__(self, pictures: Sequence[Picture], batch: int, size: int, classes: list[str] | None = None) -> None:
-        """Learn from crops with sides of `size` [pixels], `batch` at a time; `classes`: of a training that goes on.
+    def __init__(
+        self, pictures: Sequence[Picture], batch: int, size: int, recipe: Mapping[str, Any] | None = None
+    ) -> None:
+        """Learn from crops with sides of `size` [pixels], or of the smallest picture, `batch` at a time.
 
-        Raises ValueError for pictures without things that can move, and for sides that cannot be.
+        `recipe`: that of a training that goes on.
+
+        Raises ValueError for pictures without things that can move, for an invalid side, and for categories that the
+        recipe does not have.
         """
         if size % SCALE:
             raise ValueError(f"size must be a multiple of {SCALE} for the model small, got {size}")
         moving = [n for n in names_of(pictures) if CATEGORIES[n].kind == "object" or n in CARTS]
-        self.classes = classes or moving
-        if not self.classes:
-            raise ValueError("DATA must show things that can move, got none")
-        self._pictures, self._batch, self._size = list(pictures), batch, size
+        self.classes = classes_of(moving, recipe)
+        self._pictures, self._batch = list(pictures), batch
+        least = (min(picture.row[side] for picture in pictures) for side in ("width", "height"))
+        self._sides = tuple(min(size, edge - edge % SCALE) for edge in least)
         self._number = {name: k for k, name in enumerate(self.classes, start=1)}
         names = {number: name for name, number in category_ids().items()}
         known = [(k, t, names[t["category_id"]]) for k, p in enumerate(pictures) for t in p.things]
@@ -102,7 +106,7 @@ class SmallStudent(Student):
     @torch.no_grad()
     def learned(self) -> None:
         self._steps += 1
-        kept = min(KEPT, (1 + self._steps) / (10 + self._steps))
+        kept = min(AVERAGE_DECAY, (1 + self._steps) / (10 + self._steps))
         for mean, now in zip(self._average.state_dict().values(), self.network.state_dict().values(), strict=True):
             mean.copy_(now if not mean.is_floating_point() else torch.lerp(now, mean, kept))
 
@@ -128,16 +132,17 @@ class SmallStudent(Student):
         """A crop around a thing of which there are few, or anywhere; every other one is seen in a mirror."""
         if chance.random() < OF_THINGS:
             number, box, _ = self._things[int(np.searchsorted(self._chances, chance.random()))]
-            middle = (box[0] + box[2] / 2, box[1] + box[3] / 2) + chance.uniform(-SWAY, SWAY, 2)
+            middle = (box[0] + box[2] / 2, box[1] + box[3] / 2) + chance.uniform(
+                -OFF_CENTRE, OFF_CENTRE, 2
+            ) * self._sides
         else:
             number = int(chance.integers(len(self._pictures)))
             middle = chance.uniform(0.0, 1e4, 2)
         picture = self._pictures[number]
         width, height = picture.row["width"], picture.row["height"]
-        sides = (min(self._size, width - width % SCALE), min(self._size, height - height % SCALE))
-        left = int(np.clip(middle[0] - sides[0] / 2, 0, width - sides[0]))
-        top = int(np.clip(middle[1] - sides[1] / 2, 0, height - sides[1]))
-        made = self.cut(picture, left, top, sides)
+        left = int(np.clip(middle[0] - self._sides[0] / 2, 0, width - self._sides[0]))
+        top = int(np.clip(middle[1] - self._sides[1] / 2, 0, height - self._sides[1]))
+        made = self.cut(picture, left, top, self._sides)
         return mirrored(made) if chance.random() < 0.5 else made
 
     def cut(self, picture: Picture, left: int, top: int, sides: tuple[int, int]) -> Crop:

@@ -44,7 +44,7 @@ class Student(abc.ABC):
         """The contents of the file beside the weights: plain data."""
 
     def learned(self) -> None:  # noqa: B027 most keep nothing beside their weights
-        """A step has been taken."""
+        """Called after each step of the optimiser."""
 
     def state(self) -> dict[str, Any]:
         """All that is needed to go on: plain data and tensors."""

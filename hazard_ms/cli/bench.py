@@ -66,7 +66,7 @@ def danger(env_id: Annotated[tuple[str, ...], flag("-e")] = (), scenes: int = 25
         env_id: Tasks; fire, flood and wind if not given.
         scenes: Number of training scenes of each.
     """
-    from hazard_ms.bench.danger import RESCUES, report
+    from hazard_ms.sketch.rescues.danger import RESCUES, report
 
     for line in report(env_id or RESCUES, scenes):
         print(line, flush=True)

@@ -20,7 +20,6 @@ from hazard_ms.env.spaces import bounded
 from hazard_ms.episode import rewards, snapshot
 from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
-from hazard_ms.hazards.severity import USUAL
 from hazard_ms.registry import TASKS
 from hazard_ms.registry.announce import importable
 from hazard_ms.scenes.choice import SceneChoice, SceneTurns
@@ -29,6 +28,7 @@ from hazard_ms.sensing.modes import finite
 from hazard_ms.sensing.observation_table import ObservationTable
 from hazard_ms.simulation.lighting import LIGHTINGS
 from hazard_ms.spec import checks
+from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import task_of
 
 EFFECTS = ("full", "fast", "off")

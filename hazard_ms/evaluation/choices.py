@@ -12,7 +12,7 @@ from typing import Any
 import tyro
 from tyro.constructors import PrimitiveConstructorSpec
 
-# As hazards.presets, hazards.severity, simulation.lighting, env and scenes.splits name them; tests/cli compares them.
+# As hazards.presets, spec.severity, simulation.lighting, env and scenes.splits name them; tests/cli compares them.
 PRESETS = ("paper", "shipped", "realistic")
 SEVERITIES = ("moderate", "severe", "extreme")
 LIGHTINGS = ("day", "evening", "night", "failing", "random")

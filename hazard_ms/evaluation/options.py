@@ -50,8 +50,8 @@ class EnvOptions:
 
     def check(self) -> None:
         """Load the modules of `load`, and check every name. Raises ValueError for what cannot be played."""
-        from hazard_ms.hazards.severity import chosen
         from hazard_ms.spec.checks import one_of  # loads torch
+        from hazard_ms.spec.severity import chosen
 
         for module in self.load:
             registry.load_plugin(module)
@@ -80,7 +80,7 @@ class EnvOptions:
         return [self.severity] if self.physics == "realistic" else []
 
     def unusual(self, *names: str) -> list[str]:
-        """Those of the options called `names` that differ from their defaults."""
+        """The options, out of those called `names`, that differ from their defaults."""
         return [n for n in names if getattr(self, n) != EnvOptions.__dataclass_fields__[n].default]
 
     @property

@@ -17,9 +17,9 @@ from hazard_ms.hazards.fire.fire import Fire
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.flood.flood import Flood
 from hazard_ms.hazards.flood.water import Water
-from hazard_ms.hazards.severity import SCALED, SEVERITIES, USUAL, chosen
 from hazard_ms.hazards.wind.wind import FASTEST, SLOWEST, Wind
 from hazard_ms.registry import HAZARDS, find, load
+from hazard_ms.spec.severity import SCALED, SEVERITIES, USUAL, chosen
 
 FREQUENCIES = {  # frames and physics steps per second: a frame is one env step
     "paper": (30, 120),

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from hazard_ms.hazards.severity import USUAL
 from hazard_ms.robots import robot_class
 from hazard_ms.scenes.splits import SCENES, spare_scene
 from hazard_ms.simulation.building import extent_of
@@ -27,6 +26,7 @@ from hazard_ms.skills.options.landmarks import MIN_SPACING
 from hazard_ms.spec import SceneSpec, Task
 from hazard_ms.spec.catalogue import CATEGORIES
 from hazard_ms.spec.checks import one_of, whole
+from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import task_of
 
 SITE_STEP = 0.6  # distance that a moving target goes on from one of its sites to the next, below NEAR [m] [ours]

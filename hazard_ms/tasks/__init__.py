@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from hazard_ms.hazards.presets import severity_for
-from hazard_ms.hazards.severity import USUAL
 from hazard_ms.registry import TASKS, find, load
 from hazard_ms.spec import Task
+from hazard_ms.spec.severity import USUAL
 
 
 def task_of(name: str, physics: str, hazards: Sequence[str] | None = None, severity: str = USUAL) -> Task:

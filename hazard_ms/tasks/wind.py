@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from hazard_ms.hazards.presets import wind
-from hazard_ms.hazards.severity import USUAL
 from hazard_ms.spec import Task
+from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks.rescue import rescue
 
 

@@ -13,7 +13,7 @@ from hazard_ms.evaluation.choices import SEVERITIES as OFFERED
 from hazard_ms.evaluation.options import EnvOptions, EpisodeOptions, SweepOptions
 from hazard_ms.hazards import presets
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
-from hazard_ms.hazards.severity import SEVERITIES, USUAL
+from hazard_ms.spec.severity import SEVERITIES, USUAL
 from hazard_ms.tasks import task_of
 from tests.worlds.wind_worlds import Thing, begin, street
 

@@ -183,7 +183,7 @@ def gusty(time: float, intensity: float, dt: float = 0.2) -> np.ndarray:
 
 
 def three_seconds(wind: np.ndarray, dt: float = 0.2) -> np.ndarray:
-    """Means over 3 s of a series, [N, 200]."""
+    """Means over 3 s of a series, [N, 200], in its unit, taken every `dt` [s]."""
     total, many = np.cumsum(np.vstack([np.zeros((1, wind.shape[1])), wind]), axis=0), round(3 / dt)
     return np.asarray((total[many:] - total[:-many]) / many)
 

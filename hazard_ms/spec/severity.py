@@ -1,4 +1,4 @@
-"""How dangerous the hazards of the preset `realistic` are: `severity`, which scales the danger and never the laws.
+"""The table of `severity`: how strong the hazards of `realistic` are. It scales the danger, never the laws.
 
 Wind    mean speed at 10 m: a gale of Beaufort 8, 17.2 to 20.7 m/s, reached; a storm of Beaufort 10, 24.5 to 28.4 m/s;
         a hurricane of category 1 on the Saffir-Simpson scale, 33 to 42 m/s [WMO-No. 306; NOAA]. Streets of one storm

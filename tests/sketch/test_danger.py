@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hazard_ms.bench import danger
+from hazard_ms.sketch.rescues import danger
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.spec import SceneSpec, Task
 from tests.worlds.wind_worlds import Thing, street

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from hazard_ms.hazards.presets import PRESETS
-from hazard_ms.hazards.severity import SCALED, SEVERITIES, USUAL
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.spec import SceneSpec
 from hazard_ms.spec.checks import one_of, whole
+from hazard_ms.spec.severity import SCALED, SEVERITIES, USUAL
 from hazard_ms.tasks import task_of
 
 RESCUES = ("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1")
@@ -27,7 +27,7 @@ MOST_SCENES = 1000  # more must be a mistake [ours]
 
 @dataclass(frozen=True)
 class Row:
-    """What happened in the scenes of one task, preset and severity, at the ends of the quarters of an episode."""
+    """A row of the table: one task, preset and severity, at the ends of the quarters of an episode."""
 
     task: str
     physics: str
@@ -76,7 +76,7 @@ def row(name: str, physics: str, severity: str, scenes: int) -> Row:
 
 
 def fates(line: Timeline, spec: SceneSpec, ends: Sequence[int]) -> np.ndarray:
-    """Which targets are moved, and which damaged, at the frames `ends`, [2, Q, T], bool."""
+    """Fates of the targets at the frames `ends`: whether moved, and whether damaged, [2, Q, T], bool."""
     targets = np.array([line.index(body.name) for body in spec.targets])
     places = line.positions(targets)
     samples = [min((end - line.first) // line.stride, len(places) - 1) for end in ends]

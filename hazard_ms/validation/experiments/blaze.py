@@ -19,7 +19,6 @@ from hazard_ms.simulation.world import World
 from hazard_ms.validation.experiments import correlations
 from hazard_ms.validation.experiments.fire_room import room_world
 
-ROOM = (21.66, 7.04, 3.82)  # size of the room of N-7 and N-8 [m]
 HALL = (20.0, 20.0)  # floor of the rooms in which one fire burns [m]
 PLAIN = Blaze(time_scale=1.0, every=1)
 
@@ -47,21 +46,6 @@ def plume() -> float:
     return 22.0 + float(
         smoke.plume_rise(number(1245.0), 0.4, number(math.sqrt(4 * 1.075 / math.pi)), number(6.0), 22.0)
     )
-
-
-@functools.cache
-def filling(dt: float = 0.05) -> dict[int, float]:
-    """Depth of the layer [m] in the closed room of N-7 by second: 410 kW, nothing lost to walls."""
-    walls = smoke.Walls(number(ROOM[0] * ROOM[1]), number(ROOM[2]), number(0.0))
-    area = walls.area.clone()
-    layer, made = smoke.Layer(*(torch.zeros(1) for _ in range(3))), {}
-    for step in range(1, round(30 / dt) + 1):
-        # the loss to walls, which N-7 has not, is given back
-        lost = smoke.WALLS * area * (smoke.temperature(layer, 22.0) - 22.0) * (layer.volume > smoke.THIN)
-        source = smoke.Source(number(410.0), 410.0 + lost, number(0.0), number(0.0))
-        layer = smoke.fill(layer, walls, torch.zeros(1, 1, 3), source, 22.0, 1500.0, dt)
-        made[round(step * dt * 1000)] = float(layer.volume / area)
-    return {t: made[t * 1000] for t in (10, 20, 30)}
 
 
 def time_to_megawatt(growth: float) -> float:

@@ -235,6 +235,6 @@ def test_an_episode_that_began_later_is_updated_at_its_own_frames() -> None:
         alone.chance.seed[:], alone.chance.frame[:] = pair.chance.seed[env], 0
         REAL.reset(one, alone, torch.tensor([0]))
         run(REAL, one, alone, frames / 30)
-        for name in ("temperature", "status", "burn_age", "smoke_volume", "agent_dose", "flame_age"):
+        for name in ("temperature", "status", "burn_age", "zone_mass", "zone_upper", "agent_dose", "flame_age"):
             assert torch.equal(getattr(both, name)[env], getattr(one, name)[0]), name
     assert not torch.equal(both.temperature[0], both.temperature[1])

@@ -7,13 +7,13 @@
                (.radiation)
     spread     a burning cell lights each of its four neighbours at the rate FRONT V / dx, V by the material of the
                floor (.front, .fuels)
-    smoke      one layer per scene (.smoke); dose of heat of the agent (.tenability)
+    smoke      two zones in each room (.twozone, .smoke); dose of heat of the agent (.tenability)
 
 Burnt things give off no heat and cool. Nothing depends on the length of a frame: rates are turned into probabilities by
 1 - exp(-rate dt), curves are functions of time, surfaces are warmed exactly. Heat is updated every few frames, flames
 on the floor in each. `time_scale` is the one number that is not physics: seconds of fire per second of the episode,
 since rooms burn for minutes and episodes last 50 s. Limits: flames on the floor do not go out (carpet of 4 kg/m^2 burns
-longer than an episode), no conduction, no shading; the layer ignores partitions.
+longer than an episode), no conduction between things, no shading.
 """
 
 from __future__ import annotations
@@ -30,8 +30,18 @@ from hazard_ms.hazards.fire import coupling, spread
 from hazard_ms.hazards.fire.declared import TELLS_OF_BLAZE, TEMPERATURE, ignites
 from hazard_ms.hazards.fire.fire import begin_flames, lit
 from hazard_ms.hazards.fire.fire_state import BURNING, NORMAL
-from hazard_ms.hazards.fire.realistic import burning, front, fuels, kindling, radiation, smoke, tenability, touching
+from hazard_ms.hazards.fire.realistic import (
+    burning,
+    front,
+    fuels,
+    kindling,
+    radiation,
+    smoke,
+    tenability,
+    touching,
+)
 from hazard_ms.hazards.fire.realistic.blaze_state import HEATED, BlazeState
+from hazard_ms.hazards.fire.realistic.twozone import rooms
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
 
@@ -88,7 +98,8 @@ class Blaze(Hazard):
             "S": lattices,
             "K": window,
             "F": lattices * flames,
-            "O": max(1, *(len(smoke.gaps(s.room)) for s in world.specs)),
+            "O": max(1, *(len(rooms.openings(s.room)) for s in world.specs)),
+            "R": max(len(rooms.parts(s.room)) for s in world.specs),
         }
 
     def reset(self, state: BlazeState, world: World, rows: Tensor) -> None:
@@ -116,7 +127,7 @@ class Blaze(Hazard):
     def _heat(self, state: BlazeState, world: World, step: float) -> None:
         """Advance smoke, heat and burning by `step` seconds of fire."""
         fires = self._fires(state, world)
-        self._smoke(state, world, fires, step)
+        fires = self._smoke(state, world, fires, step)
         self._warm(state, world, fires, step)
         self._burn(state, world, step)
 
@@ -135,35 +146,25 @@ class Blaze(Hazard):
             torch.cat([own, torch.full_like(flames, CELL_WIDTH)], 1),
         )
 
-    def _smoke(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> None:
-        """Advance the layer of smoke by `step` seconds of fire."""
-        power = fires.power.sum(1)
-        convected = ((1.0 - fires.radiant) * fires.power).sum(1)
-        base = (fires.power * fires.place[..., 2]).sum(1) / power.clamp(min=1e-6)
+    def _smoke(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> radiation.Fires:
+        """Advance the smoke by `step` seconds of fire; returns the fires as far as they have oxygen."""
         things = state.status.shape[1]
-        soot = (fires.power[:, :things] * state.soot_yield).sum(1) + FLOOR_SOOT * fires.power[:, things:].sum(1)
-        walls = smoke.Walls(world.room.prod(-1), state.height, 2.0 * world.room.sum(-1))
-        before = smoke.Layer(state.smoke_volume, state.smoke_energy, state.smoke_mass)
-        source = smoke.Source(power, convected, base, soot)
-        layer = smoke.fill(before, walls, state.vents, source, self.room_temperature, self.flame_temperature, step)
-        state.heat_release.copy_(power)
-        layer = smoke.Layer(layer.volume * state.roofed, layer.energy * state.roofed, layer.soot * state.roofed)
-        state.smoke_volume.copy_(layer.volume)
-        state.smoke_energy.copy_(layer.energy)
-        state.smoke_mass.copy_(layer.soot)
-        state.smoke_height.copy_(smoke.interface(layer.volume, walls))
-        state.smoke_temperature.copy_(smoke.temperature(layer, self.room_temperature))
-        state.smoke_density.copy_(smoke.extinction(layer))
+        soot = torch.cat([state.soot_yield, torch.full_like(fires.power[:, things:], FLOOR_SOOT)], 1)
+        burns = smoke.advance(state, world, fires, soot, self.room_temperature, self.flame_temperature, step)
+        state.heat_release.copy_(burns.sum(1))
+        here = smoke.zone_of(state, world.agent_position[:, None])
+        for name in ("height", "temperature", "density"):
+            getattr(state, f"smoke_{name}").copy_(getattr(state, f"zone_{name}").gather(1, here)[:, 0])
+        return fires._replace(power=burns)
 
     def _exposure(self, state: BlazeState, fires: radiation.Fires, points: Tensor) -> tuple[Tensor, Tensor]:
         """Flux [kW/m^2] on surfaces facing heat and gas temperature [C], both [E, P], at `points` [m], [E, P, 3]."""
-        kelvin = state.smoke_temperature + radiation.KELVIN
-        depth = (state.height - state.smoke_height).clamp(min=0.0)
-        opaque = 1.0 - radiation.exponential(-state.smoke_density * depth)
-        layer = opaque * radiation.STEFAN * (kelvin**4 - (self.room_temperature + radiation.KELVIN) ** 4)
-        flux = radiation.flux(fires, points, state.height) + layer[:, None]
-        inside = points[..., 2] > state.smoke_height[:, None]
-        gas = torch.where(inside, state.smoke_temperature[:, None], self.room_temperature)
+        here = smoke.zone_of(state, points)
+        warmth, face = state.zone_temperature.gather(1, here), state.zone_height.gather(1, here)
+        room = self.room_temperature + radiation.KELVIN
+        layer = state.zone_emissivity.gather(1, here) * radiation.STEFAN * ((warmth + radiation.KELVIN) ** 4 - room**4)
+        flux = radiation.flux(fires, points, state.height) + layer
+        gas = torch.where(points[..., 2] > face, warmth, self.room_temperature)
         rise = smoke.above(fires, points, self.room_temperature)
         return flux, (gas + rise).clamp(max=self.flame_temperature)
 

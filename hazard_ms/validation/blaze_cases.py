@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterator
 
@@ -12,8 +13,9 @@ from hazard_ms.hazards.fire.realistic import burning, fuels, tenability
 from hazard_ms.validation.experiments import correlations, smoke_room
 from hazard_ms.validation.experiments.blaze import (
     burner_flux,
+    cell_ignition,
     dose,
-    front,
+    floor_megawatt,
     ignition_time,
     neighbour,
     number,
@@ -49,6 +51,12 @@ THICK = {  # material and flux: seconds to ignition
 FED_MINUTES = {60.0: 156.0, 100.0: 24.7, 120.0: 12.8, 150.0: 5.7, 200.0: 2.0}  # air [C]
 FED_SECONDS = {2.5: 44.0, 5.0: 11.8, 10.0: 3.2}  # flux [kW/m^2]
 RADII = {(100.0, 10.0): 0.53, (100.0, 20.0): 0.37, (300.0, 16.0): 0.72, (1000.0, 10.0): 1.67, (3000.0, 20.0): 2.04}
+CELLS = {  # floor and flux: seconds to ignition, as in THICK
+    **{("carpet", 20.0): 64.7, ("carpet", 30.0): 28.7, ("carpet", 9.8): math.inf},
+    **{("wood", 20.0): 145.0, ("wood", 30.0): 65.0, ("wood", 15.7): math.inf, ("tile", 60.0): math.inf},
+}
+# Floors that burn as t^2 fires do [s]: NFPA 204's times to 1,055 kW; fires over wood grow medium, over carpet fast
+GROWTH = {"grass": 600.0, "wood": 300.0, "carpet": 150.0}
 PEAKS = {
     ("upholstered_chair", 200): 2099.6,
     ("sofa", 400): 3447,
@@ -155,7 +163,10 @@ def of_data() -> Iterator[Case]:
     )
     yield Case("3.1", "energy of a polyester pillow", 4400.0, 0.005, lambda: released("throw_pillow"), "kJ")
     yield Case("3.1", "energy of 1 kg of paper", 13000.0, 0.005, lambda: released("book"), "kJ")
-    yield Case("4.3", "speed of a fire's edge over a wooden floor", 3.9e-3, 0.1, front, "m/s", slow=True)
+    yield from table("4.3", "a cell of (floor, kW/m2) {} burns after", CELLS, 0.03, cell_ignition, unit="s")
+    for floor, seconds in GROWTH.items():
+        run = functools.partial(floor_megawatt, floor, 1.5 * seconds)
+        yield Case("4.3", f"1055 kW from a floor of {floor}", seconds, 0.2, run, "s", slow=True)
     yield Case(
         "4.3", "a book 0.30 m from a waste basket burns", 1.0, 0, lambda: float(neighbour(0.30) < 600), slow=True
     )

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-import functools
 import math
 from typing import Any
 
 import torch
 from torch import Tensor
 
+from hazard_ms.hazards.fire import spread
 from hazard_ms.hazards.fire.fire import NORMAL
 from hazard_ms.hazards.fire.realistic import burning, radiation, smoke, tenability
 from hazard_ms.hazards.fire.realistic import front as edge
@@ -108,18 +108,34 @@ def neighbour(apart: float, dt: float = 0.5) -> float:
     return math.inf
 
 
-@functools.cache
-def front(runs: int = 16, seconds: float = 800.0, dt: float = 4.0) -> float:
-    """Speed [m/s] of the edge of a fire on an open wooden floor, that of a circle of the burning area, after 300 s."""
-    blaze = Blaze(time_scale=1.0, every=1, horizon=seconds)
-    state, world = burn_room([], blaze, runs, floor="wood", fires=[(10.0, 10.0)])
-    seen = {}
-    for step in range(1, round(seconds / dt) + 1):
+def floor_megawatt(floor: str, horizon: float, dt: float = 2.0) -> float:
+    """Seconds until a fire on an open `floor`, lit by a waste basket, gives off 1,055 kW; within `horizon` [s]."""
+    blaze = Blaze(time_scale=1.0, every=1, horizon=horizon)
+    state, world = burn_room([], blaze, floor=floor, fires=[(10.0, 10.0)])
+    before = 0.0
+    for step in range(1, round(horizon / dt) + 1):
         world.chance.tick()
-        edge.advance(state, world, dt)
-        cells = (state.flame_cell >= 0).sum(1).double().mean()
-        seen[step * dt] = math.sqrt(float(cells) * 0.22**2 / math.pi)
-    return (seen[seconds] - seen[300.0]) / (seconds - 300.0)
+        blaze.advance(state, world, dt)
+        now = float(state.heat_release)
+        if now >= 1055.0:
+            return dt * (step - (now - 1055.0) / (now - before))
+        before = now
+    return math.inf
+
+
+def cell_ignition(case: tuple[str, float], dt: float = 0.25) -> float:
+    """Seconds until a cell of a floor burns under a flux [kW/m^2] from 3 m above it; infinite if not in 400 s."""
+    floor, flux = case
+    state, world = burn_room([], floor=floor, fires=[(10.0, 10.0)])
+    power = flux * 4.0 * math.pi * 3.0**2 / 0.35
+    numbers = (torch.tensor([[v]]) for v in (power, 0.35, 100.0))  # so wide that its flames have no length
+    lamp = radiation.Fires(torch.tensor([[[10.0 + spread.STEP, 10.0, 3.0]]]), *numbers)
+    for step in range(1, round(400.0 / dt) + 1):
+        edge.warm(state, world, lamp, 20.0, dt)
+        edge.advance(state, world)
+        if int((state.flame_cell >= 0).sum()) > 1:
+            return step * dt
+    return math.inf
 
 
 def dose(temperature: float, flux: float) -> float:

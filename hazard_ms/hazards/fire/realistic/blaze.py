@@ -1,18 +1,17 @@
 """Fire of the preset `realistic`: heat release, radiation, ignition, spread and smoke, in SI seconds (torch).
 
     heat       each burning thing by its measured or t^2 curve (hazard_ms.hazards.fire.realistic.burning), each cell of
-               the floor
-               as a t^2 fire
+               the floor as a t^2 fire
     ignition   of thick and thin solids by the flux of all fires, of the smoke layer, and of flames that touch
                (.radiation)
-    spread     a burning cell lights each of its four neighbours at the rate FRONT V / dx, V by the material of the
-               floor (.front, .fuels)
+    spread     cells of the floor warm up under all fires, the smoke and flames that touch them, and light at the
+               ignition temperature of the floor's material (.scorch, .front, .fuels); tiles do not burn
     smoke      two zones in each room (.twozone, .smoke); dose of heat of the agent (.tenability)
 
-Burnt things give off no heat and cool. Nothing depends on the length of a frame: rates are turned into probabilities by
-1 - exp(-rate dt), curves are functions of time, surfaces are warmed exactly. Heat is updated every few frames, flames
-on the floor in each. `time_scale` is the one number that is not physics: seconds of fire per second of the episode,
-since rooms burn for minutes and episodes last 50 s. Limits: flames on the floor do not go out (carpet of 4 kg/m^2 burns
+Burnt things give off no heat and cool. Nothing is drawn by chance, and nothing depends on the length of a frame: curves
+are functions of time, surfaces are warmed exactly. Heat is updated every few frames. `time_scale` is the one number
+that is not physics: seconds of fire per second of the episode, since rooms burn for minutes and episodes last 50 s.
+Limits: flames on the floor do not go out (carpet of 4 kg/m^2 burns
 longer than an episode), no conduction between things, no shading.
 """
 
@@ -90,8 +89,8 @@ class Blaze(Hazard):
 
     def sizes(self, world: World) -> dict[str, int]:
         lattices = max(1, *(len(s.fires) for s in world.specs))
-        fastest = max(fuels.SPREAD.get(s.room.floor, 0.0) * coupling.fastest(s.wind) for s in world.specs)
-        cells = fastest * self.time_scale * self.horizon / spread.STEP
+        fastest = max(self._pace(s.room.floor) * coupling.fastest(s.wind) for s in world.specs)
+        cells = fastest * self.time_scale * self.horizon
         window = 2 * (math.ceil(1.25 * cells) + 3) + 1
         flames = min(window**2, math.ceil(1.3 * math.pi * cells**2) + 25)
         return {
@@ -102,10 +101,19 @@ class Blaze(Hazard):
             "R": max(len(rooms.parts(s.room)) for s in world.specs),
         }
 
+    def _pace(self, floor: str) -> float:
+        """Cells per second over which a fire spreads on a `floor` that flames touch."""
+        solid = fuels.FLOORS.get(floor, fuels.BARE)
+        soaked = math.pi / 4.0 * solid.inertia * ((solid.ignition - self.room_temperature) / touching.TOUCH_FLUX) ** 2
+        return 1.0 / soaked if soaked > 0 else 0.0
+
     def reset(self, state: BlazeState, world: World, rows: Tensor) -> None:
         state.temperature[rows] = state.agent_temperature[rows] = state.smoke_temperature[rows] = self.room_temperature
         begin_flames(state, world, rows, fixtures_block=True)
         first = state.flame_cell[rows] >= 0
+        middle = state.free.shape[-1] // 2
+        state.free[rows, :, middle, middle] = False
+        state.floor_temperature[rows] = self.room_temperature
         state.flame_peak[rows] = torch.where(first, self.first_release, CELL_AREA * fuels.AS_GOODS)
         state.flame_age[rows] = torch.where(first, ESTABLISHED, 0.0)
         kindling.describe_rooms(state, world, rows)
@@ -122,13 +130,14 @@ class Blaze(Hazard):
                 now = getattr(state, name)
                 now.copy_(torch.where(due.view(-1, *[1] * (now.ndim - 1)), now, before))
         state.flame_age.add_(lit(state, world.frame) * (dt * self.time_scale))
-        front.advance(state, world, dt * self.time_scale)
+        front.advance(state, world)
 
     def _heat(self, state: BlazeState, world: World, step: float) -> None:
         """Advance smoke, heat and burning by `step` seconds of fire."""
         fires = self._fires(state, world)
         fires = self._smoke(state, world, fires, step)
         self._warm(state, world, fires, step)
+        front.warm(state, world, fires, self.room_temperature, step)
         self._burn(state, world, step)
 
     def _fires(self, state: BlazeState, world: World) -> radiation.Fires:

@@ -17,7 +17,7 @@ HEATED = (  # names of the quantities that an update of heat changes
     *("temperature", "status", "burn_age", "burn_updates", "agent_temperature", "agent_dose", "heat_release"),
     *("smoke_height", "smoke_temperature", "smoke_density", "vents", "zone_mass", "zone_energy", "zone_soot"),
     *("zone_lack", "zone_wall", "zone_upper", "zone_lower", "zone_pressure", "zone_height", "zone_temperature"),
-    *("zone_density", "zone_emissivity", "zone_share"),
+    *("zone_density", "zone_emissivity", "zone_share", "floor_temperature"),
 )
 
 
@@ -43,7 +43,10 @@ class BlazeState(FireState):
     soot_yield: Tensor = quantity("E B", "kg/kJ", "soot per heat")
     flame_age: Tensor = quantity("E F", "s", "time since the flame appeared")
     flame_peak: Tensor = quantity("E F", "kW", "heat release of the flame once grown", low=0.0)
-    floor_speed: Tensor = quantity("E", "m/s", "speed at which fire spreads over the floor")
+    floor_ignition: Tensor = quantity("E", "C", "ignition temperature of the floor", fill=1000.0)
+    floor_critical: Tensor = quantity("E", "kW/m^2", "least flux that ignites it", fill=1.0)
+    floor_inertia: Tensor = quantity("E", "kW^2 s/m^4 K^2", "its k rho c; 0: it does not burn", low=0.0)
+    floor_temperature: Tensor = quantity("E S K K", "C", "temperature of its cells", fill=20.0)
     height: Tensor = quantity("E", "m", "height of the room", fill=2.6, low=0.0)
     vents: Tensor = quantity("E O 4", "m", "openings: width, lower and upper end, width without panes")
     vent_from: Tensor = quantity("E O", "", "number of the room on one side", dtype="int", low=0, high="zone_area")

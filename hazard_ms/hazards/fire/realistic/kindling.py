@@ -17,7 +17,9 @@ from hazard_ms.spec.catalogue import CATEGORIES
 def describe_rooms(state: BlazeState, world: World, rows: Tensor) -> None:
     """Set what the fire needs of the rooms of the environments `rows`, [R]: floor, height [m], gaps and ceiling."""
     specs = [world.specs[row] for row in rows.tolist()]
-    state.floor_speed[rows] = torch.tensor([fuels.SPREAD.get(s.room.floor, 0.0) for s in specs], device=world.device)
+    floors = [fuels.FLOORS.get(s.room.floor, fuels.BARE) for s in specs]
+    for name in ("ignition", "critical", "inertia"):
+        getattr(state, f"floor_{name}")[rows] = torch.tensor([getattr(f, name) for f in floors], device=world.device)
     state.height[rows] = torch.tensor([s.room.height for s in specs], device=world.device)
     state.smoke_height[rows] = state.height[rows]
     state.zone_height[rows] = state.height[rows, None]

@@ -10,7 +10,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.fire import spread
-from hazard_ms.hazards.fire.fire import NORMAL
+from hazard_ms.hazards.fire.fire import BURNING, NORMAL
 from hazard_ms.hazards.fire.realistic import burning, radiation, smoke, tenability
 from hazard_ms.hazards.fire.realistic import front as edge
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
@@ -80,6 +80,17 @@ def released(category: str) -> float:
     age = torch.linspace(0.0, float(state.burn_end[0, 0]), 200_001, dtype=torch.float64).float()
     course = burning.Course(*(v[0, :1].expand(age.shape) for v in state.course))
     return float(burning.release(course, age).double().mean() * state.burn_end[0, 0])
+
+
+def peak(category: str, dt: float = 5.0) -> float:
+    """Largest heat release [kW] of a thing that burns alone in a hall, within 450 s, by the hazard's own account."""
+    state, world = burn_room([(category, (10.0, 10.0, 0.0))])
+    state.status[:], most = BURNING, 0.0
+    for _ in range(round(450.0 / dt)):
+        world.chance.tick()
+        PLAIN.advance(state, world, dt)
+        most = max(most, float(state.heat_release))
+    return most
 
 
 def burn_room(

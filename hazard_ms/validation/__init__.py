@@ -1,1 +1,1 @@
-"""Every case of docs/physics.md that this code covers, with its expected number: `hazard-ms validate`."""
+"""The cases of docs/physics.md with their expected numbers, `hazard-ms validate`; it says which are tests only."""

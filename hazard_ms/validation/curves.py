@@ -10,10 +10,9 @@ import torch
 
 from hazard_ms.hazards.fire.realistic import burning, fuels
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
-from hazard_ms.validation import fire_cases, flood_cases
+from hazard_ms.validation import blaze_cases, fire_cases, flood_cases
 from hazard_ms.validation.charts import Chart, Line
-from hazard_ms.validation.experiments import blaze as blaze_experiments
-from hazard_ms.validation.experiments import fire, flood, wind
+from hazard_ms.validation.experiments import correlations, fire, flood, smoke_room, wind
 from hazard_ms.validation.experiments.fire_room import room_world
 
 
@@ -31,11 +30,27 @@ def fire_charts() -> Iterator[Chart]:
         for n, r in zip(names, rows, strict=True)
     )
     yield Chart("fire_release", "Heat release of furniture", "time since ignition [s]", "kW", tuple(lines))
-    seen = blaze_experiments.filling()
+    times = tuple(float(t) for t in range(1, 31))
+    hall = smoke_room.Burner(410.0, smoke_room.HALL, smoke_room.SLOT, smoke_room.INSULATED, 0.0, 22.0, step=0.05)
+    depth = [smoke_room.HALL[2] - seen.height for seen in smoke_room.course(hall, times).values()]
     guide = Line("FDS Correlation Guide", (10, 20, 30), (0.35, 0.65, 0.93), points=True)
-    zone = Line("this code", (0, *seen), (0.0, *seen.values()))
+    zone = Line("this code", (0, *times), (0.0, *depth))
     yield Chart("fire_layer", "Depth of the smoke layer, 410 kW in a hall (N-7)", "time [s]", "m", (zone, guide))
+    yield _layers()
     yield _room()
+
+
+def _layers() -> Chart:
+    """Temperature of the layer in a room with an open door, against MQH."""
+    times, lines = tuple(range(30, 601, 15)), []
+    door = (smoke_room.DOOR[0], smoke_room.DOOR[2])
+    for power in blaze_cases.POWERS:
+        made = [seen.rise for seen in smoke_room.course(smoke_room.Burner(power), times).values()]
+        lines.append(Line(f"{power:.0f} kW", times, made))
+        other = [correlations.mqh(power, smoke_room.DWELLING, door, blaze_cases.BOARD, t) for t in times[::3]]
+        lines.append(Line(f"MQH {power:.0f} kW", times[::3], other, points=True))
+    title = "Rise of the layer's temperature, 6.8 x 6.4 x 2.6 m, gypsum board, door open"
+    return Chart("fire_rooms", title, "time [s]", "K", tuple(lines))
 
 
 def _room() -> Chart:

@@ -12,7 +12,9 @@ from hazard_ms.validation.experiments.fire import (
     NEVER,
     PAPER,
     SHIPPED,
+    after_burning,
     age_at_success,
+    broken_rules,
     burning_cells,
     burnt_after,
     cooling,
@@ -22,8 +24,12 @@ from hazard_ms.validation.experiments.fire import (
     isolated,
     literal_mean,
     observed,
+    out_of_range,
     overheated,
     pair,
+    pair_mode,
+    relaxed,
+    shuffled,
 )
 
 F1 = {0.05: 577.6923, 0.1: 577.6923, 0.22: 505.925, 0.25: 484.0, 0.3: 446.471, 0.5: 310.0}
@@ -58,6 +64,8 @@ def cases() -> Iterator[Case]:
         "F-2", "equilibrium at {} m from a flame (paper)", near, 1e-4, lambda d: equilibrium(PAPER, d), unit="C"
     )
     yield from table("F-4", "cooling from 200 C, after {} updates", F4, 1e-4, lambda n: cooling()[n], unit="C")
+    near = {n: 136.0 - 116.0 * 0.97**n for n in (1, 10, 22, 50)}
+    yield from table("F-3", "relaxation 1 m from a flame, after {} updates", near, 1e-4, relaxed, unit="C")
     yield from table(
         "F-5", "two things 0.5 m apart, thing {}", {0: 99.7621, 1: 71.7512}, 1e-4, lambda k: pair(0.5, k), unit="C"
     )
@@ -67,6 +75,11 @@ def cases() -> Iterator[Case]:
     yield from table(
         "F-8", "two things without a room, thing {}", {0: 160.00059, 1: 159.99941}, 1e-6, isolated, unit="C"
     )
+    modes = {(d, 0): 1 - 0.03 / (1 + (0.5 / d) ** 2) for d in (0.2, 0.5, 2.0)}
+    modes |= {(d, 1): 1 - 0.03 * (1 + 2 * (0.5 / d) ** 2) / (1 + (0.5 / d) ** 2) for d in (0.2, 0.5, 2.0)}
+    yield from table("F-9", "factor per update of (distance m, 0 mean or 1 difference) {}", modes, 1e-5, pair_mode)
+    yield Case("F-10", "temperatures outside the range of room and flames", 0.0, 0, out_of_range)
+    yield Case("F-11", "difference when the things are shuffled", 0.0, 1e-3, shuffled, "K", absolute=True)
     inside, outside = {t: 1.0 for t in F12}, {t: 0.0 for t in F12}
     yield from table(
         "F-12", "threshold {} C ignites 1 % inside its distance", inside, 0, lambda t: ignites(t, 0.99 * F12[t])
@@ -75,6 +88,8 @@ def cases() -> Iterator[Case]:
     yield from table("F-13", "updates to ignition, (threshold C, distance m) {}", F13, 0, ignition_update)
     yield Case("F-14", "a threshold of 600 C at 0.05 m never ignites", 0.0, 0, lambda: ignites(600.0, 0.05))
     yield Case("F-16", "frames from ignition to burnt", 1500, 0, burnt_after)
+    yield Case("F-16", "burnt for ten updates (paper)", 20 + 580 * 0.97**10, 1e-4, partial(after_burning, PAPER), "C")
+    yield Case("F-16", "burnt for ten updates (shipped)", 600.0, 1e-4, partial(after_burning, SHIPPED), "C")
     yield from table("F-17", "observed temperature at {} m from a flame", F17, 1e-4, observed, unit="C")
     yield from table("F-18", "updates until the agent at {} m is overheated", F18, 0, overheated)
     for name, (arguments, mean, sd) in SPREADS.items():
@@ -91,6 +106,7 @@ def cases() -> Iterator[Case]:
         )
         yield Case(name, "its deviation", sd, 0.04, partial(age_at_success, arguments, 1), "frames", slow=True)
     yield Case("F-23", "updates to success, one draw per update", 25.459, 1e-3, literal_mean, absolute=True)
+    yield Case("F-27", "flames that vanish or have no earlier one beside them", 0.0, 0, broken_rules)
     for frame, (mean, sd) in F26.items():
         width = 4 * sd * math.sqrt(1 / 400 + 1 / 120) + 0.005
         yield Case(

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-import functools
 import math
 from typing import Any
 
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.fire.fire import NORMAL
+from hazard_ms.hazards.fire import spread
+from hazard_ms.hazards.fire.fire import BURNING, NORMAL
 from hazard_ms.hazards.fire.realistic import burning, radiation, smoke, tenability
 from hazard_ms.hazards.fire.realistic import front as edge
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
@@ -19,7 +19,6 @@ from hazard_ms.simulation.world import World
 from hazard_ms.validation.experiments import correlations
 from hazard_ms.validation.experiments.fire_room import room_world
 
-ROOM = (21.66, 7.04, 3.82)  # size of the room of N-7 and N-8 [m]
 HALL = (20.0, 20.0)  # floor of the rooms in which one fire burns [m]
 PLAIN = Blaze(time_scale=1.0, every=1)
 
@@ -47,21 +46,6 @@ def plume() -> float:
     return 22.0 + float(
         smoke.plume_rise(number(1245.0), 0.4, number(math.sqrt(4 * 1.075 / math.pi)), number(6.0), 22.0)
     )
-
-
-@functools.cache
-def filling(dt: float = 0.05) -> dict[int, float]:
-    """Depth of the layer [m] in the closed room of N-7 by second: 410 kW, nothing lost to walls."""
-    walls = smoke.Walls(number(ROOM[0] * ROOM[1]), number(ROOM[2]), number(0.0))
-    area = walls.area.clone()
-    layer, made = smoke.Layer(*(torch.zeros(1) for _ in range(3))), {}
-    for step in range(1, round(30 / dt) + 1):
-        # the loss to walls, which N-7 has not, is given back
-        lost = smoke.WALLS * area * (smoke.temperature(layer, 22.0) - 22.0) * (layer.volume > smoke.THIN)
-        source = smoke.Source(number(410.0), 410.0 + lost, number(0.0), number(0.0))
-        layer = smoke.fill(layer, walls, torch.zeros(1, 1, 3), source, 22.0, 1500.0, dt)
-        made[round(step * dt * 1000)] = float(layer.volume / area)
-    return {t: made[t * 1000] for t in (10, 20, 30)}
 
 
 def time_to_megawatt(growth: float) -> float:
@@ -98,6 +82,17 @@ def released(category: str) -> float:
     return float(burning.release(course, age).double().mean() * state.burn_end[0, 0])
 
 
+def peak(category: str, dt: float = 5.0) -> float:
+    """Largest heat release [kW] of a thing that burns alone in a hall, within 450 s, by the hazard's own account."""
+    state, world = burn_room([(category, (10.0, 10.0, 0.0))])
+    state.status[:], most = BURNING, 0.0
+    for _ in range(round(450.0 / dt)):
+        world.chance.tick()
+        PLAIN.advance(state, world, dt)
+        most = max(most, float(state.heat_release))
+    return most
+
+
 def burn_room(
     bodies: list[tuple[str, tuple[float, float, float]]], blaze: Blaze = PLAIN, copies: int = 1, **room: Any
 ) -> tuple[BlazeState, World]:
@@ -124,18 +119,34 @@ def neighbour(apart: float, dt: float = 0.5) -> float:
     return math.inf
 
 
-@functools.cache
-def front(runs: int = 16, seconds: float = 800.0, dt: float = 4.0) -> float:
-    """Speed [m/s] of the edge of a fire on an open wooden floor, that of a circle of the burning area, after 300 s."""
-    blaze = Blaze(time_scale=1.0, every=1, horizon=seconds)
-    state, world = burn_room([], blaze, runs, floor="wood", fires=[(10.0, 10.0)])
-    seen = {}
-    for step in range(1, round(seconds / dt) + 1):
+def floor_megawatt(floor: str, horizon: float, dt: float = 2.0) -> float:
+    """Seconds until a fire on an open `floor`, lit by a waste basket, gives off 1,055 kW; within `horizon` [s]."""
+    blaze = Blaze(time_scale=1.0, every=1, horizon=horizon)
+    state, world = burn_room([], blaze, floor=floor, fires=[(10.0, 10.0)])
+    before = 0.0
+    for step in range(1, round(horizon / dt) + 1):
         world.chance.tick()
-        edge.advance(state, world, dt)
-        cells = (state.flame_cell >= 0).sum(1).double().mean()
-        seen[step * dt] = math.sqrt(float(cells) * 0.22**2 / math.pi)
-    return (seen[seconds] - seen[300.0]) / (seconds - 300.0)
+        blaze.advance(state, world, dt)
+        now = float(state.heat_release)
+        if now >= 1055.0:
+            return dt * (step - (now - 1055.0) / (now - before))
+        before = now
+    return math.inf
+
+
+def cell_ignition(case: tuple[str, float], dt: float = 0.25) -> float:
+    """Seconds until a cell of a floor burns under a flux [kW/m^2] from 3 m above it; infinite if not in 400 s."""
+    floor, flux = case
+    state, world = burn_room([], floor=floor, fires=[(10.0, 10.0)])
+    power = flux * 4.0 * math.pi * 3.0**2 / 0.35
+    numbers = (torch.tensor([[v]]) for v in (power, 0.35, 100.0))  # so wide that its flames have no length
+    lamp = radiation.Fires(torch.tensor([[[10.0 + spread.STEP, 10.0, 3.0]]]), *numbers)
+    for step in range(1, round(400.0 / dt) + 1):
+        edge.warm(state, world, lamp, 20.0, dt)
+        edge.advance(state, world)
+        if int((state.flame_cell >= 0).sum()) > 1:
+            return step * dt
+    return math.inf
 
 
 def dose(temperature: float, flux: float) -> float:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
-from hazard_ms.hazards.fire.realistic.radiation import GRAVITY, KELVIN
-
+GRAVITY = 9.81  # [m/s^2]; nothing here comes from the package that it checks
+KELVIN = 273.15  # [K]
 MCCAFFREY = ((0.08, 0.5, 6.8), (0.2, 0.0, 1.9), (math.inf, -1 / 3, 1.1))  # limit of z / Q^0.4, eta, kappa
 
 
@@ -63,3 +63,20 @@ def yamana_tanaka(
     hot = ambient + KELVIN + beyler(power, size, lining, seconds)
     k = 0.076 * hot / 353
     return float((2 * k * power ** (1 / 3) * seconds / (3 * length * width) + high ** (-2 / 3)) ** -1.5)
+
+
+def mqh(
+    power: float, size: tuple[float, float, float], door: tuple[float, float], lining: tuple[float, ...], seconds: float
+) -> float:
+    """Rise of the layer's temperature [K] in a room of `size` [m] with an open `door`, its width and height [m].
+
+    `lining` is conductivity [kW/m K], density [kg/m^3], heat capacity [kJ/kg K] and thickness [m] of the walls.
+    """
+    length, width, high = size
+    conductivity, density, heat, thickness = lining
+    surface = 2 * (length * width + length * high + width * high)
+    through = density * heat / conductivity * (thickness / 2) ** 2  # time after which heat passes the wall [s]
+    soaking = math.sqrt(conductivity * density * heat / seconds)
+    passing = soaking if seconds < through else conductivity / thickness
+    opening = door[0] * door[1] * math.sqrt(door[1])
+    return float(6.85 * (power**2 / (opening * passing * surface)) ** (1 / 3))

@@ -163,3 +163,77 @@ def open_floor(runs: int = 120) -> dict[int, float]:
 def burning_cells(frame: int) -> float:
     """Mean number of burning cells at a frame."""
     return open_floor()[frame]
+
+
+def relaxed(count: int) -> float:
+    """Temperature [C] of a thing 1 m from one flame after `count` updates."""
+    world = one_source([1.0])
+    state = begin_without_spread(PAPER, world)
+    updates(PAPER, state, world, count)
+    return float(state.temperature)
+
+
+def pair_mode(case: tuple[float, int]) -> float:
+    """Factor per update on the mean (0) or the difference (1) of two things' excess, at a distance [m] (shipped)."""
+    apart, moment = case
+    world = room_world([("pan", (10.0, 10.0, 0.0)), ("pan", (10.0 + apart, 10.0, 0.0))])
+    state = begin(SHIPPED, world)
+    state.temperature[0] = torch.tensor([320.0, 120.0])
+    updates(SHIPPED, state, world, 1)
+    first, second = (float(v) - 20.0 for v in state.temperature[0])
+    return (first - second) / 200.0 if moment else (first + second) / 400.0
+
+
+def _crowd() -> list[tuple[str, tuple[float, float, float]]]:
+    """Thirty things of four kinds, close to each other."""
+    names = ("book", "pan", "apple", "phone")
+    return [(names[k % 4], (9.0 + 0.27 * (k % 6), 9.0 + 0.31 * (k // 6), 0.1 * (k % 3))) for k in range(30)]
+
+
+def out_of_range() -> float:
+    """Temperatures of a crowd near three flames that were ever below the room's or above the flames' in 200 updates."""
+    world = room_world(_crowd(), [(9.2, 9.2), (10.1, 9.8), (9.5, 10.4)])
+    state, seen = begin_without_spread(SHIPPED, world), 0
+    for _ in range(200):
+        updates(SHIPPED, state, world, 1)
+        seen += int(((state.temperature < 20.0 - 1e-3) | (state.temperature > 600.0 + 1e-3)).sum())
+    return float(seen)
+
+
+def shuffled() -> float:
+    """Largest difference [K] between the temperatures of a crowd and of the same crowd in reverse order."""
+    made = []
+    for order in (1, -1):
+        world = room_world(_crowd()[::order], [(9.2, 9.2)])
+        state = begin_without_spread(PAPER, world)
+        updates(PAPER, state, world, 60)
+        made.append(state.temperature[0].flip(0) if order < 0 else state.temperature[0])
+    return float((made[0] - made[1]).abs().max())
+
+
+def after_burning(preset: Fire) -> float:
+    """Temperature [C] of a thing ten updates after it is burnt, from `preset`."""
+    world = room_world([("book", (10.0, 10.0, 0.0))])
+    state = begin(preset, world)
+    state.status[:], state.burn_updates[:], state.temperature[:] = BURNING, 299, 600.0
+    updates(preset, state, world, 11)
+    return float(state.temperature) if int(state.status) == BURNT else NEVER
+
+
+def broken_rules() -> float:
+    """Flames on an open floor that vanished, had no earlier flame beside them, or had more than four successes."""
+    world = room_world([], [(10.0, 10.0)], copies=8)
+    state, broken = begin(PAPER, world), 0
+    before = state.flame_cell.clone()
+    for _ in range(150):
+        world.chance.frame += 10
+        PAPER.advance(state, world, 0.01)
+        broken += int(((before >= 0) & (state.flame_cell != before)).sum())
+        before = state.flame_cell.clone()
+    for cells, births in zip(state.flame_cell.tolist(), state.flame_birth.tolist(), strict=True):
+        born = {c: b for c, b in zip(cells, births, strict=True) if c >= 0}
+        window = state.free.shape[-1]
+        for cell, birth in list(born.items())[1:]:
+            beside = (cell - 1, cell + 1, cell - window, cell + window)
+            broken += not any(born.get(n, birth) < birth for n in beside)
+    return float(broken)

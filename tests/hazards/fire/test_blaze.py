@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 
 import pytest
 import torch
@@ -12,7 +11,6 @@ from hypothesis import strategies as st
 
 from hazard_ms.effects.charring import char_codes
 from hazard_ms.hazards.fire.fire import BURNING, BURNT, NORMAL, body_flames, floor_flames
-from hazard_ms.hazards.fire.realistic import front
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.simulation.world import World
@@ -114,35 +112,18 @@ def test_half_and_double_frames_give_the_same_fire(dt: float) -> None:
     assert torch.allclose(made[0], made[1], rtol=0.02, atol=0.02)
 
 
-def test_the_spread_does_not_know_the_frame_rate() -> None:
-    """Mean number of burning cells after 12 s, from 150 floors each at 10 and at 40 frames a second, within four
-    deviations.
-    """
-    short = dataclasses.replace(REAL, horizon=12.0)
-    seen = []
-    for dt in (1 / 10, 1 / 40):
-        world = with_room(room_world([], [(2.5, 2.5)], size=(5.0, 5.0), copies=150), floor="carpet")
-        state = begin(short, world)
-        for _ in range(round(12.0 / dt)):
-            world.chance.tick()
-            front.advance(state, world, dt * short.time_scale)
-        seen.append((state.flame_cell >= 0).sum(1).double())
-    error = 4 * math.sqrt(float(seen[0].var() + seen[1].var()) / 150)
-    assert float(seen[0].mean()) > 2.5 and abs(float(seen[0].mean() - seen[1].mean())) < error
-
-
 def test_a_batch_of_64_is_as_each_alone() -> None:
     def episode(copies: int, seed: int) -> BlazeState:
         world = room_world(
             [("box", (1.9, 1.5, 0.0)), ("apple", (2.2, 1.5, 0.0))], [(1.5, 1.5)], size=(4.0, 4.0), copies=copies
         )
-        world.chance.seed[:] = torch.arange(copies) + seed
+        world.position[:, 1, 0] -= 0.01 * (torch.arange(copies) + seed)
         state = begin(REAL, world)
         run(REAL, state, world, 12.0, 0.1)
         return state
 
     batch = episode(64, 0)
-    assert len(batch.flame_cell.unique(dim=0)) > 3
+    assert len(batch.temperature.unique(dim=0)) > 3
     for e in (0, 37, 63):
         alone = episode(1, e)
         for name, value in alone.save().items():
@@ -235,6 +216,6 @@ def test_an_episode_that_began_later_is_updated_at_its_own_frames() -> None:
         alone.chance.seed[:], alone.chance.frame[:] = pair.chance.seed[env], 0
         REAL.reset(one, alone, torch.tensor([0]))
         run(REAL, one, alone, frames / 30)
-        for name in ("temperature", "status", "burn_age", "smoke_volume", "agent_dose", "flame_age"):
+        for name in ("temperature", "status", "burn_age", "zone_mass", "zone_upper", "agent_dose", "flame_age"):
             assert torch.equal(getattr(both, name)[env], getattr(one, name)[0]), name
     assert not torch.equal(both.temperature[0], both.temperature[1])

@@ -10,10 +10,9 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hazard_ms.hazards.fire.realistic import burning, fuels, radiation, smoke, tenability
+from hazard_ms.hazards.fire.realistic import burning, fuels, radiation, tenability
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.presets import fire
-from hazard_ms.spec import Opening, Room
 from hazard_ms.spec.catalogue import CATEGORIES
 
 positive = st.floats(0.1, 1000.0)
@@ -67,7 +66,7 @@ def test_fluxes_add_fall_with_the_square_and_do_not_exceed_a_flames() -> None:
     one = radiation.flux(fires, points, number(50.0))[0]
     lift = (float(radiation.flame_length(number(100.0), number(0.34))) / 3) ** 2
     assert float(one[0] / one[1]) == pytest.approx((64 + lift) / (16 + lift), rel=1e-4)
-    assert float(one[2]) == radiation.FLAME_FLUX
+    assert float(one[2]) == 40.0  # kW/m^2: the most that small flames give
     both = radiation.flux(fires._replace(power=number(100.0, 100.0)[None]), points, number(50.0))[0]
     assert float(both[0] - one[0]) == pytest.approx(0.35 * 100 / (4 * math.pi * (46**2 + lift)), rel=1e-3)
 
@@ -120,60 +119,6 @@ def test_a_plate_thermometer_neither_gains_nor_loses_heat(flux: float, gas: floa
     gain = 0.9 * (flux + 5.670e-11 * (293.15**4 - (surface + 273.15) ** 4)) + 0.01 * (gas - surface)
     assert abs(gain) < 0.01 * max(flux, 1.0)
     assert surface >= 20.0 - 1e-6
-
-
-def test_heat_and_soot_are_conserved_in_a_tight_room_without_losses(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(smoke, "WALLS", 0.0)
-    walls = smoke.Walls(number(400.0), number(5.0), number(80.0))
-    layer, source = (
-        smoke.Layer(*(torch.zeros(1) for _ in range(3))),
-        smoke.Source(number(300.0), number(200.0), number(0.2), number(0.001)),
-    )
-    for _ in range(300):
-        layer = smoke.fill(layer, walls, torch.zeros(1, 1, 3), source, 20.0, 820.0, 0.1)
-    assert float(layer.energy) == pytest.approx(200.0 * 30, rel=1e-4) and float(layer.soot) == pytest.approx(
-        0.03, rel=1e-4
-    )
-    assert 0 < float(smoke.interface(layer.volume, walls)) < 5.0
-    hot = float(smoke.temperature(layer, 20.0)) + 273.15
-    # mass times rise, 1 kJ/kg K
-    assert 353 / hot * float(layer.volume) * (hot - 293.15) == pytest.approx(6000.0, rel=1e-3)
-
-
-def test_smoke_leaves_through_gaps_above_its_face_only() -> None:
-    door = Room(
-        size=(4.0, 5.0),
-        openings=(Opening("door", "south", 2.0, 0.9, 2.0), Opening("window", "east", 2.0, 1.0, 1.2, 0.9)),
-    )
-    assert smoke.gaps(door) == [(0.02, 0.0, 2.0), (0.02, 0.9, 2.1)]
-    vents = torch.tensor([[(0.9, 0.0, 2.0)]])
-    assert float(smoke.leak(vents, number(2.1), number(200.0), 20.0)) == 0.0
-    assert float(smoke.leak(vents, number(1.0), number(20.0), 20.0)) == 0.0
-    rho, air = 353 / 473.15, 353 / 293.15
-    # velocity head of each height, by the pressure above the face
-    layers = torch.linspace(1.0, 2.0, 20_001, dtype=torch.float64)
-    want = 0.7 * 0.9 * float((2 * rho * 9.81 * (air - rho) * (layers - 1.0)).sqrt().mean())
-    assert float(smoke.leak(vents, number(1.0), number(200.0), 20.0)) == pytest.approx(want, rel=1e-3)
-
-
-@settings(max_examples=30, deadline=None)
-@given(power=st.floats(1.0, 20000.0), dt=st.floats(0.01, 5.0), width=st.floats(0.0, 3.0))
-def test_a_layer_stays_in_its_room_and_below_the_heat_of_flames(power: float, dt: float, width: float) -> None:
-    walls, vents = smoke.Walls(number(12.0), number(2.4), number(14.0)), torch.tensor([[(width, 0.0, 2.0)]])
-    layer = smoke.Layer(*(torch.zeros(1) for _ in range(3)))
-    for step in range(150):
-        now = power if step < 100 else 0.0
-        layer = smoke.fill(
-            layer,
-            walls,
-            vents,
-            smoke.Source(number(now), number(0.65 * now), number(0.0), number(1e-3)),
-            20.0,
-            820.0,
-            dt,
-        )
-        assert 0.0 <= float(smoke.interface(layer.volume, walls)) <= 2.4 + 1e-6
-        assert 19.99 <= float(smoke.temperature(layer, 20.0)) <= 820.1 and float(layer.soot) >= 0.0
 
 
 def test_thermal_classes_of_robots() -> None:

@@ -26,7 +26,7 @@ FAR_LEVELS = {1.0: 136.0, 1.5: 78.0, 2.0: 54.1176, 3.0: 35.676}
 
 def level(preset: Fire, distance: float) -> float:
     """Equilibrium beside one source [C]: F-1; F-2 where the paper clips the weight at 0.5 m."""
-    return {**SHIPPED_LEVELS, **FAR_LEVELS}[max(distance, 0.5) if preset.nearest == 0.5 else distance]
+    return {**SHIPPED_LEVELS, **FAR_LEVELS}[max(distance, 0.5) if preset == fire("paper") else distance]
 
 
 @pytest.mark.parametrize(
@@ -201,10 +201,11 @@ def test_a_whole_room_against_plain_loops(preset: Fire) -> None:
     thresholds = state.threshold[0].tolist()
     places = [*bases, (6.0, 5.2, 0.0), *[(*flame, 0.0) for flame in flames]]
     temperature, source = [20.0] * 21 + [600.0] * 6, [False] * 21 + [True] * 6
+    paper = preset == fire("paper")  # 0.5 m and "reaches"; the original's code: 0.1 m and "above"
     for _ in range(200):
-        temperature = plain_update(places, temperature, source, preset.nearest)
+        temperature = plain_update(places, temperature, source, 0.5 if paper else 0.1)
         for k, limit in enumerate(thresholds):
-            if not source[k] and (temperature[k] > limit or (temperature[k] == limit and not preset.strict)):
+            if not source[k] and (temperature[k] > limit or (temperature[k] == limit and paper)):
                 source[k], temperature[k] = True, 600.0
         updates(preset, state, world, 1)
         assert (state.status[0] == BURNING).tolist() == source[:20]

@@ -1,19 +1,18 @@
 """Fire of the preset `realistic`: heat release, radiation, ignition, spread and smoke, in SI seconds (torch).
 
     heat       each burning thing by its measured or t^2 curve (hazard_ms.hazards.fire.realistic.burning), each cell of
-               the floor
-               as a t^2 fire
+               the floor as a t^2 fire
     ignition   of thick and thin solids by the flux of all fires, of the smoke layer, and of flames that touch
                (.radiation)
-    spread     a burning cell lights each of its four neighbours at the rate FRONT V / dx, V by the material of the
-               floor (.front, .fuels)
-    smoke      one layer per scene (.smoke); dose of heat of the agent (.tenability)
+    spread     cells of the floor warm up under all fires, the smoke and flames that touch them, and light at the
+               ignition temperature of the floor's material (.scorch, .front, .fuels); tiles do not burn
+    smoke      two zones in each room (.twozone, .smoke); dose of heat of the agent (.tenability)
 
-Burnt things give off no heat and cool. Nothing depends on the length of a frame: rates are turned into probabilities by
-1 - exp(-rate dt), curves are functions of time, surfaces are warmed exactly. Heat is updated every few frames, flames
-on the floor in each. `time_scale` is the one number that is not physics: seconds of fire per second of the episode,
-since rooms burn for minutes and episodes last 50 s. Limits: flames on the floor do not go out (carpet of 4 kg/m^2 burns
-longer than an episode), no conduction, no shading; the layer ignores partitions.
+Burnt things give off no heat and cool. Nothing is drawn by chance, and nothing depends on the length of a frame: curves
+are functions of time, surfaces are warmed exactly. Heat is updated every few frames. `time_scale` is the one number
+that is not physics: seconds of fire per second of the episode, since rooms burn for minutes and episodes last 50 s.
+Limits: flames on the floor do not go out (carpet of 4 kg/m^2 burns
+longer than an episode), no conduction between things, no shading.
 """
 
 from __future__ import annotations
@@ -30,8 +29,18 @@ from hazard_ms.hazards.fire import coupling, spread
 from hazard_ms.hazards.fire.declared import TELLS_OF_BLAZE, TEMPERATURE, ignites
 from hazard_ms.hazards.fire.fire import begin_flames, lit
 from hazard_ms.hazards.fire.fire_state import BURNING, NORMAL
-from hazard_ms.hazards.fire.realistic import burning, front, fuels, kindling, radiation, smoke, tenability, touching
+from hazard_ms.hazards.fire.realistic import (
+    burning,
+    front,
+    fuels,
+    kindling,
+    radiation,
+    smoke,
+    tenability,
+    touching,
+)
 from hazard_ms.hazards.fire.realistic.blaze_state import HEATED, BlazeState
+from hazard_ms.hazards.fire.realistic.twozone import rooms
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
 
@@ -81,21 +90,31 @@ class Blaze(Hazard):
 
     def sizes(self, world: World) -> dict[str, int]:
         lattices = max(1, *(len(s.fires) for s in world.specs))
-        fastest = max(fuels.SPREAD.get(s.room.floor, 0.0) * coupling.fastest(s.wind) for s in world.specs)
-        cells = fastest * self.time_scale * self.horizon / spread.STEP
+        fastest = max(self._pace(s.room.floor) * coupling.fastest(s.wind) for s in world.specs)
+        cells = fastest * self.time_scale * self.horizon
         window = 2 * (math.ceil(1.25 * cells) + 3) + 1
         flames = min(window**2, math.ceil(1.3 * math.pi * cells**2) + 25)
         return {
             "S": lattices,
             "K": window,
             "F": lattices * flames,
-            "O": max(1, *(len(smoke.gaps(s.room)) for s in world.specs)),
+            "O": max(1, *(len(rooms.openings(s.room)) for s in world.specs)),
+            "R": max(len(rooms.parts(s.room)) for s in world.specs),
         }
+
+    def _pace(self, floor: str) -> float:
+        """Cells per second over which a fire spreads on a `floor` that flames touch."""
+        solid = fuels.FLOORS.get(floor, fuels.BARE)
+        soaked = math.pi / 4.0 * solid.inertia * ((solid.ignition - self.room_temperature) / touching.TOUCH_FLUX) ** 2
+        return 1.0 / soaked if soaked > 0 else 0.0
 
     def reset(self, state: BlazeState, world: World, rows: Tensor) -> None:
         state.temperature[rows] = state.agent_temperature[rows] = state.smoke_temperature[rows] = self.room_temperature
         begin_flames(state, world, rows, fixtures_block=True)
         first = state.flame_cell[rows] >= 0
+        middle = state.free.shape[-1] // 2
+        state.free[rows, :, middle, middle] = False
+        state.floor_temperature[rows] = self.room_temperature
         state.flame_peak[rows] = torch.where(first, self.first_release, CELL_AREA * fuels.AS_GOODS)
         state.flame_age[rows] = torch.where(first, ESTABLISHED, 0.0)
         kindling.describe_rooms(state, world, rows)
@@ -112,13 +131,14 @@ class Blaze(Hazard):
                 now = getattr(state, name)
                 now.copy_(torch.where(due.view(-1, *[1] * (now.ndim - 1)), now, before))
         state.flame_age.add_(lit(state, world.frame) * (dt * self.time_scale))
-        front.advance(state, world, dt * self.time_scale)
+        front.advance(state, world)
 
     def _heat(self, state: BlazeState, world: World, step: float) -> None:
         """Advance smoke, heat and burning by `step` seconds of fire."""
         fires = self._fires(state, world)
-        self._smoke(state, world, fires, step)
+        fires = self._smoke(state, world, fires, step)
         self._warm(state, world, fires, step)
+        front.warm(state, world, fires, self.room_temperature, step)
         self._burn(state, world, step)
 
     def _fires(self, state: BlazeState, world: World) -> radiation.Fires:
@@ -136,35 +156,25 @@ class Blaze(Hazard):
             torch.cat([own, torch.full_like(flames, CELL_WIDTH)], 1),
         )
 
-    def _smoke(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> None:
-        """Advance the layer of smoke by `step` seconds of fire."""
-        power = fires.power.sum(1)
-        convected = ((1.0 - fires.radiant) * fires.power).sum(1)
-        base = (fires.power * fires.place[..., 2]).sum(1) / power.clamp(min=1e-6)
+    def _smoke(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> radiation.Fires:
+        """Advance the smoke by `step` seconds of fire; returns the fires as far as they have oxygen."""
         things = state.status.shape[1]
-        soot = (fires.power[:, :things] * state.soot_yield).sum(1) + FLOOR_SOOT * fires.power[:, things:].sum(1)
-        walls = smoke.Walls(world.room.prod(-1), state.height, 2.0 * world.room.sum(-1))
-        before = smoke.Layer(state.smoke_volume, state.smoke_energy, state.smoke_mass)
-        source = smoke.Source(power, convected, base, soot)
-        layer = smoke.fill(before, walls, state.vents, source, self.room_temperature, self.flame_temperature, step)
-        state.heat_release.copy_(power)
-        layer = smoke.Layer(layer.volume * state.roofed, layer.energy * state.roofed, layer.soot * state.roofed)
-        state.smoke_volume.copy_(layer.volume)
-        state.smoke_energy.copy_(layer.energy)
-        state.smoke_mass.copy_(layer.soot)
-        state.smoke_height.copy_(smoke.interface(layer.volume, walls))
-        state.smoke_temperature.copy_(smoke.temperature(layer, self.room_temperature))
-        state.smoke_density.copy_(smoke.extinction(layer))
+        soot = torch.cat([state.soot_yield, torch.full_like(fires.power[:, things:], FLOOR_SOOT)], 1)
+        burns = smoke.advance(state, world, fires, soot, self.room_temperature, self.flame_temperature, step)
+        state.heat_release.copy_(burns.sum(1))
+        here = smoke.zone_of(state, world.agent_position[:, None])
+        for name in ("height", "temperature", "density"):
+            getattr(state, f"smoke_{name}").copy_(getattr(state, f"zone_{name}").gather(1, here)[:, 0])
+        return fires._replace(power=burns)
 
     def _exposure(self, state: BlazeState, fires: radiation.Fires, points: Tensor) -> tuple[Tensor, Tensor]:
         """Flux [kW/m^2] on surfaces facing heat and gas temperature [C], both [E, P], at `points` [m], [E, P, 3]."""
-        kelvin = state.smoke_temperature + radiation.KELVIN
-        depth = (state.height - state.smoke_height).clamp(min=0.0)
-        opaque = 1.0 - radiation.exponential(-state.smoke_density * depth)
-        layer = opaque * radiation.STEFAN * (kelvin**4 - (self.room_temperature + radiation.KELVIN) ** 4)
-        flux = radiation.flux(fires, points, state.height) + layer[:, None]
-        inside = points[..., 2] > state.smoke_height[:, None]
-        gas = torch.where(inside, state.smoke_temperature[:, None], self.room_temperature)
+        here = smoke.zone_of(state, points)
+        warmth, face = state.zone_temperature.gather(1, here), state.zone_height.gather(1, here)
+        room = self.room_temperature + radiation.KELVIN
+        layer = state.zone_emissivity.gather(1, here) * radiation.STEFAN * ((warmth + radiation.KELVIN) ** 4 - room**4)
+        flux = radiation.flux(fires, points, state.height) + layer
+        gas = torch.where(points[..., 2] > face, warmth, self.room_temperature)
         rise = smoke.above(fires, points, self.room_temperature)
         return flux, (gas + rise).clamp(max=self.flame_temperature)
 

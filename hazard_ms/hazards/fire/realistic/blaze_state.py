@@ -4,22 +4,26 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import torch
 from torch import Tensor
 
 from hazard_ms.hazards.base import quantity
 from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.hazards.fire.realistic import burning, radiation
 from hazard_ms.hazards.fire.realistic.fuels import CURVES
+from hazard_ms.hazards.fire.realistic.twozone.lining import CELLS
 
 HEATED = (  # names of the quantities that an update of heat changes
     *("temperature", "status", "burn_age", "burn_updates", "agent_temperature", "agent_dose", "heat_release"),
-    *("smoke_volume", "smoke_energy", "smoke_mass", "smoke_height", "smoke_temperature", "smoke_density"),
+    *("smoke_height", "smoke_temperature", "smoke_density", "vents", "zone_mass", "zone_energy", "zone_soot"),
+    *("zone_lack", "zone_wall", "zone_upper", "zone_lower", "zone_pressure", "zone_height", "zone_temperature"),
+    *("zone_density", "zone_emissivity", "zone_share", "floor_temperature"),
 )
 
 
 @dataclass
 class BlazeState(FireState):
-    """State of a realistic fire: that of FireState, and more, with O gaps in the outer walls.
+    """State of a realistic fire: that of FireState, and more, with O openings and R rooms.
 
     `burn_updates` counts intervals of blaze.UPDATE.
     """
@@ -39,17 +43,41 @@ class BlazeState(FireState):
     soot_yield: Tensor = quantity("E B", "kg/kJ", "soot per heat")
     flame_age: Tensor = quantity("E F", "s", "time since the flame appeared")
     flame_peak: Tensor = quantity("E F", "kW", "heat release of the flame once grown", low=0.0)
-    floor_speed: Tensor = quantity("E", "m/s", "speed at which fire spreads over the floor")
+    floor_ignition: Tensor = quantity("E", "C", "ignition temperature of the floor", fill=1000.0)
+    floor_critical: Tensor = quantity("E", "kW/m^2", "least flux that ignites it", fill=1.0)
+    floor_inertia: Tensor = quantity("E", "kW^2 s/m^4 K^2", "its k rho c; 0: it does not burn", low=0.0)
+    floor_temperature: Tensor = quantity("E S K K", "C", "temperature of its cells", fill=20.0)
     height: Tensor = quantity("E", "m", "height of the room", fill=2.6, low=0.0)
-    vents: Tensor = quantity("E O 3", "m", "gaps: width, lower and upper end")
+    vents: Tensor = quantity("E O 4", "m", "openings: width, lower and upper end, width without panes")
+    vent_from: Tensor = quantity("E O", "", "number of the room on one side", dtype="int", low=0, high="zone_area")
+    vent_to: Tensor = quantity(
+        "E O", "", "number of the room on the other side; -1 for the outside", "int", -1, -1, "zone_area"
+    )
     roofed: Tensor = quantity("E", "", "1 under a ceiling, 0 in the open, where smoke does not gather", fill=1.0)
+    lining_conductivity: Tensor = quantity("E", "kW/m K", "conductivity of walls and ceiling", fill=1e-3)
+    lining_capacity: Tensor = quantity("E", "kJ/m^3 K", "their heat capacity", fill=1e3)
+    lining_thickness: Tensor = quantity("E", "m", "their thickness", fill=0.1)
+    zone_across: Tensor = quantity("E", "", "1 if the rooms stand in a row along y, 0 along x", "int", low=0, high=1)
+    zone_end: Tensor = quantity("E R", "m", "where each room ends along the row", fill=torch.inf)
+    zone_area: Tensor = quantity("E R", "m^2", "area of the floor; 0 for no room", low=0.0)
+    zone_edge: Tensor = quantity("E R", "m", "circumference of the room")
+    zone_mass: Tensor = quantity("E R", "kg", "mass of the layer", low=0.0)
+    zone_energy: Tensor = quantity("E R", "kJ", "its excess heat", low=0.0)
+    zone_soot: Tensor = quantity("E R", "kg", "its soot", low=0.0)
+    zone_lack: Tensor = quantity("E R", "kg", "oxygen that it lacks", low=0.0)
+    zone_wall: Tensor = quantity("E R", "m^2", "ceiling and walls that it covers", low=0.0)
+    zone_upper: Tensor = quantity(f"E R {CELLS}", "C", "temperature in the depth of what it covers", fill=20.0)
+    zone_lower: Tensor = quantity(f"E R {CELLS}", "C", "the same of the floor and the walls below it", fill=20.0)
+    zone_pressure: Tensor = quantity("E R", "Pa", "pressure at the floor above the outside")
+    zone_height: Tensor = quantity("E R", "m", "lower face of the layer above the floor", fill=2.6, low=0.0)
+    zone_temperature: Tensor = quantity("E R", "C", "temperature of the layer", fill=20.0)
+    zone_density: Tensor = quantity("E R", "1/m", "extinction of light in the layer", low=0.0)
+    zone_emissivity: Tensor = quantity("E R", "", "emissivity of the layer", low=0.0, high=1.0)
+    zone_share: Tensor = quantity("E R", "", "share of the fires that has oxygen", fill=1.0, low=0.0, high=1.0)
     heat_release: Tensor = quantity("E", "kW", "heat release of all that burns")
-    smoke_volume: Tensor = quantity("E", "m^3", "volume of the layer")
-    smoke_energy: Tensor = quantity("E", "kJ", "excess heat of the layer")
-    smoke_mass: Tensor = quantity("E", "kg", "soot in the layer")
-    smoke_height: Tensor = quantity("E", "m", "lower face of the layer above the floor", fill=2.6, low=0.0)
-    smoke_temperature: Tensor = quantity("E", "C", "temperature of the layer", fill=20.0)
-    smoke_density: Tensor = quantity("E", "1/m", "extinction of light in the layer: one sees about 3 / it", low=0.0)
+    smoke_height: Tensor = quantity("E", "m", "lower face of the layer in the agent's room", fill=2.6, low=0.0)
+    smoke_temperature: Tensor = quantity("E", "C", "temperature of that layer", fill=20.0)
+    smoke_density: Tensor = quantity("E", "1/m", "extinction of light in it: one sees about 3 / it", low=0.0)
     agent_dose: Tensor = quantity("E", "", "heat that the agent has borne; 1 is too much for people")
 
     @property

@@ -1,40 +1,57 @@
-"""The front of a realistic fire on the floor: burning cells light their neighbours (torch)."""
+"""The floor of a realistic fire: cells that flames and smoke have heated to their ignition catch fire (torch)."""
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import torch
+from torch import Tensor
 
 from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.fire import coupling, spread
-from hazard_ms.hazards.fire.fire import can_burn, enlisted, light, lit
-from hazard_ms.hazards.fire.realistic import radiation
+from hazard_ms.hazards.fire.fire import can_burn, enlisted, light
+from hazard_ms.hazards.fire.realistic import radiation, scorch
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
+from hazard_ms.hazards.fire.realistic.twozone.balance import Rooms
 from hazard_ms.simulation.world import World
 
-# Mean time that a front takes per cell, in units of 1 / rate, over ten cells; 0.41 far out [ours, docs/physics.md 4.3]
-FRONT = 0.5
 NO_CROWD = 2**31  # number of things on a cell that keeps flames away: never reached
 
 
-def advance(state: BlazeState, world: World, step: float) -> None:
-    """Let flames on the floor light their neighbours in `step` seconds of fire; new flames appear in the next frame."""
-    if none_set(state.floor_speed > 0):
+class _Fires(NamedTuple):
+    """What `scorch.Fires` is filled with, [E, M]; `place` is [E, M, 3], `drive` [E, M, 4]."""
+
+    place: Tensor
+    source: Tensor
+    heat: Tensor
+    width: Tensor
+    drive: Tensor
+
+
+def warm(state: BlazeState, world: World, fires: radiation.Fires, room: float, step: float) -> None:
+    """Heat the cells of the floor for `step` seconds of fire; `room` is the room's temperature [C]."""
+    if none_set((state.floor_inertia > 0) & (fires.power > 0).any(1)):
         return
-    slots = state.flame_cell.shape[1]
-    blown = coupling.drift(world, state.flame_place)
-    speed = state.floor_speed[:, None, None] * (1.0 if blown is None else blown)
-    chance = 1.0 - radiation.exponential(-FRONT * speed / spread.STEP * step)
-    draw = world.chance.uniform("fire.spread", slots, spread.DIRECTIONS)
-    direction = torch.arange(spread.DIRECTIONS, device=draw.device)
-    unused = (state.flame_used[..., None] >> direction) & 1 == 0
-    success = ((draw < chance) & unused & lit(state, world.frame)[..., None]).flatten(1)
-    if none_set(success):
+    length = torch.minimum(radiation.flame_length(fires.power, fires.diameter), state.height[:, None])
+    source = fires.place[..., 2] + length / 3.0
+    heat = fires.radiant * fires.power / (4.0 * math.pi)
+    blown = coupling.drift(world, fires.place)
+    drive = torch.ones((*heat.shape, spread.DIRECTIONS), device=heat.device) if blown is None else blown.sqrt()
+    made = _Fires(fires.place.contiguous(), source, heat, fires.diameter.contiguous(), drive)
+    launches = world.launches
+    structs = (launches.struct(kind, of) for kind, of in ((scorch.Fires, made), (Rooms, state), (scorch.Floor, state)))
+    launches.run(scorch.warm, tuple(state.free.shape), step, room, *structs)
+
+
+def advance(state: BlazeState, world: World) -> None:
+    """Light the cells that are hot enough; new flames appear in the next frame."""
+    hot = (state.free & (state.floor_temperature >= state.floor_ignition[:, None, None, None])).flatten(1)
+    if none_set(hot):
         return
-    chosen = spread.compact(success, spread.AT_ONCE)
-    parent = chosen.clamp(min=0) // spread.DIRECTIONS
-    cell = torch.where(chosen >= 0, state.flame_cell.gather(1, parent), -1)
-    aim = spread.neighbour(cell, chosen.clamp(min=0) % spread.DIRECTIONS, state.free.shape[-1])
-    state.flame_used.scatter_add_(1, parent, (chosen >= 0).long() << (chosen.clamp(min=0) % spread.DIRECTIONS))
+    aim = spread.compact(hot, spread.AT_ONCE)
     kept = can_burn(state, world, aim, NO_CROWD)
+    tried = torch.zeros_like(hot).scatter_(1, aim.clamp(min=0), aim >= 0)
+    state.free.copy_(state.free & ~tried.view_as(state.free))  # once: it burns now, or other flames are on it
     if not none_set(kept):
         light(state, slice(None), enlisted(state, aim, kept), world.frame + 1)

@@ -124,14 +124,26 @@ CURVE_OF = {
 }
 
 AS_GOODS = 250.0  # heat release of a burning floor per area [kW/m^2] [3.1]
-SPREAD: dict[
-    str, float
-] = {  # speed of spread over floors, as radial t^2 fires of 250 kW/m^2 [m/s] [3.1]; others do not burn
-    "wood": 3.9e-3,  # medium
-    "parquet": 3.9e-3,
-    "light_wood": 3.9e-3,
-    "carpet": 7.7e-3,  # fast
-    "carpet_blue": 7.7e-3,
-    "grass": 1.9e-3,  # slow
+
+
+@dataclass(frozen=True)
+class Floor:
+    """A floor that flames and smoke can light: a thick solid."""
+
+    ignition: float  # [C]
+    critical: float  # least flux that ignites it [kW/m^2]
+    inertia: float  # k rho c [kW^2 s/m^4 K^2]; 0: it does not burn
+
+
+BARE = Floor(1000.0, 1.0, 0.0)
+_PLYWOOD = Floor(390.0, 16.0, 0.54)  # 12.7 mm [3.1]
+_CARPET = Floor(300.0, 10.0, 0.42)  # acrylic [3.1]
+FLOORS = {  # by the material of the floor; every other one is bare
+    "wood": _PLYWOOD,
+    "parquet": _PLYWOOD,
+    "light_wood": _PLYWOOD,
+    "carpet": _CARPET,
+    "carpet_blue": _CARPET,
+    "grass": Floor(412.0, 18.0, 0.93),  # as slow as particleboard [ours]
 }
 BASKET = 100.0  # heat release of a fire that a scene begins with: a large waste basket, for 200 to 300 s [kW] [3.1]

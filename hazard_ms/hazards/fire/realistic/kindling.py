@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.fire.realistic import burning, fuels, smoke
+from hazard_ms.hazards.fire.realistic import burning, fuels
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
+from hazard_ms.hazards.fire.realistic.twozone import lining, rooms
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.catalogue import CATEGORIES
 
@@ -14,13 +17,38 @@ from hazard_ms.spec.catalogue import CATEGORIES
 def describe_rooms(state: BlazeState, world: World, rows: Tensor) -> None:
     """Set what the fire needs of the rooms of the environments `rows`, [R]: floor, height [m], gaps and ceiling."""
     specs = [world.specs[row] for row in rows.tolist()]
-    state.floor_speed[rows] = torch.tensor([fuels.SPREAD.get(s.room.floor, 0.0) for s in specs], device=world.device)
+    floors = [fuels.FLOORS.get(s.room.floor, fuels.BARE) for s in specs]
+    for name in ("ignition", "critical", "inertia"):
+        getattr(state, f"floor_{name}")[rows] = torch.tensor([getattr(f, name) for f in floors], device=world.device)
     state.height[rows] = torch.tensor([s.room.height for s in specs], device=world.device)
     state.smoke_height[rows] = state.height[rows]
+    state.zone_height[rows] = state.height[rows, None]
     state.roofed[rows] = torch.tensor([float(not s.room.open_air) for s in specs], device=world.device)
-    gaps = [smoke.gaps(s.room) for s in specs]
-    padded = [[*g, *[(0.0, 0.0, 0.0)] * (state.vents.shape[1] - len(g))] for g in gaps]
-    state.vents[rows] = torch.tensor(padded, device=world.device)
+    state.zone_across[rows] = torch.tensor([int(rooms.across(s.room)) for s in specs], device=world.device)
+    _fill(state, rows, ("zone_end", "zone_area", "zone_edge"), [rooms.parts(s.room) for s in specs])
+    state.zone_wall[rows] = state.zone_area[rows]
+    gaps = [rooms.openings(s.room) for s in specs]
+    state.vents[rows] = _padded([[g[:4] for g in row] for row in gaps], (0.0,) * 4, state.vents)
+    _fill(state, rows, ("vent_from", "vent_to"), [[(g.room, g.other) for g in row] for row in gaps])
+    linings = [lining.LININGS.get(s.room.wall, lining.GYPSUM) for s in specs]
+    for name in ("conductivity", "capacity", "thickness"):
+        made = torch.tensor([getattr(x, name) for x in linings], device=world.device)
+        getattr(state, f"lining_{name}")[rows] = made
+
+
+def _padded(table: Sequence[Sequence[Sequence[float]]], empty: Sequence[float], like: Tensor) -> Tensor:
+    """The rows of `table` at the length that `like` has along its second axis, with `empty` after their ends."""
+    length = like.shape[1]
+    return torch.tensor([[*row, *[empty] * (length - len(row))] for row in table]).to(like)
+
+
+def _fill(state: BlazeState, rows: Tensor, names: Sequence[str], table: Sequence[Sequence[Sequence[float]]]) -> None:
+    """Write the columns of `table`, a list for each of the `rows`, into quantities; what is missing keeps its fill."""
+    for column, name in enumerate(names):
+        held = getattr(state, name)
+        for row, entries in zip(rows.tolist(), table, strict=True):
+            values = torch.tensor([entry[column] for entry in entries])
+            held[row, : len(entries)] = values.to(held)
 
 
 def describe_things(state: BlazeState, world: World, rows: Tensor) -> None:

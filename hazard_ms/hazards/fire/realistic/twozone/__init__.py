@@ -1,0 +1,1 @@
+"""The two zones of the realistic fire: smoke, openings, and heat in walls."""

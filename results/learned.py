@@ -16,10 +16,10 @@ from pathlib import Path
 
 from hazard_ms.evaluation.comparison.pairing import Episode, difference
 from hazard_ms.spec.checks import one_of
-from results.tables import COMMAND, HERE, TASKS, evaluate, results_in, value_of, words
+from results.tables import COMMAND, HERE, TASKS, evaluate, machine, results_in, value_of, words
 
 RAW = HERE.parent / "build" / "learned"
-PLAIN = HERE.parent / "build" / "results"  # where results/make.py plays the agents that are compared with
+PLAIN = RAW / "plain"  # where the agents play that policies are compared with
 SHIPPED = HERE.parent / "hazard_ms" / "agents" / "weights"
 KINDS = {"rl": ["ppo"], "bc": ["bc"], "rl_paper": ["ppo", "--actions", "paper"]}
 SEEDS = (0, 1, 2)
@@ -34,7 +34,7 @@ Made by `./run python results/learned.py`. Each policy learned in the sketch, in
 then played the 25 scenes of its task's split `test` in the simulator. Values are in percent, with 95 % bootstrap
 intervals over episodes, differences paired by episode. "Sketch" is the mean Value in 24 scenes of the sketch that chose
 the best moment of the training, beside that of `greedy` in the same scenes. The package brings the policies in bold:
-of each task and kind the one that is best in the sketch.
+of each task and kind the one that is best in the sketch. A dash: not played. Written at {machine}.
 
 | policy | seed | sketch | `greedy` there | Value | less `greedy` | less `planner` | share of `planner` | episodes |
 |---|---|---|---|---|---|---|---|---|
@@ -57,7 +57,7 @@ def make(name: str) -> None:
     if not weights(name).exists() or learnt_from(name) < decisions:
         subprocess.run([*COMMAND, "train", *options], check=True)
     evaluate(task, RAW / name, "--agents", f"{kind}:weights={weights(name)}")
-    evaluate(task, PLAIN / f"{task}-fetch", "--agents", "greedy", "planner")
+    evaluate(task, PLAIN / task, "--agents", "greedy", "planner")
 
 
 def learnt_from(name: str) -> float:
@@ -81,20 +81,22 @@ def sketched(name: str) -> tuple[float, float]:
 
 
 def row(name: str) -> str:
-    """The row of a policy; empty if it has not played."""
+    """The row of a policy; empty if it was not trained."""
     kind, task, seed = name.split("-")
     results = results_in(RAW / name)
-    if not results:
+    if not weights(name).exists():
         return ""
-    own, plain = values(RAW / name, kind), PLAIN / f"{task}-fetch"
+    own, plain = values(RAW / name, kind), PLAIN / task
     greedy, planner = values(plain, "greedy"), values(plain, "planner")
     common = set(own) & set(planner)
     share = sum(own[e] for e in common) / max(sum(planner[e] for e in common), 1e-9)
     found, there = sketched(name)
     shipped = SHIPPED / weights(name).name
     same = shipped.exists() and shipped.read_bytes() == weights(name).read_bytes()
-    cells = [f"{100 * found:.1f}", f"{100 * there:.1f}", words(value_of(results)), words(difference(own, greedy))]
-    cells += [words(difference(own, planner)), f"{share:.0%}", str(len(results))]
+    cells = [f"{100 * found:.1f}", f"{100 * there:.1f}", *["-"] * 4, "0"]
+    if results:
+        cells[2:5] = map(words, (value_of(results), difference(own, greedy), difference(own, planner)))
+        cells[5:] = f"{share:.0%}", str(len(results))
     title = f"**{task}, {kind}**" if same else f"{task}, {kind}"
     return f"| {title} | {seed} | {' | '.join(cells)} |\n"
 
@@ -113,7 +115,7 @@ def main(wanted: list[str]) -> None:
         make(name)
     for name in names:
         curve(name)
-    (HERE / "learned.md").write_text(HEAD + "".join(map(row, names)), encoding="utf-8")
+    (HERE / "learned.md").write_text(HEAD.format(machine=machine()) + "".join(map(row, names)), encoding="utf-8")
 
 
 if __name__ == "__main__":

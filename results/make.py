@@ -12,8 +12,6 @@ from __future__ import annotations
 
 import csv
 import json
-import os
-import platform
 import subprocess
 import sys
 from typing import Any
@@ -24,7 +22,7 @@ from hazard_ms.sketch.bound import bound
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.spec.checks import one_of
 from hazard_ms.tasks import task_of
-from results.tables import COMMAND, HERE, TASKS, evaluate, results_in
+from results.tables import COMMAND, HERE, TASKS, evaluate, machine, results_in
 
 RAW = HERE.parent / "build" / "results"
 MAIN = ("greedy", "mcts", "planner", "oracle")
@@ -119,13 +117,6 @@ def table(sweep: str) -> tuple[str, list[dict[str, Any]]]:
 
 def _interval(told: dict[str, Any], scale: float) -> str:
     return f"{scale * told['mean']:.1f} [{scale * told['low']:.1f}, {scale * told['high']:.1f}]"
-
-
-def machine() -> str:
-    """The commit and the machine."""
-    commit = subprocess.run(["git", "-C", str(HERE), "describe", "--always", "--dirty"], capture_output=True, text=True)
-    version = subprocess.run([*COMMAND, "version"], capture_output=True, text=True, check=True).stdout.strip()
-    return f"commit {commit.stdout.strip()}; {version.splitlines()[0]}; {platform.machine()}, {os.cpu_count()} cores"
 
 
 def main(wanted: list[str]) -> None:

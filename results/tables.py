@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import platform
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -40,3 +42,10 @@ def words(score: Score) -> str:
     """A score in percent with its interval; without one for a single episode."""
     mean, low, high = percent(score)
     return f"{mean:.1f}" if low == high else f"{mean:.1f} [{low:.1f}, {high:.1f}]"
+
+
+def machine() -> str:
+    """The commit and the machine."""
+    commit = subprocess.run(["git", "-C", str(HERE), "describe", "--always", "--dirty"], capture_output=True, text=True)
+    version = subprocess.run([*COMMAND, "version"], capture_output=True, text=True, check=True).stdout.strip()
+    return f"commit {commit.stdout.strip()}; {version.splitlines()[0]}; {platform.machine()}, {os.cpu_count()} cores"

@@ -33,9 +33,15 @@ def machine() -> dict[str, str]:
     """What the bits of an episode may depend on besides the project's own code."""
     names = ("sapien", "mani-skill", "torch", "warp-lang", "numpy")
     return {
-        "cpu": torch.backends.cpu.get_cpu_capability(),
+        "cpu": f"{torch.backends.cpu.get_cpu_capability()}, {processor()}",
         **{name: importlib.metadata.version(name) for name in names},
     }
+
+
+def processor() -> str:
+    """The name of the processor: others of the same instruction set round some sums of wind differently."""
+    lines = Path("/proc/cpuinfo").read_text().splitlines()
+    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "unknown")
 
 
 def feed(digest: Any, value: Any) -> None:

@@ -39,7 +39,7 @@ def machine() -> dict[str, str]:
 
 
 def processor() -> str:
-    """The name of the processor: others of the same instruction set round some sums of wind differently."""
+    """The name of the processor: others with the same instructions may round differently."""
     lines = Path("/proc/cpuinfo").read_text().splitlines()
     return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "unknown")
 

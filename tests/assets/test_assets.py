@@ -146,6 +146,7 @@ def test_supports_are_surfaces_with_air_above(name: str) -> None:
         assert a.hulls or len(tops), f"no collision shape carries {s}"
 
 
+@pytest.mark.long
 @pytest.mark.render
 def test_the_sheet_shows_each_model() -> None:
     from hazard_ms.assets.contact_sheet import CAPTION, TILE, contact_sheet

@@ -73,5 +73,5 @@ def test_the_scripted_server_serves_until_it_is_interrupted() -> None:
     taken = subprocess.run([*command, "--port", port], capture_output=True, text=True)
     assert taken.returncode == 2 and f"port must be free, got {port}" in taken.stderr
     server.send_signal(signal.SIGINT)
-    out, err = server.communicate(timeout=60)
+    out, err = server.communicate(timeout=240)
     assert server.returncode == 0 and out.endswith("stopped\n") and "Traceback" not in err

@@ -63,6 +63,7 @@ def train(steps: int, **keywords: Any) -> list[str]:
     return noted.seen
 
 
+@pytest.mark.long
 def test_training_sees_several_scenes_and_the_same_again() -> None:
     first = train(6 * FRAMES)
     assert len(first) == 7 and len(set(first)) >= 4  # of 100: five of seven alike is a chance of one in a million

@@ -49,7 +49,7 @@ def test_the_checkers_of_gymnasium_and_stable_baselines(masked: bool) -> None:
 
 
 @pytest.mark.render
-@pytest.mark.parametrize("masked", [False, True])
+@pytest.mark.parametrize("masked", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_the_simulator_has_the_same_spaces_and_punishes_alike(masked: bool) -> None:
     env: Any = gym.make(ID, split="train", actions="paper", reward="paper", masked=masked, **SMALL).unwrapped
     if masked:

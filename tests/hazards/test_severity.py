@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib
 import math
 
 import pytest
@@ -15,6 +14,7 @@ from hazard_ms.hazards import presets
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.spec.severity import SEVERITIES, USUAL
 from hazard_ms.tasks import task_of
+from tests.worlds.registering import practising
 from tests.worlds.wind_worlds import Thing, begin, street
 
 EVERY = pytest.mark.parametrize("severity", SEVERITIES)
@@ -77,10 +77,10 @@ def test_every_rescue_hands_it_to_its_hazards(name: str) -> None:
 
 
 def test_tasks_without_severities_refuse_all_but_the_usual_one() -> None:
-    importlib.import_module("hazard_ms.tasks.practice")  # registers them
-    assert task_of("HazardWalkTo-v1", "realistic", None, USUAL).hazards == ()
-    with pytest.raises(ValueError, match="severity must be 'severe' for HazardWalkTo-v1, which has no other"):
-        task_of("HazardWalkTo-v1", "realistic", None, "extreme")
+    with practising():
+        assert task_of("HazardWalkTo-v1", "realistic", None, USUAL).hazards == ()
+        with pytest.raises(ValueError, match="severity must be 'severe' for HazardWalkTo-v1, which has no other"):
+            task_of("HazardWalkTo-v1", "realistic", None, "extreme")
 
 
 def test_options_name_it_where_physics_is_realistic() -> None:

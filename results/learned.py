@@ -26,7 +26,7 @@ SEEDS = (0, 1, 2)
 # scenes of flood and wind take longer to make: half a million decisions in fewer of them is what an hour allows
 SCENES = {"fire": 225, "flood": 150, "wind": 60}
 DECISIONS = {"fire": 1_000_000, "flood": 600_000, "wind": 500_000}
-SIX_DECISIONS = 300_000  # of rl_paper, whose updates take ten times as long
+SIX_DECISIONS = 100_000  # of rl_paper, as of the original; its updates take ten times as long
 LONGEST = 600  # of a training: machines that do other things, too, must not change what it learns [min]
 HEAD = """# Learned policies
 

@@ -62,7 +62,7 @@ def test_a_page_shows_what_could_be_seen(tmp_path: Path, capsys: pytest.CaptureF
     assert (tmp_path / "a.html").read_text().count('<img src="data:image/jpeg;base64,') == 2 * asked
 
 
-def test_the_scripted_server_serves_until_it_is_interrupted() -> None:
+def test_the_scripted_server_serves_until_it_is_interrupted(capsys: pytest.CaptureFixture[str]) -> None:
     command = [sys.executable, "-m", "hazard_ms.cli", "llm", "serve-scripted"]
     server = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert server.stdout is not None
@@ -70,8 +70,8 @@ def test_the_scripted_server_serves_until_it_is_interrupted() -> None:
     with urllib.request.urlopen(f"{address}/models") as answer:
         assert "greedy" in [model["id"] for model in json.load(answer)["data"]]
     port = address.split(":")[2].split("/")[0]
-    taken = subprocess.run([*command, "--port", port], capture_output=True, text=True)
-    assert taken.returncode == 2 and f"port must be free, got {port}" in taken.stderr
+    assert main(["llm", "serve-scripted", "--port", port]) == 2
+    assert f"port must be free, got {port}" in capsys.readouterr().err
     server.send_signal(signal.SIGINT)
     out, err = server.communicate(timeout=240)
     assert server.returncode == 0 and out.endswith("stopped\n") and "Traceback" not in err

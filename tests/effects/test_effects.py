@@ -38,9 +38,8 @@ def burning(mode: str, pack: str | None = None) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.render
-@pytest.mark.parametrize(
-    ("mode", "stock"), [("full", "default"), pytest.param("fast", "minimal", marks=pytest.mark.long)]
-)
+@pytest.mark.parametrize(("mode", "stock"), [("full", "default"), ("fast", "minimal")])
+@pytest.mark.long
 @alone
 def test_labels_are_those_without_effects(mode: str, stock: str) -> None:
     with_effects, without = burning(mode), burning("off", stock)

@@ -141,6 +141,7 @@ def test_rays_pass_where_a_texture_shows_nothing(bench: Bench) -> None:
     assert mark_cutouts(bench.scene) == 0
 
 
+@pytest.mark.long
 def test_cameras_of_maniskill_are_ray_traced_with_effects() -> None:
     pictures, types, played = {}, {}, 60
     for name, effects, shader in (("raster", "full", None), ("rays", "full", "rt-fast"), ("bare", "off", "rt-fast")):

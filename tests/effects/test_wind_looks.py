@@ -14,9 +14,8 @@ SPEED, LATER, MOST = 4.5, 2, 10  # of the wind [m/s], between two pictures [fram
 
 
 @pytest.mark.render
-@pytest.mark.parametrize(
-    ("mode", "stock"), [("full", "default"), pytest.param("fast", "minimal", marks=pytest.mark.long)]
-)
+@pytest.mark.parametrize(("mode", "stock"), [("full", "default"), ("fast", "minimal")])
+@pytest.mark.long
 @alone
 def test_labels_are_those_without_wind(mode: str, stock: str) -> None:
     blown, still = windy(mode=mode), windy(mode="off", pack=stock)

@@ -95,7 +95,7 @@ def test_short_names_stand_for_modules_of_maniskill() -> None:
             full_name(wrong)
 
 
-@pytest.mark.parametrize("robot", ["hazard_fetch", "hazard_g1"])
+@pytest.mark.parametrize("robot", ["hazard_fetch", pytest.param("hazard_g1", marks=pytest.mark.long)])
 def test_our_robots_stand_in_scenes_of_maniskill(robot: str) -> None:
     """In a process of its own, in which nothing but `import hazard_ms` makes them known."""
     code = (

@@ -32,7 +32,7 @@ OTHERS = ("pip", "uv", "cd", "export")  # commands that are not ours
 
 
 def python_blocks() -> list[object]:
-    """Every Python block once, with its document; those that need a renderer are marked."""
+    """Every Python block once, with its document; those that need a renderer, or minutes, are marked."""
     found, seen = [], set()
     for path in DOCUMENTS:
         for number, block in enumerate(blocks(path, "python")):
@@ -40,6 +40,8 @@ def python_blocks() -> list[object]:
                 seen.add(block)
                 draws = "gym.make" in block and 'render_backend="none"' not in block
                 marks = [pytest.mark.render] if draws else []
+                if "gym.make" in block and name_of(path) != "README.md":
+                    marks.append(pytest.mark.long)  # a process each
                 found.append(pytest.param(path, block, marks=marks, id=f"{name_of(path)}-{number}"))
     return found
 

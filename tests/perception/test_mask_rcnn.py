@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import torch
 
-from hazard_ms.perception.detectors.mask_rcnn import RESNET18, MaskRcnn, network
+from hazard_ms.perception.detectors.mask_rcnn import FIRST, RESNET18, MaskRcnn, network
 
 CLASSES = ["bowl", "mug"]
 SIDE = 64  # of a picture [pixels]
@@ -73,3 +73,27 @@ def test_code_in_a_file_of_weights_is_not_run(weights: Path, tmp_path: Path) -> 
     path.with_suffix(".json").write_text(weights.with_suffix(".json").read_text())
     with pytest.raises(ValueError, match="weights must be a file .pth or .safetensors"):
         MaskRcnn(str(path))
+
+
+def test_batch_normalisation_of_the_older_network_never_learns() -> None:
+    """As where torchvision fine-tunes its weights for COCO; with their variances, as low as 1e-7, 1e-5 would count."""
+    from torchvision.models import detection
+
+    torch.manual_seed(0)
+    theirs = detection.maskrcnn_resnet50_fpn(weights=None, weights_backbone=None, num_classes=3)
+    norms = [m for m in theirs.modules() if isinstance(m, torch.nn.BatchNorm2d)]
+    for norm in norms:
+        norm.eps = 0.0
+        norm.running_mean.normal_(0.0, 0.1)
+        norm.running_var.uniform_(0.5, 2.0)
+    ours = network(FIRST, 3)
+    ours.load_state_dict(theirs.state_dict())
+    rgb = torch.rand(1, 3, SIDE, SIDE)
+    ours.train()
+    theirs.eval()
+    for mine, other in zip(ours.backbone(rgb).values(), theirs.backbone(rgb).values(), strict=True):
+        torch.testing.assert_close(mine, other, rtol=1e-4, atol=1e-4)
+    kept = ours.state_dict()
+    assert all(torch.equal(kept[k], v) for k, v in theirs.state_dict().items() if "running" in k)
+    learning = sum(p.requires_grad for p in ours.parameters())
+    assert learning == sum(p.requires_grad for p in theirs.parameters()) - 2 * len(norms)

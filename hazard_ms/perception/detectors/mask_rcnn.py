@@ -11,6 +11,7 @@ Classes are the catalogue's categories, in the order in which the network number
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,8 @@ from hazard_ms.spec.catalogue import CATEGORIES
 from hazard_ms.spec.checks import one_of, whole
 
 RESNET18 = "resnet18_fpn"  # smaller, for pictures of 192 pixels
-NETWORKS = ("maskrcnn_resnet50_fpn_v2", "maskrcnn_resnet50_fpn", RESNET18)
+FIRST = "maskrcnn_resnet50_fpn"  # torchvision's older one
+NETWORKS = ("maskrcnn_resnet50_fpn_v2", FIRST, RESNET18)
 SIDE, LONGEST = 192, 2  # usual shorter side of its pictures [pixels], and longer sides as multiples of that at most
 ANCHORS = ((8,), (16,), (32,), (64,), (128,))  # sides of its boxes to begin with, level by level [pixels] [ours]
 RATIOS = (0.5, 1.0, 2.0)  # of their heights to their widths, as in torchvision
@@ -110,12 +112,20 @@ def read_weights(path: Path) -> dict[str, torch.Tensor]:
 def network(name: str, classes: int, size: int | None = None) -> Any:
     """An untrained network called `name` for so many `classes`, the background included.
 
-    It brings pictures to a shorter side of `size` [pixels]; if not given, of 192, larger networks of 800.
+    It brings pictures to a shorter side of `size` [pixels]; if not given, of 192, larger networks of 800. The batch
+    normalisation of FIRST never learns and divides by the variance alone, as when torchvision trained its weights.
     """
+    import torchvision
     from torchvision.models import detection
     from torchvision.models.detection.anchor_utils import AnchorGenerator
 
     sides = {} if size is None else {"min_size": size, "max_size": LONGEST * size}
+    if name == FIRST:
+        frozen = partial(torchvision.ops.FrozenBatchNorm2d, eps=0.0)
+        backbone = detection.backbone_utils.resnet_fpn_backbone(
+            backbone_name="resnet50", weights=None, trainable_layers=5, norm_layer=frozen
+        )
+        return detection.MaskRCNN(backbone, classes, **sides)
     if name != RESNET18:
         return getattr(detection, name)(weights=None, weights_backbone=None, num_classes=classes, **sides)
     backbone = detection.backbone_utils.resnet_fpn_backbone(

@@ -79,7 +79,8 @@ def fire(preset: str, severity: str = USUAL) -> Fire | Blaze:
     law, level = _FIRE[known(preset)], SEVERITIES[chosen(severity, preset)]
     if not isinstance(law, Blaze):
         return law
-    return dataclasses.replace(law, growth=level.fire_growth, first_release=level.fire_start)
+    first = {"first_release": level.fire_start, "first_base": level.fire_base}
+    return dataclasses.replace(law, growth=level.fire_growth, **first)
 
 
 def flood(preset: str, severity: str = USUAL) -> Flood:

@@ -6,8 +6,9 @@ Wind    mean speed at 10 m: a gale of Beaufort 8, 17.2 to 20.7 m/s, reached; a s
 Flood   what comes in through an open front door 0.9 m wide as over a free weir, 0.4 b sqrt(2 g) h^1.5, with 0.3, 0.5 or
         1.0 m of water outside [docs/physics.md L-28].
 Fire    growth of t-squared fires: 1 MW after 300, 150, 75 s [NFPA 204: medium, fast, ultra-fast; EN 1991-1-2 annex E
-        gives medium for dwellings, fast for libraries and shops, ultra-fast for theatres]; what burns at the start: a
-        small waste basket, a large one, three bags of rubbish [SFPE handbook; NUREG-1805].
+        gives medium for dwellings, fast for libraries and shops, ultra-fast for theatres]; what burns at the start, and
+        grows to its peak: three bags of rubbish [SFPE handbook; NUREG-1805], an upholstered chair, a wardrobe [CFAST
+        fire library]. Bases are discs of the area of such a thing.
 """
 
 from __future__ import annotations
@@ -27,13 +28,14 @@ class Severity:
     wind: float  # mean speed at 10 m, in the mean over streets [m/s]
     inflow: float  # of water, through one opening [m^3/s]
     fire_growth: float  # of fires on the floor [kW/s^2]
-    fire_start: float  # heat release of each fire with which a scene begins [kW]
+    fire_start: float  # highest heat release of each fire with which a scene begins [kW]
+    fire_base: float  # diameter of the base of such a fire [m] [ours]
 
 
 SEVERITIES = {
-    "moderate": Severity(17.0, WEIR * 0.3**1.5, 0.01172, 50.0),
-    "severe": Severity(28.0, WEIR * 0.5**1.5, 0.0469, 100.0),
-    "extreme": Severity(40.0, WEIR * 1.0**1.5, 0.1876, 350.0),
+    "moderate": Severity(17.0, WEIR * 0.3**1.5, 0.01172, 350.0, 0.6),
+    "severe": Severity(28.0, WEIR * 0.5**1.5, 0.0469, 2100.0, 0.9),
+    "extreme": Severity(40.0, WEIR * 1.0**1.5, 0.1876, 4500.0, 1.0),
 }
 USUAL = "severe"
 

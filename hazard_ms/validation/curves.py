@@ -9,10 +9,10 @@ import numpy as np
 import torch
 
 from hazard_ms.hazards.fire.realistic import burning, fuels
-from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.validation import blaze_cases, fire_cases, flood_cases
 from hazard_ms.validation.charts import Chart, Line
 from hazard_ms.validation.experiments import correlations, fire, flood, smoke_room, wind
+from hazard_ms.validation.experiments.blaze import PLAIN
 from hazard_ms.validation.experiments.fire_room import room_world
 
 
@@ -55,7 +55,7 @@ def _layers() -> Chart:
 
 def _room() -> Chart:
     """A room with a sofa 0.5 m from a burning waste basket: height and temperature of the smoke, and heat release."""
-    blaze = Blaze(time_scale=1.0, every=1)
+    blaze = PLAIN
     world = room_world(
         [("sofa", (2.5, 2.0, 0.0))], [(2.0, 2.0)], size=(5.0, 4.0), agent=(4.5, 3.5), extent=(0.9, 0.8, 0.8)
     )

@@ -50,7 +50,8 @@ def test_fires_grow_to_a_megawatt_in_the_published_time(severity: str) -> None:
     fire, usual = presets.fire("realistic", severity), presets.fire("realistic")
     assert isinstance(fire, Blaze) and isinstance(usual, Blaze)
     level = SEVERITIES[severity]
-    assert fire == dataclasses.replace(usual, growth=level.fire_growth, first_release=level.fire_start)
+    first = {"first_release": level.fire_start, "first_base": level.fire_base}
+    assert fire == dataclasses.replace(usual, growth=level.fire_growth, **first)
 
 
 @pytest.mark.parametrize("make", [presets.fire, presets.flood, presets.wind])

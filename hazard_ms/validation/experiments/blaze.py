@@ -20,7 +20,8 @@ from hazard_ms.validation.experiments import correlations
 from hazard_ms.validation.experiments.fire_room import room_world
 
 HALL = (20.0, 20.0)  # floor of the rooms in which one fire burns [m]
-PLAIN = Blaze(time_scale=1.0, every=1)
+# fires begin with a large waste basket: heat release [kW] [docs/physics.md 3.1], diameter of the base [m] [ours]
+PLAIN = Blaze(time_scale=1.0, every=1, first_release=100.0, first_base=0.3)
 
 
 def number(value: float) -> Tensor:
@@ -121,7 +122,7 @@ def neighbour(apart: float, dt: float = 0.5) -> float:
 
 def floor_megawatt(floor: str, horizon: float, dt: float = 2.0) -> float:
     """Seconds until a fire on an open `floor`, lit by a waste basket, gives off 1,055 kW; within `horizon` [s]."""
-    blaze = Blaze(time_scale=1.0, every=1, horizon=horizon)
+    blaze = dataclasses.replace(PLAIN, horizon=horizon)
     state, world = burn_room([], blaze, floor=floor, fires=[(10.0, 10.0)])
     before = 0.0
     for step in range(1, round(horizon / dt) + 1):

@@ -11,8 +11,8 @@
 Burnt things give off no heat and cool. Nothing is drawn by chance, and nothing depends on the length of a frame: curves
 are functions of time, surfaces are warmed exactly. Heat is updated every few frames. `time_scale` is the one number
 that is not physics: seconds of fire per second of the episode, since rooms burn for minutes and episodes last 50 s.
-Limits: flames on the floor do not go out (carpet of 4 kg/m^2 burns
-longer than an episode), no conduction between things, no shading.
+Limits: flames on the floor do not go out (carpet of 4 kg/m^2 burns longer than an episode) and stay within 2 to 3 m of
+the first, no conduction between things, no shading.
 """
 
 from __future__ import annotations
@@ -43,8 +43,10 @@ from hazard_ms.hazards.fire.realistic.blaze_state import HEATED, BlazeState
 from hazard_ms.hazards.fire.realistic.twozone import rooms
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
+from hazard_ms.spec.severity import SEVERITIES, USUAL
 
 CELL_AREA = spread.STEP**2  # area of a cell of the floor [m^2]
+CELL_RELEASE = CELL_AREA * fuels.AS_GOODS  # of one that burns [kW]
 CELL_WIDTH = math.sqrt(4.0 * CELL_AREA / math.pi)  # diameter of a disc of the same area [m]
 ESTABLISHED = 60.0  # age of the fires with which a scene begins [s] [ours]
 # Soot from burning floor per heat [kg/kJ]
@@ -69,17 +71,16 @@ class Blaze(Hazard):
     # temperature of burning things, and the highest of all: 800 K above the room [C] [M: McCaffrey, flame region]
     flame_temperature: float = 820.0
     every: int = 5  # frames from one update of heat to the next, as in the paper [HAZARD fire/manager.py:97]
-    time_scale: float = (
-        4.5  # seconds of fire per second: 0.15 s in a frame of 1/30 s [docs/physics.md 3.1, flame spread]
-    )
+    time_scale: float = 4.5  # seconds of fire per second: 0.15 s in a frame [docs/physics.md 3.1, flame spread]
     radiant: float = 0.35  # share of the heat that is radiated, where no measurement tells [docs/physics.md 4.4]
-    growth: float = fuels.FAST  # of fires on the floor, and of those with which a scene begins [kW/s^2]
-    first_release: float = fuels.BASKET  # heat release of the fires with which a scene begins [kW]
+    growth: float = SEVERITIES[USUAL].fire_growth  # of fires on the floor, those with which a scene begins too [kW/s^2]
+    first_release: float = SEVERITIES[USUAL].fire_start  # highest of the latter [kW]
+    first_base: float = SEVERITIES[USUAL].fire_base  # diameter of their base [m]
     horizon: float = 50.0  # length of episodes that the floor window and the roster have room for [s]
     agent_bound: float = 10.0  # flux that keeps the agent out: the limit of class III [kW/m^2] [docs/physics.md 3.1]
 
     def __post_init__(self) -> None:
-        for name in ("every", "time_scale", "growth", "first_release", "horizon", "agent_bound"):
+        for name in ("every", "time_scale", "growth", "first_release", "first_base", "horizon", "agent_bound"):
             if not 0 < getattr(self, name) < math.inf:
                 raise ValueError(f"{name} must be a positive number, got {getattr(self, name)}")
         if not 0 < self.radiant < 1:
@@ -115,7 +116,7 @@ class Blaze(Hazard):
         middle = state.free.shape[-1] // 2
         state.free[rows, :, middle, middle] = False
         state.floor_temperature[rows] = self.room_temperature
-        state.flame_peak[rows] = torch.where(first, self.first_release, CELL_AREA * fuels.AS_GOODS)
+        state.flame_peak[rows] = torch.where(first, self.first_release, CELL_RELEASE)
         state.flame_age[rows] = torch.where(first, ESTABLISHED, 0.0)
         kindling.describe_rooms(state, world, rows)
         kindling.describe_things(state, world, rows)
@@ -149,11 +150,12 @@ class Blaze(Hazard):
         flames = flames * lit(state, world.frame)
         base = world.base_of(world.position, world.rotation, world.extent)
         own = (4.0 / math.pi * world.extent[..., 0] * world.extent[..., 1]).sqrt()
+        width = torch.where(state.flame_peak > CELL_RELEASE, self.first_base, CELL_WIDTH)
         return radiation.Fires(
             torch.cat([base, state.flame_place], 1),
             torch.cat([things, flames], 1),
             torch.cat([burning.radiant(state.curve, self.radiant), torch.full_like(flames, self.radiant)], 1),
-            torch.cat([own, torch.full_like(flames, CELL_WIDTH)], 1),
+            torch.cat([own, width], 1),
         )
 
     def _smoke(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> radiation.Fires:

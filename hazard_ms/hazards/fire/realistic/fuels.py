@@ -146,4 +146,3 @@ FLOORS = {  # by the material of the floor; every other one is bare
     "carpet_blue": _CARPET,
     "grass": Floor(412.0, 18.0, 0.93),  # as slow as particleboard [ours]
 }
-BASKET = 100.0  # heat release of a fire that a scene begins with: a large waste basket, for 200 to 300 s [kW] [3.1]

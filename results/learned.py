@@ -2,7 +2,8 @@
 
 Names are such as rl-fire-0; without names it makes all of KINDS, TASKS and SEEDS. Each policy learns in the sketch, by
 the command that learned.md names, and plays the 25 scenes of its task's split `test`, as do `greedy` and `planner`. It
-resumes where it stopped, and writes learned.md and the curves in rl/. With `tables` alone it makes nothing.
+resumes where it stopped, and writes learned.md, where rows of policies made elsewhere stay, and the curves in rl/. With
+`tables` alone it makes nothing.
 """
 
 from __future__ import annotations
@@ -103,6 +104,18 @@ def row(name: str) -> str:
     return f"| {title} | {seed} | {' | '.join(cells)} |\n"
 
 
+def rows(names: list[str]) -> str:
+    """The rows of all policies; those that were trained elsewhere stay as they were written there."""
+    page = HERE / "learned.md"
+    older = {}
+    for line in page.read_text(encoding="utf-8").splitlines() if page.exists() else ():
+        cells = [cell.strip(" *") for cell in line.split("|")[1:3]]
+        if len(cells) == 2 and cells[1].isdigit():
+            task, kind = cells[0].split(", ")
+            older[f"{kind}-{task}-{cells[1]}"] = f"{line}\n"
+    return "".join(row(name) or older.get(name, "") for name in names)
+
+
 def curve(name: str) -> None:
     """Keep the curve of a training."""
     made = weights(name).with_suffix(".csv")
@@ -117,7 +130,7 @@ def main(wanted: list[str]) -> None:
         make(name)
     for name in names:
         curve(name)
-    (HERE / "learned.md").write_text(HEAD.format(machine=machine()) + "".join(map(row, names)), encoding="utf-8")
+    (HERE / "learned.md").write_text(HEAD.format(machine=machine()) + rows(names), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,8 @@ Flood   what comes in through an open front door 0.9 m wide as over a free weir,
 Fire    growth of t-squared fires: 1 MW after 300, 150, 75 s [NFPA 204: medium, fast, ultra-fast; EN 1991-1-2 annex E
         gives medium for dwellings, fast for libraries and shops, ultra-fast for theatres]; what burns at the start, and
         grows to its peak: three bags of rubbish [SFPE handbook; NUREG-1805], an upholstered chair, a wardrobe [CFAST
-        fire library]. Bases are discs of the area of such a thing.
+        fire library]. Bases are discs of the area of such a thing. Where a scene begins with several fires, they share
+        growth, peak and area.
 """
 
 from __future__ import annotations
@@ -27,9 +28,9 @@ class Severity:
 
     wind: float  # mean speed at 10 m, in the mean over streets [m/s]
     inflow: float  # of water, through one opening [m^3/s]
-    fire_growth: float  # of fires on the floor [kW/s^2]
-    fire_start: float  # highest heat release of each fire with which a scene begins [kW]
-    fire_base: float  # diameter of the base of such a fire [m] [ours]
+    fire_growth: float  # of the fires with which a scene begins [kW/s^2]
+    fire_start: float  # their highest heat release [kW]
+    fire_base: float  # diameter of the base of one that gives off so much [m] [ours]
 
 
 SEVERITIES = {

@@ -64,7 +64,7 @@ def test_what_burns_first_grows_to_the_peak_that_was_measured() -> None:
         usual = presets.fire("realistic", severity)
         assert isinstance(usual, Blaze)
         law = dataclasses.replace(usual, time_scale=1.0, every=1)
-        world = room_world([], [(2.5, 2.5)], size=(5.0, 5.0))
+        world = room_world([], [(2.5, 2.5), (1.0, 4.0)], size=(5.0, 5.0))  # two fires, which share it
         state = begin(law, world)
         law.advance(state, world, 1e-3)
         grown = SEVERITIES[severity].fire_growth * 60.0**2  # a minute old

@@ -11,8 +11,8 @@
 Burnt things give off no heat and cool. Nothing is drawn by chance, and nothing depends on the length of a frame: curves
 are functions of time, surfaces are warmed exactly. Heat is updated every few frames. `time_scale` is the one number
 that is not physics: seconds of fire per second of the episode, since rooms burn for minutes and episodes last 50 s.
-Limits: flames on the floor do not go out (carpet of 4 kg/m^2 burns longer than an episode) and stay within 2 to 3 m of
-the first, no conduction between things, no shading.
+Limits: flames on the floor do not go out (carpet of 4 kg/m^2 burns longer than an episode), and are within 2 to 3 m of
+the first; no conduction between things, no shading.
 """
 
 from __future__ import annotations
@@ -49,10 +49,8 @@ CELL_AREA = spread.STEP**2  # area of a cell of the floor [m^2]
 CELL_RELEASE = CELL_AREA * fuels.AS_GOODS  # of one that burns [kW]
 CELL_WIDTH = math.sqrt(4.0 * CELL_AREA / math.pi)  # diameter of a disc of the same area [m]
 ESTABLISHED = 60.0  # age of the fires with which a scene begins [s] [ours]
-# Soot from burning floor per heat [kg/kJ]
-FLOOR_SOOT = fuels.MATERIALS["wood"].soot / fuels.MATERIALS["wood"].combustion
-# Unit in which pictures count the age of flames on things: 5 frames of the original [s]
-UPDATE = 1 / 6
+FLOOR_SOOT = fuels.MATERIALS["wood"].soot / fuels.MATERIALS["wood"].combustion  # of burning floor, per heat [kg/kJ]
+UPDATE = 1 / 6  # unit in which pictures count the age of flames on things: 5 frames of the original [s]
 CHEST = 1.0  # height at which the agent feels heat and smoke [m] [ours]
 
 
@@ -73,9 +71,9 @@ class Blaze(Hazard):
     every: int = 5  # frames from one update of heat to the next, as in the paper [HAZARD fire/manager.py:97]
     time_scale: float = 4.5  # seconds of fire per second: 0.15 s in a frame [docs/physics.md 3.1, flame spread]
     radiant: float = 0.35  # share of the heat that is radiated, where no measurement tells [docs/physics.md 4.4]
-    growth: float = SEVERITIES[USUAL].fire_growth  # of fires on the floor, those with which a scene begins too [kW/s^2]
-    first_release: float = SEVERITIES[USUAL].fire_start  # highest of the latter [kW]
-    first_base: float = SEVERITIES[USUAL].fire_base  # diameter of their base [m]
+    growth: float = SEVERITIES[USUAL].fire_growth  # of all fires at the start, and of each later one [kW/s^2]
+    first_release: float = SEVERITIES[USUAL].fire_start  # highest heat release of all fires at the start [kW]
+    first_base: float = SEVERITIES[USUAL].fire_base  # diameter of the base of one that gives off so much [m]
     horizon: float = 50.0  # length of episodes that the floor window and the roster have room for [s]
     agent_bound: float = 10.0  # flux that keeps the agent out: the limit of class III [kW/m^2] [docs/physics.md 3.1]
 
@@ -116,7 +114,8 @@ class Blaze(Hazard):
         middle = state.free.shape[-1] // 2
         state.free[rows, :, middle, middle] = False
         state.floor_temperature[rows] = self.room_temperature
-        state.flame_peak[rows] = torch.where(first, self.first_release, CELL_RELEASE)
+        each = self.first_release / first.sum(1, keepdim=True).clamp(min=1)
+        state.flame_peak[rows] = torch.where(first, each, CELL_RELEASE)
         state.flame_age[rows] = torch.where(first, ESTABLISHED, 0.0)
         kindling.describe_rooms(state, world, rows)
         kindling.describe_things(state, world, rows)
@@ -146,11 +145,13 @@ class Blaze(Hazard):
         """The fires of each environment: B things, then F flames on the floor."""
         there = world.exists & ~world.safe & (state.status == BURNING)
         things = burning.release(state.course, state.burn_age) * there
-        flames = torch.minimum(burning.t_squared(self.growth, state.flame_age), state.flame_peak)
+        first = state.flame_peak > CELL_RELEASE
+        share = torch.where(first, state.flame_peak / self.first_release, 1.0)  # of the fires at the start together
+        flames = torch.minimum(burning.t_squared(self.growth * share, state.flame_age), state.flame_peak)
         flames = flames * lit(state, world.frame)
         base = world.base_of(world.position, world.rotation, world.extent)
         own = (4.0 / math.pi * world.extent[..., 0] * world.extent[..., 1]).sqrt()
-        width = torch.where(state.flame_peak > CELL_RELEASE, self.first_base, CELL_WIDTH)
+        width = torch.where(first, self.first_base * share.sqrt(), CELL_WIDTH)
         return radiation.Fires(
             torch.cat([base, state.flame_place], 1),
             torch.cat([things, flames], 1),

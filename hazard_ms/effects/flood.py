@@ -25,6 +25,8 @@ from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.textures import ripple_texture
 from hazard_ms.hazards.flood import flow_paths
 from hazard_ms.hazards.flood.flood import FloodState
+from hazard_ms.hazards.flood.realistic import floor_plan
+from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec
 
@@ -47,9 +49,15 @@ class _SceneFlood:
         self._things = [materials(e) for e in entities_of(scene, names)]
         self._wet = [0.0] * len(names)
 
-    def show(self, level: float, slope: float, time: float) -> None:
-        """Show water at `level` [m] at its source, with a surface slope."""
-        self._around.water(level - slope * self._path_length, time)
+    def show(self, level: float, slope: float, time: float, surface: np.ndarray | None, size: tuple[int, int]) -> None:
+        """Show water at `level` [m] at its source, with a surface slope.
+
+        `surface`: where it is on a grid of `size` cells, [N] [m], if it is no plane; then it is drawn at its mean.
+        """
+        if surface is None:
+            self._around.water(level - slope * self._path_length, time)
+        else:
+            self._around.water(surface[floor_plan.cells_at(self._around.places, size)], time)
         if self._surface is None:
             return
         half = math.atan(slope) / 2
@@ -81,8 +89,10 @@ class FloodEffects(SceneEffects):
     def show(self, world: World, flood: FloodState, frame: Tensor) -> None:
         wet = torch.maximum(flood.fraction / SOAKED_AT, flood.soaked).clamp(max=1.0).cpu().numpy()
         level, slope, time = (t.cpu().tolist() for t in (flood.level, flood.surface_slope, frame / FRAMES_PER_SECOND))
+        surface = flood.surface.cpu().numpy() if isinstance(flood, InundationState) else None
+        size = floor_plan.size_of([spec.room for spec in world.specs])
         for e, scene in enumerate(self._scenes):
-            scene.show(level[e], slope[e], time[e])
+            scene.show(level[e], slope[e], time[e], None if surface is None else surface[e], size)
             scene.wet(wet[e])
 
 

@@ -16,6 +16,7 @@ from hazard_ms.hazards.base import Hazard
 from hazard_ms.hazards.fire.fire import Fire
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.flood.flood import Flood
+from hazard_ms.hazards.flood.realistic.inundation import Inundation
 from hazard_ms.hazards.flood.water import Water
 from hazard_ms.hazards.wind.wind import FASTEST, SLOWEST, Wind
 from hazard_ms.registry import HAZARDS, find, load
@@ -56,14 +57,10 @@ _WIND = {
     ),
 }
 
-_FLOOD = {
+_FLOOD: dict[str, Flood | Inundation] = {
     "paper": Flood(),
     "shipped": Flood(gain=1.0, slabs=True, spares_waterproof=False, damage_fraction=0.0),
-    "realistic": Flood(
-        # 1 cm in 10 frames of 1/30 s: an open front door with 0.5 m of water outside [docs/physics.md 3.2]
-        rise_rate=0.03,
-        current=0.5724341,  # of the front: rise_rate / tan(slope) [m/s]
-        gain=1.0,
+    "realistic": Inundation(
         water=Water(added_mass=0.5),  # sphere 0.5, cube 0.67 [docs/physics.md 3.2]
         drag_coefficient=0.0,
         damage_time=1.0,
@@ -79,17 +76,14 @@ def fire(preset: str, severity: str = USUAL) -> Fire | Blaze:
     law, level = _FIRE[known(preset)], SEVERITIES[chosen(severity, preset)]
     if not isinstance(law, Blaze):
         return law
-    first = {"first_release": level.fire_start, "first_base": level.fire_base}
-    return dataclasses.replace(law, growth=level.fire_growth, **first)
+    law = dataclasses.replace(law, first_release=level.fire_start, first_base=level.fire_base)
+    return dataclasses.replace(law, growth=level.fire_growth)
 
 
 def flood(preset: str, severity: str = USUAL) -> Flood:
     """The flood of `preset`, as severe as `severity` says. Raises ValueError for an unknown one of both."""
     law, level = _FLOOD[known(preset, tuple(_FLOOD))], SEVERITIES[chosen(severity, preset)]
-    if preset != SCALED:
-        return law
-    share = level.inflow / SEVERITIES[USUAL].inflow
-    return dataclasses.replace(law, rise_rate=share * law.rise_rate, current=share * law.current)
+    return dataclasses.replace(law, outside=level.flood_outside) if isinstance(law, Inundation) else law
 
 
 def wind(preset: str, severity: str = USUAL) -> Wind:

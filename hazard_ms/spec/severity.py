@@ -3,8 +3,8 @@
 Wind    mean speed at 10 m: a gale of Beaufort 8, 17.2 to 20.7 m/s, reached; a storm of Beaufort 10, 24.5 to 28.4 m/s;
         a hurricane of category 1 on the Saffir-Simpson scale, 33 to 42 m/s [WMO-No. 306; NOAA]. Streets of one storm
         differ: they have two thirds to four thirds of it, as the scene's own 2.5 to 5 m/s are of their middle.
-Flood   what comes in through an open front door 0.9 m wide as over a free weir, 0.4 b sqrt(2 g) h^1.5, with 0.3, 0.5 or
-        1.0 m of water outside [docs/physics.md L-28].
+Flood   0.5, 1.0 or 1.5 m of water outside the doors, up to the knee, the waist and the chest of a person; it comes in
+        as over a weir of a door's width, 0.4 b sqrt(2 g) h^1.5 at first [docs/physics.md L-28].
 Fire    growth of t-squared fires: 1 MW after 300, 150, 75 s [NFPA 204: medium, fast, ultra-fast; EN 1991-1-2 annex E
         gives medium for dwellings, fast for libraries and shops, ultra-fast for theatres]; what burns at the start, and
         grows to its peak: three bags of rubbish [SFPE handbook; NUREG-1805], an upholstered chair, a wardrobe [CFAST
@@ -18,7 +18,6 @@ from dataclasses import dataclass
 
 from hazard_ms.spec.checks import one_of
 
-WEIR = 0.4 * 0.9 * (2.0 * 9.81) ** 0.5  # inflow through the front door per height of the water outside^1.5 [m^1.5/s]
 SCALED = "realistic"  # the preset that severity scales
 
 
@@ -27,16 +26,16 @@ class Severity:
     """The danger of each hazard."""
 
     wind: float  # mean speed at 10 m, in the mean over streets [m/s]
-    inflow: float  # of water, through one opening [m^3/s]
+    flood_outside: float  # depth of the water outside the doors [m]
     fire_growth: float  # of the fires with which a scene begins [kW/s^2]
     fire_start: float  # their highest heat release [kW]
     fire_base: float  # diameter of the base of one that gives off so much [m] [ours]
 
 
 SEVERITIES = {
-    "moderate": Severity(17.0, WEIR * 0.3**1.5, 0.01172, 350.0, 0.6),
-    "severe": Severity(28.0, WEIR * 0.5**1.5, 0.0469, 2100.0, 0.9),
-    "extreme": Severity(40.0, WEIR * 1.0**1.5, 0.1876, 4500.0, 1.0),
+    "moderate": Severity(17.0, 0.5, 0.01172, 350.0, 0.6),
+    "severe": Severity(28.0, 1.0, 0.0469, 2100.0, 0.9),
+    "extreme": Severity(40.0, 1.5, 0.1876, 4500.0, 1.0),
 }
 USUAL = "severe"
 

@@ -12,6 +12,7 @@ from hazard_ms.evaluation.choices import SEVERITIES as OFFERED
 from hazard_ms.evaluation.options import EnvOptions, EpisodeOptions, SweepOptions
 from hazard_ms.hazards import presets
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
+from hazard_ms.hazards.flood.realistic.inundation import Inundation
 from hazard_ms.spec.severity import SEVERITIES, USUAL
 from hazard_ms.tasks import task_of
 from tests.worlds.registering import practising
@@ -19,7 +20,6 @@ from tests.worlds.wind_worlds import Thing, begin, street
 
 EVERY = pytest.mark.parametrize("severity", SEVERITIES)
 STORMS = {"moderate": 17.0, "severe": 28.0, "extreme": 40.0}  # [m/s at 10 m]
-OUTSIDE = {"moderate": 0.3, "severe": 0.5, "extreme": 1.0}  # depth of the water outside the door [m]
 MEGAWATT = {"moderate": 300.0, "severe": 150.0, "extreme": 75.0}  # time to 1,055 kW [s] [NFPA 204]
 
 
@@ -34,14 +34,9 @@ def test_storms_blow_at_10_m_as_fast_as_they_are_named(severity: str) -> None:
     assert float(speeds.min()) >= 2 / 3 * storm * 0.999 and float(speeds.max()) <= 4 / 3 * storm * 1.001
 
 
-@EVERY
-def test_inflows_are_those_of_a_free_weir(severity: str) -> None:
-    """L-28: q = 0.4 b sqrt(2 g) h^1.5 through a door of 0.9 m; 0.5638 m3/s at 0.5 m."""
-    want = 0.4 * 0.9 * math.sqrt(2 * 9.81) * OUTSIDE[severity] ** 1.5
-    assert SEVERITIES[severity].inflow == pytest.approx(want, rel=1e-6)
-    assert SEVERITIES["severe"].inflow == pytest.approx(0.5638, abs=1e-4)
-    rates = {name: presets.flood("realistic", name).rise_rate for name in SEVERITIES}
-    assert rates[severity] / rates["severe"] == pytest.approx((OUTSIDE[severity] / 0.5) ** 1.5)
+def test_water_stands_outside_up_to_knee_waist_and_chest() -> None:
+    depths = {name: presets.flood("realistic", name) for name in SEVERITIES}
+    assert [law.outside for law in depths.values() if isinstance(law, Inundation)] == [0.5, 1.0, 1.5]
 
 
 @EVERY

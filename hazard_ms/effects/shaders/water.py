@@ -152,7 +152,7 @@ vec4 water(vec3 place, vec2 flow, float way, float time, float strength) {
   vec4 broad = texture(colorTexture, place.xy * 0.27 + vec2(0.021, -0.034) * time);
   vec4 fine = texture(colorTexture, place.yx * 0.71 + vec2(-0.047, 0.039) * time);
   float front = depth - 0.008 * broad.b;
-  if (front <= 0.0) return vec4(0);
+  if (front <= 0.0 || hazardMap(place.xy).y <= 0.0) return vec4(0);  // a surface at its mean is there where it is wet
   float calm = smoothstep(0.0, 0.05, depth);
   vec2 tilt = (0.30 * (broad.rg - 0.5) + 0.22 * (fine.gr - 0.5) + 0.022 * flow * cos(crest + 5.0 * broad.b)) * \
 mix(0.5, 1.0, calm);

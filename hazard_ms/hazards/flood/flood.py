@@ -3,11 +3,11 @@
     level(p) = H(t) - tan(slope) length(p),   length: of the path from the source wall to p, through doorways
     (hazard_ms.hazards.flood.flow_paths)
 
-H rises by 0.01 m every 10 frames, in `realistic` as fast by the second, to 1.5 m; from then on the slope lessens as the
-wetted length grows, so no level ever falls. The current runs away from the source along the path. Lift and drag are
-Warp kernels, hazard_ms.hazards.flood.floating; those of the original's code: hazard_ms.hazards.flood.slab; the rest,
-about once a frame and room, is torch. Constants: docs/physics.md
-1.2; what the presets change: docs/physics.md 1.5.
+H rises by 0.01 m every 10 frames to 1.5 m; from then on the slope lessens as the wetted length grows, so no level ever
+falls. The current runs away from the source along the path. Lift and drag are Warp kernels,
+hazard_ms.hazards.flood.floating; those of the original's code: hazard_ms.hazards.flood.slab; the rest, about once a
+frame and room, is torch. Constants: docs/physics.md 1.2; what the presets change: docs/physics.md 1.5. In `realistic`
+water flows instead: hazard_ms.hazards.flood.realistic.inundation.
 
 `gain` is the one number tuned for difficulty. The original's frame lasts 0.01 s, ours 1/30 s: of its current, 0.3
 carries things as far per frame as it did there, while the agent walks as far per frame as there. Measured in
@@ -58,7 +58,6 @@ class Flood(Hazard):
 
     rise: float = 0.01  # rise of the level at the source per update [m] [HAZARD flood/utils.py:19-21]
     every: int = 10  # frames from update to update [HAZARD flood/utils.py:19-21]
-    rise_rate: float = 0.0  # [m/s]; 0: the level rises by updates, else smoothly
     cap: float = 1.5  # highest level [m] [HAZARD flood/utils.py:19-21]
     slope: float = 3.0  # angle of the surface [degrees] [HAZARD flood/utils.py:25]
     # speed of the water [m/s]: 50 times the front's metres per frame [HAZARD flood/object.py:284]
@@ -79,7 +78,7 @@ class Flood(Hazard):
         for name in ("rise", "every", "cap", "slope"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} must be a positive number, got {getattr(self, name)}")
-        for name in ("rise_rate", "current", "gain", "drag_coefficient", "damage_time", "electronic_time"):
+        for name in ("current", "gain", "drag_coefficient", "damage_time", "electronic_time"):
             if not getattr(self, name) >= 0:
                 raise ValueError(f"{name} must be 0 or a positive number, got {getattr(self, name)}")
         for name in ("damage_fraction", "least_grip"):
@@ -138,12 +137,11 @@ class Flood(Hazard):
         )
 
     def _rise(self, state: FloodState, world: World) -> None:
-        """Set the level at the source and the slope of the surface, by the frame or by the second."""
-        updates = state.time * (self.rise_rate / self.rise) if self.rise_rate else world.frame // self.every
+        """Set the level at the source and the slope of the surface."""
+        updates = world.frame // self.every
         full = math.ceil(self.cap / self.rise - 1e-6)  # updates until the cap is reached
         state.level.copy_((self.rise * updates).clamp(max=self.cap))
-        # by the frame: the first is the one that reaches it
-        beyond = (updates - full + (0 if self.rise_rate else 1)).clamp(min=0)
+        beyond = (updates - full + 1).clamp(min=0)  # the first is the one that reaches it
         steep = math.tan(math.radians(self.slope))
         length = self.cap / steep + self.rise / steep * beyond
         state.surface_slope.copy_(torch.where(beyond > 0, self.cap / length, steep))

@@ -30,6 +30,35 @@ class Flooded:
     soaked: wp.array2d(dtype=float)
 
 
+@wp.func
+def wet(e: int, b: int, share: float, dt: float, damage_fraction: float, flooded: Flooded):
+    """Write that this `share` of a thing has been under water for `dt` [s]: for how long now, and its soaked pores."""
+    flooded.fraction[e, b] = share
+    if share > 0.0 and share >= damage_fraction:
+        flooded.under[e, b] = flooded.under[e, b] + dt
+    else:
+        flooded.under[e, b] = 0.0
+    if flooded.pores[e, b] > 0.0:
+        dry = 1.0 - flooded.soaked[e, b]
+        gained = dry * (1.0 - wp.exp(-dt * share / flooded.soaking_time[e, b]))
+        flooded.soaked[e, b] = flooded.soaked[e, b] + gained
+
+
+@wp.func
+def body_at(e: int, b: int, flooded: Flooded, bodies: Bodies) -> floating.Body:
+    """A thing as the water finds it."""
+    body = floating.Body()
+    body.axes = axes_of(bodies.rotation[e, b])
+    body.extent = bodies.extent[e, b]
+    body.mass = bodies.mass[e, b]
+    body.velocity = bodies.velocity[e, b]
+    body.spin = bodies.angular_velocity[e, b]
+    body.shape = int(flooded.shape[e, b])
+    body.drag_coefficient = flooded.drag_coefficient[e, b]
+    body.volume = flooded.volume[e, b] * (1.0 - flooded.pores[e, b] * flooded.soaked[e, b])
+    return body
+
+
 @wp.kernel
 def immerse(dt: float, slabs: bool, damage_fraction: float, flooded: Flooded, paths: PathArrays, bodies: Bodies):
     """Write how much of every thing is under water, for how long it has been, and its soaked pores, after `dt` [s]."""
@@ -46,15 +75,7 @@ def immerse(dt: float, slabs: bool, damage_fraction: float, flooded: Flooded, pa
             found = reach(e, centre[0], centre[1], paths)
             height, kind = level - slope * found.path_length - centre[2], int(flooded.shape[e, b])
             share = immersion(height, -slope * found.direction, axes, 0.5 * extent, kind).fraction
-    flooded.fraction[e, b] = share
-    if share > 0.0 and share >= damage_fraction:
-        flooded.under[e, b] = flooded.under[e, b] + dt
-    else:
-        flooded.under[e, b] = 0.0
-    if flooded.pores[e, b] > 0.0:
-        dry = 1.0 - flooded.soaked[e, b]
-        gained = dry * (1.0 - wp.exp(-dt * share / flooded.soaking_time[e, b]))
-        flooded.soaked[e, b] = flooded.soaked[e, b] + gained
+    wet(e, b, share, dt, damage_fraction, flooded)
 
 
 @wp.kernel
@@ -73,12 +94,7 @@ def push(
     e, b = wp.tid()
     made = floating.Push()
     if bodies.exists[e, b] and bodies.movable[e, b] and flooded.level[e] > 0.0:
-        body = floating.Body()
-        body.axes = axes_of(bodies.rotation[e, b])
-        body.extent = bodies.extent[e, b]
-        body.mass = bodies.mass[e, b]
-        body.velocity = bodies.velocity[e, b]
-        body.spin = bodies.angular_velocity[e, b]
+        body = body_at(e, b, flooded, bodies)
         centre = bodies.position[e, b]
         place = centre
         if slabs:
@@ -92,11 +108,8 @@ def push(
             slip = flow - body.velocity
             made.force = slab.push(share, box, slip, found.direction, body.mass, liquid.gravity, dt)
         else:
-            body.shape = int(flooded.shape[e, b])
-            body.drag_coefficient = flooded.drag_coefficient[e, b]
-            body.volume = flooded.volume[e, b] * (1.0 - flooded.pores[e, b] * flooded.soaked[e, b])
             height = surface - centre[2]
-            wet = immersion(height, -slope * found.direction, body.axes, 0.5 * body.extent, body.shape)
-            made = floating.push(liquid, body, wet, flow, height, dt)
+            under = immersion(height, -slope * found.direction, body.axes, 0.5 * body.extent, body.shape)
+            made = floating.push(liquid, body, under, flow, height, dt)
     force[e, b] = made.force
     torque[e, b] = made.torque

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -74,9 +74,14 @@ def room(
     return repeat(world, copies)
 
 
+def on_a_plane(law: Flood) -> Flood:
+    """A flood whose surface is a plane, and whose water acts on things as that of `law` does."""
+    return Flood(**{part.name: getattr(law, part.name) for part in fields(Flood)})
+
+
 def begin(flood: Flood, world: World) -> FloodState:
     """The state of an episode that begins in all environments."""
-    state = FloodState.allocate({"E": world.num_envs, "B": world.num_bodies, **flood.sizes(world)}, world.device)
+    state = flood.state_type.allocate({"E": world.num_envs, "B": world.num_bodies, **flood.sizes(world)}, world.device)
     flood.reset(state, world, torch.arange(world.num_envs))
     return state
 

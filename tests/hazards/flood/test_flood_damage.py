@@ -15,7 +15,7 @@ from hazard_ms.hazards.presets import flood
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Partition
-from tests.worlds.flood_worlds import Tank, Thing, begin, frames, room
+from tests.worlds.flood_worlds import Tank, Thing, begin, frames, on_a_plane, room
 
 EVERY = ["paper", "shipped", "realistic"]
 
@@ -29,9 +29,7 @@ def in_water(
     preset: Flood, things: list[Thing], height: float, steps: int = 1, dt: float = 0.01
 ) -> tuple[World, FloodState]:
     """A world after `steps` under flat water; the level stands still because its advance starts from the frame."""
-    steady = dataclasses.replace(
-        preset, rise=height, cap=height, every=1, slope=1e-4, rise_rate=1e4 if preset.rise_rate else 0.0
-    )
+    steady = dataclasses.replace(preset, rise=height, cap=height, every=1, slope=1e-4)
     world = room(things)
     state = begin(steady, world)
     frames(steady, state, world, steps, dt)
@@ -91,7 +89,7 @@ def test_paper_damages_what_is_half_under_water(fraction: float, damaged: bool, 
 @pytest.mark.parametrize(("category", "seconds"), [("book", 1.0), ("phone", 0.1), ("key", math.inf)])
 @pytest.mark.parametrize("dt", [0.01, 1 / 30, 0.05])
 def test_realistic_damage_takes_time(category: str, seconds: float, dt: float) -> None:
-    preset = flood("realistic")
+    preset = on_a_plane(flood("realistic"))
     for steps in (1, 2, 3, 4, 9, 10, 20, 29, 30, 99, 100):
         world, state = in_water(
             preset, [Thing((0.2, 0.2, 0.2), at=(10.0, 10.0, 0.1), category=category)], 0.15, steps, dt
@@ -102,10 +100,10 @@ def test_realistic_damage_takes_time(category: str, seconds: float, dt: float) -
 @pytest.mark.parametrize("preset", EVERY)
 def test_held_and_rescued_things_are_not_damaged(preset: str) -> None:
     book = Thing((0.2, 0.2, 0.2), at=(10.0, 10.0, 0.1), category="book")
-    world, state = in_water(flood(preset), [book, book, book], 0.5, 150)
+    world, state = in_water(on_a_plane(flood(preset)), [book, book, book], 0.5, 150)
     world.held[0, 0] = world.safe[0, 1] = True
     record = Damage.allocate({"E": 1, "B": 3}, "cpu")
-    record.add(flood(preset).damaged(state, world), world)
+    record.add(on_a_plane(flood(preset)).damaged(state, world), world)
     assert record.damaged[0].tolist() == [False, False, True]
 
 
@@ -113,7 +111,7 @@ def test_porous_things_soak_and_sink() -> None:
     """A cushion of 50 kg/m3, of fibres of 1,380, ends up heavier than the water that it displaces; an apple does not
     soak.
     """
-    preset = flood("realistic")
+    preset = on_a_plane(flood("realistic"))
     cushion = Thing((0.4, 0.4, 0.15), 50.0, (10.0, 10.0, 0.1), category="throw_pillow")
     world, state = in_water(preset, [cushion, dataclasses.replace(cushion, category="apple")], 1.0, 400, 1.0)
     left = state.volume * (1 - state.pores * state.soaked)
@@ -124,7 +122,9 @@ def test_porous_things_soak_and_sink() -> None:
 
 @pytest.mark.parametrize("dt", [0.03, 0.1, 1.0])
 def test_soaking_does_not_depend_on_the_step(dt: float) -> None:
-    _, state = in_water(flood("realistic"), [Thing((0.4, 0.4, 0.15), 50.0, (10.0, 10.0, 0.1))], 1.0, round(30 / dt), dt)
+    _, state = in_water(
+        on_a_plane(flood("realistic")), [Thing((0.4, 0.4, 0.15), 50.0, (10.0, 10.0, 0.1))], 1.0, round(30 / dt), dt
+    )
     assert float(state.soaked[0, 0]) == pytest.approx(1 - math.exp(-1), rel=1e-3)
 
 
@@ -168,7 +168,7 @@ def test_the_robot_begins_to_slide_where_the_specification_says(depth: float, sl
 
 @pytest.mark.parametrize("preset", EVERY)
 def test_the_agent_is_slowed_against_the_flow_and_carried_no_faster_than_it(preset: str) -> None:
-    made, world = flood(preset), room([Thing((0.1,) * 3)], "east", copies=3)
+    made, world = on_a_plane(flood(preset)), room([Thing((0.1,) * 3)], "east", copies=3)
     world.agent_build = HazardFetch.build
     state = begin(made, world)
     dry = made.slow(state, world)
@@ -206,7 +206,7 @@ MANY = [
 @pytest.mark.parametrize("preset", EVERY)
 @pytest.mark.parametrize("count", [1, 3, 10])
 def test_one_environment_and_sixty_four_give_the_same_bits(preset: str, count: int) -> None:
-    made, results = flood(preset), []
+    made, results = on_a_plane(flood(preset)), []
     for copies in (1, 64):
         world = room(MANY[:count], "east", copies=copies, partitions=WALLS[0], openings=WALLS[1])
         world.velocity[:] = torch.linspace(-1, 1, 3 * count).reshape(count, 3)

@@ -13,12 +13,12 @@ from hazard_ms.hazards.flood.buoyancy import BALL, CYLINDER
 from hazard_ms.hazards.flood.flood import Flood
 from hazard_ms.hazards.flood.water import Water
 from hazard_ms.hazards.presets import flood
-from tests.worlds.flood_worlds import GRAVITY, Tank, Thing
+from tests.worlds.flood_worlds import GRAVITY, Tank, Thing, on_a_plane
 
 PAPER = flood("paper")
 STILL = dataclasses.replace(PAPER, gain=0.0)
 CUBES = dataclasses.replace(STILL, drag_coefficient=1.05)
-REAL = dataclasses.replace(flood("realistic"), gain=0.0, drag_coefficient=1.05, soaks=False)
+REAL = dataclasses.replace(on_a_plane(flood("realistic")), gain=0.0, drag_coefficient=1.05, soaks=False)
 
 
 def row(things: list[Thing]) -> list[Thing]:
@@ -153,7 +153,7 @@ LIGHT = [
 @pytest.mark.parametrize("preset", ["paper", "realistic"])
 def test_sheets_lighter_than_cardboard_come_to_rest(preset: str, step: float) -> None:
     """Lift on 11 g accelerates with 16 g: in steps this long it is a spring too stiff for the simulator's scheme."""
-    tank = Tank(dataclasses.replace(flood(preset), gain=0.0), LIGHT, step=step)
+    tank = Tank(dataclasses.replace(on_a_plane(flood(preset)), gain=0.0), LIGHT, step=step)
     heights = np.array([at[:, 2] for at in tank.run(4.0)])
     assert 0.3 < heights.min() and heights.max() < 1.6
     assert np.ptp(heights[-len(heights) // 6 :], axis=0).max() < 0.03
@@ -163,7 +163,7 @@ def test_sheets_lighter_than_cardboard_come_to_rest(preset: str, step: float) ->
 @pytest.mark.parametrize("preset", ["paper", "shipped", "realistic"])
 def test_nothing_blows_up_at_any_step(preset: str, step: float) -> None:
     """Neither sheets nor a body that feels a strong current; the original's law is explicit and needs its limit."""
-    flowing = dataclasses.replace(flood(preset), gain=5.0)
+    flowing = dataclasses.replace(on_a_plane(flood(preset)), gain=5.0)
     tank = Tank(flowing, [*LIGHT, Thing((0.5, 0.5, 0.5), 60.0, (4.0, 4.0, 0.9))], step=step)
     tank.run(100 * step)
     gained = GRAVITY * step * 20
@@ -185,7 +185,7 @@ CROWD = [
 def test_twenty_colliding_bodies_give_the_same_bits_twice(preset: str) -> None:
     runs = []
     for _ in range(2):
-        tank = Tank(flood(preset), CROWD, floor=True, step=1 / 120)
+        tank = Tank(on_a_plane(flood(preset)), CROWD, floor=True, step=1 / 120)
         tank.run(2.5)
         runs.append((tank.world.position.clone(), tank.world.rotation.clone(), tank.world.velocity.clone()))
     for one, other in zip(*runs, strict=True):

@@ -1,0 +1,1 @@
+"""The flood of the preset `realistic`: shallow water on the floor's grid."""

@@ -1,0 +1,147 @@
+"""The floor of a scene as cells for shallow water: furniture, walls, and the openings that water comes in through.
+
+Cells are CELL wide; X along x, Y along y, with a ring of closed cells around them: cell (i, j) has the number
+(i + 1) (Y + 2) + j + 1. Furniture that stands on the floor is ground as high as its parts; what has legs is not, and
+water flows under it. Water comes in through the doors in the outer walls. A scene without any has an opening as wide
+as a door in the middle of its `flood_side`, and one in the middle of its `second_flood_side`, if it has one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.scenes.boxes import yaw_of
+from hazard_ms.scenes.solids import parts_of
+from hazard_ms.spec import Opening, Room, SceneSpec
+
+CELL = 0.1  # side of a cell [m]
+DOOR = 0.9  # width of an opening where a scene has no door [m] [ours: that of a front door]
+SHEET = 0.05  # height below which what lies on the floor (rugs) does not count [m] [ours]
+GAP = 0.05  # height above the ground below which a part stands on it [m] [ours]
+NARROW = 0.08  # width below which water flows round a part (legs) as if it were not there [m] [ours]
+BEYOND = 100.0  # height of what is not floor [m]
+SIDES = ("west", "east", "south", "north")  # numbers of the quantity inlet_side
+
+Grid = NDArray[np.float32]
+
+
+def cells_at(places: NDArray[np.floating], size: tuple[int, int]) -> NDArray[np.int64]:
+    """Numbers of the cells, [...], at `places` [m], [..., 2], on a grid of `size` cells; those of the ring outside."""
+    at = np.floor(places / CELL).astype(np.int64) + 1
+    i, j = (at[..., k].clip(0, size[k] + 1) for k in (0, 1))
+    found: NDArray[np.int64] = i * (size[1] + 2) + j
+    return found
+
+
+class FloorPlan(NamedTuple):
+    """One scene on a grid, by the names of the quantities of InundationState."""
+
+    bed: Grid  # [N]
+    open_x: Grid  # [N]
+    open_y: Grid  # [N]
+    inlet: list[int]
+    inlet_side: list[int]
+    inlet_width: list[float]
+
+
+def size_of(rooms: Sequence[Room]) -> tuple[int, int]:
+    """Cells along x and y that cover the largest of `rooms`."""
+    longest = (max(room.size[k] for room in rooms) for k in (0, 1))
+    x, y = (math.ceil(length / CELL - 1e-6) for length in longest)
+    return x, y
+
+
+def plan_of(spec: SceneSpec, size: tuple[int, int], edges: Mapping[str, Sequence[float]]) -> FloorPlan:
+    """The floor of a scene on a grid of `size` (X, Y) cells; `edges` of its things [m], by name."""
+    middles = tuple(CELL * (np.arange(n) + 0.5) for n in size)
+    x, y = np.meshgrid(*middles, indexing="ij")
+    room = spec.room
+    floor = (x < room.size[0]) & (y < room.size[1])
+    ground = np.where(floor, _ground(spec, edges, x, y), BEYOND)
+    open_x, open_y = np.zeros((2, *size), bool)
+    open_x[1:], open_y[:, 1:] = floor[1:] & floor[:-1], floor[:, 1:] & floor[:, :-1]
+    for partition in room.partitions:
+        doorways = [o for o in room.openings if o.kind == "doorway" and o.wall == partition.name]
+        across = 0 if partition.axis == "y" else 1
+        along = middles[1 - across]
+        closed = ~np.any([np.abs(along - o.centre) < o.width / 2 for o in doorways] or [np.zeros(len(along), bool)], 0)
+        beyond = int(np.searchsorted(middles[across], partition.at))  # the first cells behind it
+        if across == 0:
+            open_x[beyond, closed] = False
+        else:
+            open_y[closed, beyond] = False
+    padded = [
+        np.pad(a, 1, constant_values=v).astype(np.float32) for a, v in ((ground, BEYOND), (open_x, 0), (open_y, 0))
+    ]
+    bed, open_x, open_y = (a.ravel() for a in padded)
+    return FloorPlan(bed, open_x, open_y, *_inlets(spec, size))
+
+
+def most_inlets(specs: Sequence[SceneSpec]) -> int:
+    """The largest number of cells at inlets of `specs`."""
+    size = size_of([spec.room for spec in specs])
+    return max(len(_inlets(spec, size)[0]) for spec in specs)
+
+
+def _inlets(spec: SceneSpec, size: tuple[int, int]) -> tuple[list[int], list[int], list[float]]:
+    """Cells, sides and widths [m] of the inlets of a scene on a grid of `size` (X, Y) cells."""
+    middles = [CELL * (np.arange(n) + 0.5) for n in size]
+    cells: list[int] = []
+    sides: list[int] = []
+    widths: list[float] = []
+    for opening in openings(spec):
+        side = SIDES.index(opening.wall)
+        across = side // 2  # the axis that water comes in along
+        last = math.ceil(spec.room.size[across] / CELL - 1e-6) - 1
+        along = np.nonzero(np.abs(middles[1 - across] - opening.centre) < opening.width / 2)[0]
+        edge = 0 if side % 2 == 0 else last
+        for k in along.tolist():
+            i, j = (edge, k) if across == 0 else (k, edge)
+            cells.append((i + 1) * (size[1] + 2) + j + 1)
+            sides.append(side)
+            widths.append(opening.width / len(along))
+    return cells, sides, widths
+
+
+def openings(spec: SceneSpec) -> list[Opening]:
+    """What water comes in through."""
+    doors = [o for o in spec.room.openings if o.kind == "door" and o.wall in SIDES]
+    stand_ins = [] if doors else [spec.flood_side]
+    if spec.second_flood_side is not None:
+        stand_ins.append(spec.second_flood_side)
+    return doors + [_middle(spec.room, wall) for wall in stand_ins]
+
+
+def _middle(room: Room, wall: str) -> Opening:
+    """An opening in the middle of an outer wall."""
+    if wall not in SIDES:
+        raise ValueError(f"flood_side must be one of {', '.join(SIDES)}, got {wall!r}")
+    return Opening("door", wall, room.size[1 if SIDES.index(wall) < 2 else 0] / 2, DOOR, 2.0)
+
+
+def _ground(
+    spec: SceneSpec, edges: Mapping[str, Sequence[float]], x: NDArray[np.float64], y: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Height of the floor, or of the furniture on it, at the places `x`, `y` [m]."""
+    ground = np.zeros_like(x)
+    for thing in spec.fixtures:
+        yaw = yaw_of(thing.rotation)
+        c, s = math.cos(yaw), math.sin(yaw)
+        try:
+            parts = sorted(parts_of(thing), key=lambda part: float(part[0][2] - part[1][2]))
+        except ValueError:  # without a model it is a box
+            half = np.array(edges[thing.name]) / 2
+            parts = [(np.array(thing.position) + (0.0, 0.0, half[2]), half)]
+        for (px, py, pz), (hx, hy, hz) in parts:
+            if 2.0 * min(hx, hy) < NARROW or pz + hz < SHEET:
+                continue
+            dx, dy = x - px, y - py
+            over = (np.abs(c * dx + s * dy) < hx) & (np.abs(c * dy - s * dx) < hy)
+            stands = over & (pz - hz <= ground + GAP)
+            ground[stands] = np.maximum(ground[stands], pz + hz)
+    return ground

@@ -1,0 +1,112 @@
+"""Flood of the preset `realistic`: water that comes in through doors and runs round the furniture.
+
+    water    depth-averaged flow over the floor (.shallow_water), from a depth outside the doors that stays (.inlets)
+    things   lift, drag and torque as of every flood (hazard_ms.hazards.flood.floating), by the level, the slope and the
+             velocity of the water where they are (.basin, .currents)
+
+What stands on the floor is ground for the water, so nothing is pushed through a wall, and things float into eddies
+behind sofas. Inside furniture that is not full of water, it stands as high as around it. Limits: depth-averaged, so
+nothing is drawn under; things do not act on the water; closed doors and windows other than outer doors hold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from hazard_ms.hazards.base import Push, State
+from hazard_ms.hazards.flood import kernels, wading
+from hazard_ms.hazards.flood.floating import Liquid
+from hazard_ms.hazards.flood.flood import Flood
+from hazard_ms.hazards.flood.realistic import currents, floor_plan, shallow_water
+from hazard_ms.hazards.flood.realistic.basin import Basin
+from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
+from hazard_ms.kernels.bodies import Bodies
+from hazard_ms.kernels.launch import of_environments
+from hazard_ms.simulation.world import World
+from hazard_ms.spec.severity import SEVERITIES, USUAL
+
+
+@dataclass(frozen=True)
+class Inundation(Flood):
+    """A flood that flows, with these parameters; of Flood's, those of level and current mean nothing."""
+
+    state_type: ClassVar[type[State]] = InundationState
+
+    outside: float = SEVERITIES[USUAL].flood_outside  # depth of the water outside the doors [m]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0 < self.outside < floor_plan.BEYOND / 2:
+            raise ValueError(f"outside must be above 0 and below {floor_plan.BEYOND / 2:g} m, got {self.outside}")
+
+    def sizes(self, world: World) -> dict[str, int]:
+        rows, columns = _cells(world)
+        inlets = max(1, floor_plan.most_inlets(world.specs))
+        return {**super().sizes(world), "N": (rows + 2) * (columns + 2), "I": inlets}
+
+    def reset(self, state: InundationState, world: World, rows: Tensor) -> None:  # type: ignore[override]
+        size, inlets = _cells(world), state.inlet.shape[1]
+        for row in rows.tolist():
+            edges = dict(zip(world.names[row], world.extent[row].tolist(), strict=False))
+            plan = floor_plan.plan_of(world.specs[row], size, edges)
+            for name in ("bed", "open_x", "open_y"):
+                getattr(state, name)[row] = torch.from_numpy(getattr(plan, name))
+            for name in ("inlet", "inlet_side", "inlet_width"):
+                given, held = getattr(plan, name), getattr(state, name)
+                held[row, : min(len(given), inlets)] = torch.tensor(given).to(held)
+        state.signal[rows] = shallow_water.wave(self.outside)
+        self._reset_materials(state, world, rows)
+
+    @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
+    def advance(self, state: InundationState, world: World, dt: float) -> None:  # type: ignore[override]
+        state.time.add_(dt)
+        launches, (rows, columns) = world.launches, _cells(world)
+        basin = launches.struct(Basin, state)
+        new = launches.results(shallow_water.flow, state.velocity_x, state.velocity_y)
+        launches.run(shallow_water.flow, (world.num_envs,), dt, self.outside, rows, columns, basin, *new)
+        flooded, bodies = launches.struct(kernels.Flooded, state), launches.struct(Bodies, world)
+        size = tuple(world.exists.shape)
+        launches.run(currents.immerse, size, dt, self.damage_fraction, rows, columns, flooded, basin, bodies)
+
+    @torch.inference_mode()
+    def force(self, state: InundationState, world: World, dt: float) -> Push | None:  # type: ignore[override]
+        launches = world.launches
+        made = launches.results(currents.push, world.position, world.position)
+        structs = (
+            launches.struct(Liquid, self.water),
+            launches.struct(kernels.Flooded, state),
+            launches.struct(Basin, state),
+            launches.struct(Bodies, world),
+        )
+        launches.run(currents.push, tuple(world.exists.shape), dt, *_cells(world), *structs, *made)
+        force, torque = made
+        return Push(force.clone(), torque.clone())
+
+    def _surface(self, state: InundationState, world: World, points: Tensor) -> tuple[Tensor, Tensor]:  # type: ignore[override]
+        """Level [m], [E, P], and velocity [m/s], [E, P, 2], of the water at `points` [m], [E, P, 3], world frame.
+
+        The level is below the floor where it is dry.
+        """
+        place = of_environments(points, world.num_envs)
+        level, velocity = place.new_empty(place.shape[:2]), place.new_empty(*place.shape[:2], 2)
+        launches = world.launches
+        basin = launches.struct(Basin, state)
+        launches.run(currents.tell, tuple(level.shape), *_cells(world), basin, place, level, velocity)
+        return level, velocity
+
+    def at_agent(self, state: InundationState, world: World) -> tuple[Tensor, Tensor, Tensor]:  # type: ignore[override]
+        place = world.agent_position[:, None]
+        level, velocity = self._surface(state, world, place)
+        depth = (level - place[..., 2]).clamp(min=0)
+        flow = torch.where(depth > 0, velocity[:, 0], 0.0)
+        grip = wading.grip(depth, flow.norm(dim=-1, keepdim=True), world.robot, self.water.density, self.water.gravity)
+        return depth[:, 0], flow, grip[:, 0].clamp(min=self.least_grip)
+
+
+def _cells(world: World) -> tuple[int, int]:
+    """Cells along x and y that cover every scene of the batch."""
+    return floor_plan.size_of([spec.room for spec in world.specs])

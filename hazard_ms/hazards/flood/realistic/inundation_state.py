@@ -1,0 +1,36 @@
+"""The evolving state of water that flows over a floor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from torch import Tensor
+
+from hazard_ms.hazards.base import quantity
+from hazard_ms.hazards.flood.flood_state import FloodState
+
+
+@dataclass
+class InundationState(FloodState):
+    """State of a flood on a grid of N cells (`hazard_ms.hazards.flood.realistic.floor_plan`), with I cells at inlets.
+
+    A cell's `x` quantities are those of its western side, its `y` quantities those of its southern side. `level` is the
+    mean height of the surface where there is water, `surface_slope` 0; what tells the path of the water is not used.
+    """
+
+    bed: Tensor = quantity("E N", "m", "height of the floor, or of the furniture that stands on it", low=0.0)
+    open_x: Tensor = quantity("E N", "", "1 where water can pass the side, else 0")
+    open_y: Tensor = quantity("E N", "", "1 where water can pass the side, else 0")
+    depth: Tensor = quantity("E N", "m", "depth of the water", low=0.0)
+    depth_rest: Tensor = quantity("E N", "m", "what rounding has left out of the depth")
+    velocity_x: Tensor = quantity("E N", "m/s", "speed of the water through the side, eastwards")
+    velocity_y: Tensor = quantity("E N", "m/s", "speed of the water through the side, northwards")
+    discharge_x: Tensor = quantity("E N", "m^2/s", "water through the side per width, eastwards")
+    discharge_y: Tensor = quantity("E N", "m^2/s", "water through the side per width, northwards")
+    surface: Tensor = quantity("E N", "m", "height of the surface; -1 where there is none", fill=-1.0)
+    inlet: Tensor = quantity("E I", "", "numbers of the cells that water comes into; -1 for none", dtype="int", fill=-1)
+    inlet_side: Tensor = quantity("E I", "", "from where: 0 west, 1 east, 2 south, 3 north", dtype="int", low=0, high=3)
+    inlet_width: Tensor = quantity("E I", "m", "width of the opening before the cell", low=0.0)
+    inflow: Tensor = quantity("E", "m^3", "water that has come in, less what has left")
+    inflow_rest: Tensor = quantity("E", "m^3", "what rounding has left out of it")
+    signal: Tensor = quantity("E", "m/s", "speed of the fastest wave", low=0.0)

@@ -1,0 +1,193 @@
+"""Shallow water on a grid of cells: mass and momentum of a depth-averaged flow (Warp, one thread per environment).
+
+    dh/dt + div(h u) = 0
+    du/dt + (u . grad) u + g grad(z + h) + c |u| u / h = 0          z: ground, c: friction
+
+The scheme is the momentum-conserving one of Stelling and Duinmeijer, A staggered conservative scheme for every Froude
+number in rapidly varied shallow water flows, Int. J. Numer. Meth. Fluids 43, 2003: depths in cells, velocities on their
+sides, depths on sides taken from upstream, momentum carried by the mean discharge of neighbouring sides, first
+velocities and then depths. Water at rest stays at rest over any ground. Steps of ground are seen from the higher side,
+so that water only passes what it stands above. What leaves a cell is limited to what it holds. Sums of depth are
+compensated (Kahan), so that mass is conserved far below single precision.
+
+A frame is cut into as many steps as its fastest wave needs. Order: 1. Limits: no turbulence, bodies do not act back.
+"""
+
+from __future__ import annotations
+
+import warp as wp
+
+from hazard_ms.hazards.flood.realistic.basin import DRY, GRAVITY, SIDE, Basin, note
+from hazard_ms.hazards.flood.realistic.inlets import let_in
+from hazard_ms.kernels.launch import OPTIONS
+
+wp.set_module_options(OPTIONS)
+
+FRICTION = wp.constant(0.003)  # g n^2 / h^(1/3) for Manning's n = 0.012 (tiles, boards) in 0.1 m of water [-]
+STILL = wp.constant(5e-7)  # difference of levels that is rounding [m]
+SAFE = wp.constant(1.0)  # share of a cell that the fastest wave may pass in a step [ours]
+FASTEST = wp.constant(0.45)  # share of a cell that water may pass in a step [ours]
+
+
+@wp.func
+def pushed(
+    e: int,
+    c: int,
+    along: int,
+    across: int,
+    ratio: float,
+    own: wp.array2d(dtype=float),
+    other: wp.array2d(dtype=float),
+    carried: wp.array2d(dtype=float),
+    beside: wp.array2d(dtype=float),
+    bed: wp.array2d(dtype=float),
+    depth: wp.array2d(dtype=float),
+) -> float:
+    """New velocity [m/s] through the side of cell `c` towards the cell before it.
+
+    `own` and `carried`: velocity [m/s] and discharge [m^2/s] along that axis, on which neighbours are `along` numbers
+    apart; `other` and `beside`: those of the other axis, `across`; `ratio`: time over length of the step [s/m].
+    """
+    b = c - along
+    if wp.max(depth[e, b], depth[e, c]) <= 0.0:
+        return 0.0
+    ground = wp.max(bed[e, b], bed[e, c])
+    low = wp.max(bed[e, b] - ground + depth[e, b], 0.0)
+    high = wp.max(bed[e, c] - ground + depth[e, c], 0.0)
+    if wp.max(low, high) < DRY:
+        return 0.0
+    deep = wp.max(0.5 * (low + high), DRY)
+    u, share = own[e, c], 0.5 * ratio / deep
+    rise = high - low
+    if wp.abs(rise) < STILL:
+        rise = float(0.0)
+    # momentum over the mass between the middles of the two cells; no more than all of it comes in a step
+    come = wp.min(share * wp.max(carried[e, b] + carried[e, c], 0.0), 1.0) * (u - own[e, b])
+    come += wp.max(share * wp.min(carried[e, c] + carried[e, c + along], 0.0), -1.0) * (own[e, c + along] - u)
+    come += wp.min(share * wp.max(beside[e, b] + beside[e, c], 0.0), 1.0) * (u - own[e, c - across])
+    leaving = beside[e, b + across] + beside[e, c + across]
+    come += wp.max(share * wp.min(leaving, 0.0), -1.0) * (own[e, c + across] - u)
+    slip = 0.25 * (other[e, b] + other[e, c] + other[e, b + across] + other[e, c + across])
+    slowed = 1.0 + ratio * SIDE * FRICTION * wp.sqrt(u * u + slip * slip) / deep
+    return wp.clamp((u - come - ratio * GRAVITY * rise) / slowed, -FASTEST / ratio, FASTEST / ratio)
+
+
+@wp.func
+def taken(e: int, c: int, along: int, u: float, bed: wp.array2d(dtype=float), depth: wp.array2d(dtype=float)) -> float:
+    """Discharge [m^2/s] through the side of cell `c` towards the cell before it, at the velocity `u` [m/s]."""
+    if u == 0.0:
+        return 0.0
+    b = c - along
+    ground = wp.max(bed[e, b], bed[e, c])
+    if u > 0.0:
+        return u * wp.max(bed[e, b] + depth[e, b] - ground, 0.0)
+    return u * wp.max(bed[e, c] + depth[e, c] - ground, 0.0)
+
+
+@wp.func
+def limit(e: int, c: int, pitch: int, ratio: float, basin: Basin):
+    """Let a cell lose no more than it holds."""
+    west, east = basin.discharge_x[e, c], basin.discharge_x[e, c + pitch]
+    south, north = basin.discharge_y[e, c], basin.discharge_y[e, c + 1]
+    lost = ratio * (wp.max(east, 0.0) - wp.min(west, 0.0) + wp.max(north, 0.0) - wp.min(south, 0.0))
+    held = basin.depth[e, c]
+    if lost > held:
+        share = held / lost
+        if east > 0.0:
+            basin.discharge_x[e, c + pitch] = east * share
+        if west < 0.0:
+            basin.discharge_x[e, c] = west * share
+        if north > 0.0:
+            basin.discharge_y[e, c + 1] = north * share
+        if south < 0.0:
+            basin.discharge_y[e, c] = south * share
+
+
+@wp.func
+def fill(e: int, c: int, pitch: int, ratio: float, basin: Basin):
+    """Add what comes into a cell, less what leaves it, to its depth."""
+    gain = basin.discharge_x[e, c] - basin.discharge_x[e, c + pitch]
+    gain = ratio * (gain + basin.discharge_y[e, c] - basin.discharge_y[e, c + 1])
+    if gain != 0.0:
+        before = basin.depth[e, c]
+        part = gain + basin.depth_rest[e, c]
+        after = wp.max(before + part, 0.0)
+        basin.depth_rest[e, c] = part - (after - before)
+        basin.depth[e, c] = after
+
+
+@wp.kernel
+def flow(
+    dt: float,
+    outside: float,
+    rows: int,
+    columns: int,
+    basin: Basin,
+    new_x: wp.array2d(dtype=float),
+    new_y: wp.array2d(dtype=float),
+):
+    """Advance the water by `dt` [s]; `outside` is its depth outside the openings [m]. Cells: `rows` by `columns`."""
+    e = wp.tid()
+    pitch = columns + 2
+    steps = int(wp.ceil(wp.max(dt * basin.signal[e] / (SAFE * SIDE), 1.0)))
+    step = dt / float(steps)
+    ratio = step / SIDE
+    came = wp.float64(0.0)
+    for _k in range(steps):
+        for i in range(1, rows + 1):
+            for j in range(1, columns + 1):
+                c = i * pitch + j
+                new_x[e, c] = 0.0
+                new_y[e, c] = 0.0
+                if basin.open_x[e, c] > 0.0:
+                    new_x[e, c] = pushed(
+                        e,
+                        c,
+                        pitch,
+                        1,
+                        ratio,
+                        basin.velocity_x,
+                        basin.velocity_y,
+                        basin.discharge_x,
+                        basin.discharge_y,
+                        basin.bed,
+                        basin.depth,
+                    )
+                if basin.open_y[e, c] > 0.0:
+                    new_y[e, c] = pushed(
+                        e,
+                        c,
+                        1,
+                        pitch,
+                        ratio,
+                        basin.velocity_y,
+                        basin.velocity_x,
+                        basin.discharge_y,
+                        basin.discharge_x,
+                        basin.bed,
+                        basin.depth,
+                    )
+        for i in range(1, rows + 1):
+            for j in range(1, columns + 1):
+                c = i * pitch + j
+                basin.velocity_x[e, c] = new_x[e, c]
+                basin.velocity_y[e, c] = new_y[e, c]
+                basin.discharge_x[e, c] = taken(e, c, pitch, new_x[e, c], basin.bed, basin.depth)
+                basin.discharge_y[e, c] = taken(e, c, 1, new_y[e, c], basin.bed, basin.depth)
+        came += wp.float64(let_in(e, step, outside, pitch, basin))
+        for i in range(1, rows + 1):
+            for j in range(1, columns + 1):
+                limit(e, i * pitch + j, pitch, ratio, basin)
+        for i in range(1, rows + 1):
+            for j in range(1, columns + 1):
+                fill(e, i * pitch + j, pitch, ratio, basin)
+    part = float(came) + basin.inflow_rest[e]
+    total = basin.inflow[e] + part
+    basin.inflow_rest[e] = part - (total - basin.inflow[e])
+    basin.inflow[e] = total
+    note(e, rows, columns, outside, basin)
+
+
+def wave(depth: float) -> float:
+    """Speed by which the waves of both axes pass cells in water of `depth` [m] [m/s]."""
+    return (2.0 * 9.81 * depth) ** 0.5

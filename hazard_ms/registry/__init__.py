@@ -221,7 +221,7 @@ register_hazard(
     "flood",
     "hazard_ms.hazards.presets:flood",
     "hazard_ms.effects.flood:FloodEffects",
-    "hazard_ms.validation.flood_cases:cases",
+    ("hazard_ms.validation.flood_cases:cases", "hazard_ms.validation.shallow_cases:cases"),
     "hazard_ms.validation.curves:flood_charts",
 )
 register_hazard(

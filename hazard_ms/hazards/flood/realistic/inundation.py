@@ -37,11 +37,15 @@ class Inundation(Flood):
     state_type: ClassVar[type[State]] = InundationState
 
     outside: float = SEVERITIES[USUAL].flood_outside  # depth of the water outside the doors [m]
+    # of the floor, g n^2 / h^(1/3): Manning's n = 0.012 (tiles, boards) in 0.1 m of water [-] [docs/physics.md 3.2]
+    friction: float = 0.003
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 0 < self.outside < floor_plan.BEYOND / 2:
-            raise ValueError(f"outside must be above 0 and below {floor_plan.BEYOND / 2:g} m, got {self.outside}")
+        if not 0 <= self.outside < floor_plan.BEYOND / 2:
+            raise ValueError(f"outside must be from 0 to {floor_plan.BEYOND / 2:g} m, got {self.outside}")
+        if not self.friction >= 0:
+            raise ValueError(f"friction must be 0 or a positive number, got {self.friction}")
 
     def sizes(self, world: World) -> dict[str, int]:
         rows, columns = _cells(world)
@@ -67,7 +71,7 @@ class Inundation(Flood):
         launches, (rows, columns) = world.launches, _cells(world)
         basin = launches.struct(Basin, state)
         new = launches.results(shallow_water.flow, state.velocity_x, state.velocity_y)
-        launches.run(shallow_water.flow, (world.num_envs,), dt, self.outside, rows, columns, basin, *new)
+        launches.run(shallow_water.flow, (world.num_envs,), dt, self.outside, self.friction, rows, columns, basin, *new)
         flooded, bodies = launches.struct(kernels.Flooded, state), launches.struct(Bodies, world)
         size = tuple(world.exists.shape)
         launches.run(currents.immerse, size, dt, self.damage_fraction, rows, columns, flooded, basin, bodies)

@@ -23,7 +23,6 @@ from hazard_ms.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 
-FRICTION = wp.constant(0.003)  # g n^2 / h^(1/3) for Manning's n = 0.012 (tiles, boards) in 0.1 m of water [-]
 STILL = wp.constant(5e-7)  # difference of levels that is rounding [m]
 SAFE = wp.constant(1.0)  # share of a cell that the fastest wave may pass in a step [ours]
 FASTEST = wp.constant(0.45)  # share of a cell that water may pass in a step [ours]
@@ -36,6 +35,7 @@ def pushed(
     along: int,
     across: int,
     ratio: float,
+    friction: float,
     own: wp.array2d(dtype=float),
     other: wp.array2d(dtype=float),
     carried: wp.array2d(dtype=float),
@@ -57,6 +57,8 @@ def pushed(
     if wp.max(low, high) < DRY:
         return 0.0
     deep = wp.max(0.5 * (low + high), DRY)
+    if wp.min(low, high) <= 0.0:  # at a front, all of the mass is on one side
+        deep = wp.max(wp.max(low, high), DRY)
     u, share = own[e, c], 0.5 * ratio / deep
     rise = high - low
     if wp.abs(rise) < STILL:
@@ -68,7 +70,7 @@ def pushed(
     leaving = beside[e, b + across] + beside[e, c + across]
     come += wp.max(share * wp.min(leaving, 0.0), -1.0) * (own[e, c + across] - u)
     slip = 0.25 * (other[e, b] + other[e, c] + other[e, b + across] + other[e, c + across])
-    slowed = 1.0 + ratio * SIDE * FRICTION * wp.sqrt(u * u + slip * slip) / deep
+    slowed = 1.0 + ratio * SIDE * friction * wp.sqrt(u * u + slip * slip) / deep
     return wp.clamp((u - come - ratio * GRAVITY * rise) / slowed, -FASTEST / ratio, FASTEST / ratio)
 
 
@@ -120,6 +122,7 @@ def fill(e: int, c: int, pitch: int, ratio: float, basin: Basin):
 def flow(
     dt: float,
     outside: float,
+    friction: float,
     rows: int,
     columns: int,
     basin: Basin,
@@ -146,6 +149,7 @@ def flow(
                         pitch,
                         1,
                         ratio,
+                        friction,
                         basin.velocity_x,
                         basin.velocity_y,
                         basin.discharge_x,
@@ -160,6 +164,7 @@ def flow(
                         1,
                         pitch,
                         ratio,
+                        friction,
                         basin.velocity_y,
                         basin.velocity_x,
                         basin.discharge_y,

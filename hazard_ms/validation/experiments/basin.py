@@ -1,0 +1,157 @@
+"""Experiments with water that flows over a floor, whose results hazard_ms.validation.shallow_cases compares."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import replace
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from hazard_ms.hazards.flood.realistic import floor_plan, shallow_water
+from hazard_ms.hazards.flood.realistic.inundation import Inundation
+from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
+from hazard_ms.simulation.world import World
+from hazard_ms.spec import Opening
+from hazard_ms.validation.experiments.tank import Thing, begin, room
+
+GRAVITY = 9.81  # [m/s^2]
+SMOOTH = Inundation(outside=0.0, friction=0.0)
+Array = NDArray[np.float64]
+
+
+class Basin:
+    """A room whose floor and water are given cell by cell."""
+
+    def __init__(
+        self,
+        size: tuple[float, float],
+        ground: Array | float = 0.0,
+        depth: Array | float = 0.0,
+        law: Inundation = SMOOTH,
+        things: tuple[Thing, ...] = (Thing((0.1,) * 3, at=(0.05, 0.05, 50.0)),),
+        openings: tuple[Opening, ...] = (),
+    ) -> None:
+        """Fill a room of `size` [m]; `ground` and `depth`, [X, Y] [m], of cells of floor_plan.CELL."""
+        self.law = law
+        self.world: World = room(list(things), "south", size, 1, (0.5 * size[0], 0.5 * size[1]), (), openings)
+        self.state: InundationState = begin(law, self.world)  # type: ignore[assignment]
+        if not openings:
+            self.state.inlet[:] = -1  # closed on all sides
+        self.cells = floor_plan.size_of([spec.room for spec in self.world.specs])
+        self.put("bed", np.broadcast_to(ground, self.cells))
+        self.put("depth", np.broadcast_to(depth, self.cells))
+        self.state.signal[:] = shallow_water.wave(max(float(np.max(depth)), law.outside, 0.01))
+
+    def put(self, name: str, values: Array) -> None:
+        """Set a quantity of all cells, [X, Y]."""
+        held = getattr(self.state, name)[0].view(self.cells[0] + 2, self.cells[1] + 2)
+        held[1:-1, 1:-1] = torch.from_numpy(np.array(values)).to(held)
+
+    def get(self, name: str) -> Array:
+        """A quantity of all cells, [X, Y]."""
+        held = getattr(self.state, name)[0].view(self.cells[0] + 2, self.cells[1] + 2)
+        found: Array = held[1:-1, 1:-1].numpy().astype(np.float64)
+        return found
+
+    def run(self, seconds: float, dt: float = 1 / 30) -> None:
+        """Let time pass in frames of `dt` [s]."""
+        for _ in range(round(seconds / dt)):
+            self.world.chance.tick()
+            self.law.advance(self.state, self.world, dt)
+
+    @property
+    def volume(self) -> float:
+        """All of the water [m^3]."""
+        return float((self.get("depth") + self.get("depth_rest")).sum()) * floor_plan.CELL**2
+
+
+@functools.lru_cache(maxsize=2)
+def dam_break(behind: float, before: float, seconds: float = 2.0) -> tuple[float, float, float, float]:
+    """A dam breaks in a channel 24 m long, with water of the depths `behind` and `before` it [m].
+
+    Returns depth [m] and discharge [m^2/s] at the dam, depth [m] and speed [m/s] a metre downstream, after `seconds`.
+    """
+    cells = 240
+    depth = np.where(np.arange(cells) < cells // 2, behind, before)[:, None]
+    basin = Basin((24.0, 0.1), depth=depth)
+    basin.run(seconds, 1 / 120)
+    dam, ahead = cells // 2, cells // 2 + 10
+    depths, speeds = basin.get("depth")[:, 0], basin.get("velocity_x")[:, 0]
+    flow = float(basin.get("discharge_x")[dam, 0])
+    return float(depths[dam - 1 : dam + 1].mean()), flow, float(depths[ahead]), float(speeds[ahead])
+
+
+def front(behind: float, before: float, level: float, seconds: float = 2.0) -> float:
+    """Speed at which the depth `level` [m] runs downstream after a dam break [m/s]."""
+    cells = 240
+    depth = np.where(np.arange(cells) < cells // 2, behind, before)[:, None]
+    basin = Basin((24.0, 0.1), depth=depth)
+    basin.run(seconds, 1 / 120)
+    depths = basin.get("depth")[:, 0]
+    last = int(np.nonzero(depths > level)[0].max())
+    beyond = (depths[last] - level) / (depths[last] - depths[last + 1])  # share of a cell
+    return (last + 0.5 + beyond - cells // 2) * floor_plan.CELL / seconds
+
+
+@functools.lru_cache(maxsize=1)
+def bowl(radius: float = 6.0, deep: float = 0.6, swing: float = 0.3) -> tuple[float, float]:
+    """Thacker's water with a plane surface that goes round in a paraboloid bowl, after three periods.
+
+    `radius` of the shore and greatest depth at rest [m]; `swing`: share of the radius that the middle goes round at.
+    Returns how far out the middle of the mass is, as a share of the start, and its angle [degrees].
+    """
+    side = 2.0 * 1.4 * radius
+    count = math.ceil(side / floor_plan.CELL - 1e-6)
+    along = floor_plan.CELL * (np.arange(count) + 0.5) - 0.5 * side
+    x, y = np.meshgrid(along, along, indexing="ij")
+    ground = deep * (x * x + y * y) / radius**2
+    rate = math.sqrt(2.0 * GRAVITY * deep) / radius
+    level = deep + swing * deep / radius * (2.0 * x - swing * radius)
+    depth = np.maximum(level - ground, 0.0)
+    basin = Basin((side, side), ground, depth)
+    wet = depth > 0
+    speed = swing * radius * rate
+    sides = np.zeros_like(depth)
+    sides[:, 1:] = speed * (wet[:, 1:] | wet[:, :-1])
+    basin.put("velocity_y", sides)
+    start = float((depth * x).sum() / depth.sum())
+    basin.run(3 * 2.0 * math.pi / rate, 1 / 60)
+    now = basin.get("depth")
+    out = [float((now * a).sum() / now.sum()) for a in (x, y)]
+    return math.hypot(*out) / start, math.degrees(math.atan2(out[1], out[0]))
+
+
+def at_rest() -> float:
+    """Fastest water in a room of plinths of many heights, under a level surface, after 10 s [m/s]."""
+    chance = np.random.default_rng(0)
+    ground = np.where(chance.random((60, 60)) < 0.3, chance.uniform(0.0, 1.2, (60, 60)), 0.0)
+    depth = np.maximum(0.7 - ground, 0.0)
+    basin = Basin((6.0, 6.0), ground, depth)
+    basin.run(10.0)
+    return float(max(np.abs(basin.get(f"velocity_{axis}")).max() for axis in "xy"))
+
+
+def filled(outside: float, seconds: float) -> tuple[float, float]:
+    """A furnished room with a door, with water `outside` [m]: what came in [m^3], and the relative error of mass."""
+    chance = np.random.default_rng(1)
+    ground = np.where(chance.random((64, 60)) < 0.1, 0.8, 0.0)
+    ground[20:30, :3] = 0.0
+    basin = Basin((6.4, 6.0), ground, 0.0, Inundation(outside=outside), openings=(door(),))
+    basin.run(seconds)
+    came = float(basin.state.inflow) + float(basin.state.inflow_rest)
+    return came, basin.volume / came - 1.0
+
+
+def door() -> Opening:
+    """A door in the southern wall."""
+    return Opening("door", "south", 2.5, 0.9, 2.0)
+
+
+def inflow(outside: float) -> float:
+    """Discharge through an open door into a dry room [m^3/s], in the first frame."""
+    basin = Basin((6.4, 6.0), law=replace(SMOOTH, outside=outside), openings=(door(),))
+    basin.run(1 / 3000, 1 / 3000)
+    return float(basin.state.inflow) * 3000.0

@@ -1,4 +1,4 @@
-"""Cases of water that flows over a floor: section 3.2 of docs/physics.md, exact solutions without friction."""
+"""Cases of water that flows over a floor: L-28 to L-34 of docs/physics.md 2.2, exact solutions without friction."""
 
 from __future__ import annotations
 
@@ -7,20 +7,19 @@ from collections.abc import Iterator
 from hazard_ms.hazards.case import Case, table
 from hazard_ms.validation.experiments import basin
 
-RITTER = (0.5, 0.0)  # depth behind the dam, and before it [m]
-STOKER = (0.5, 0.05)
+RITTER, STOKER = (0.5, 0.0), (0.5, 0.05)  # depths behind the dam and before it, as in Ritter's and Stoker's cases [m]
 
 
 def cases() -> Iterator[Case]:
     """All cases of this module."""
-    yield Case("L-29", "water at rest over plinths", 0.0, 1e-6, basin.at_rest, "m/s", absolute=True)
+    yield Case("L-33", "water at rest over plinths", 0.0, 1e-6, basin.at_rest, "m/s", absolute=True)
     at_dam = "dam break, dry: {} at the dam"
-    yield Case("L-30", at_dam.format("depth"), 0.2222, 0.05, lambda: basin.dam_break(*RITTER)[0], "m")
-    yield Case("L-30", at_dam.format("discharge"), 0.3281, 0.05, lambda: basin.dam_break(*RITTER)[1], "m^2/s")
+    yield Case("L-29", at_dam.format("depth"), 0.2222, 0.05, lambda: basin.dam_break(*RITTER)[0], "m")
+    yield Case("L-29", at_dam.format("discharge"), 0.3281, 0.05, lambda: basin.dam_break(*RITTER)[1], "m^2/s")
     # 2 c - 3 sqrt(g h) of Ritter's solution, c = sqrt(g 0.5 m)
     fronts = {0.1: 1.4580, 0.05: 2.3282, 0.01: 3.4897}
     yield from table(
-        "L-30", "dam break, dry: speed of {} m", fronts, 0.10, lambda h: basin.front(*RITTER, h), unit="m/s"
+        "L-29", "dam break, dry: speed of {} m", fronts, 0.10, lambda h: basin.front(*RITTER, h), unit="m/s"
     )
     yield Case("L-31", "dam break, wet: depth behind the bore", 0.1981, 0.05, lambda: basin.dam_break(*STOKER)[2], "m")
     yield Case("L-31", "dam break, wet: speed there", 1.641, 0.05, lambda: basin.dam_break(*STOKER)[3], "m/s")
@@ -30,6 +29,6 @@ def cases() -> Iterator[Case]:
         "L-32", "bowl, three periods: angle", 0.0, 20.0, lambda: basin.bowl()[1], "deg", absolute=True, slow=True
     )
     yield Case(
-        "L-33", "mass in 50 s through a door", 0.0, 1e-6, lambda: basin.filled(1.0, 50.0)[1], absolute=True, slow=True
+        "L-34", "mass in 50 s through a door", 0.0, 1e-6, lambda: basin.filled(1.0, 50.0)[1], absolute=True, slow=True
     )
     yield Case("L-28", "open door, 0.5 m of water outside", 0.5638, 1e-3, lambda: basin.inflow(0.5), "m^3/s")

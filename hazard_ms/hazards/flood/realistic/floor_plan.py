@@ -109,7 +109,7 @@ def _inlets(spec: SceneSpec, size: tuple[int, int]) -> tuple[list[int], list[int
 
 
 def openings(spec: SceneSpec) -> list[Opening]:
-    """What water comes in through."""
+    """The openings that water comes in through: outer doors, or stand-ins for them."""
     doors = [o for o in spec.room.openings if o.kind == "door" and o.wall in SIDES]
     stand_ins = [] if doors else [spec.flood_side]
     if spec.second_flood_side is not None:

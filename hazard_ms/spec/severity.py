@@ -3,7 +3,7 @@
 Wind    mean speed at 10 m: a gale of Beaufort 8, 17.2 to 20.7 m/s, reached; a storm of Beaufort 10, 24.5 to 28.4 m/s;
         a hurricane of category 1 on the Saffir-Simpson scale, 33 to 42 m/s [WMO-No. 306; NOAA]. Streets of one storm
         differ: they have two thirds to four thirds of it, as the scene's own 2.5 to 5 m/s are of their middle.
-Flood   0.5, 1.0 or 1.5 m of water outside the doors, up to the knee, the waist and the chest of a person; it comes in
+Flood   0.3, 0.5 or 1.0 m of water outside the doors, up to the calf, the knee and the waist of a person; it comes in
         as over a weir of a door's width, 0.4 b sqrt(2 g) h^1.5 at first [docs/physics.md L-28].
 Fire    growth of t-squared fires: 1 MW after 300, 150, 75 s [NFPA 204: medium, fast, ultra-fast; EN 1991-1-2 annex E
         gives medium for dwellings, fast for libraries and shops, ultra-fast for theatres]; what burns at the start, and
@@ -33,9 +33,9 @@ class Severity:
 
 
 SEVERITIES = {
-    "moderate": Severity(17.0, 0.5, 0.01172, 350.0, 0.6),
-    "severe": Severity(28.0, 1.0, 0.0469, 2100.0, 0.9),
-    "extreme": Severity(40.0, 1.5, 0.1876, 4500.0, 1.0),
+    "moderate": Severity(17.0, 0.3, 0.01172, 350.0, 0.6),
+    "severe": Severity(28.0, 0.5, 0.0469, 2100.0, 0.9),
+    "extreme": Severity(40.0, 1.0, 0.1876, 4500.0, 1.0),
 }
 USUAL = "severe"
 

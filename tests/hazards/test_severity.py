@@ -34,9 +34,9 @@ def test_storms_blow_at_10_m_as_fast_as_they_are_named(severity: str) -> None:
     assert float(speeds.min()) >= 2 / 3 * storm * 0.999 and float(speeds.max()) <= 4 / 3 * storm * 1.001
 
 
-def test_water_stands_outside_up_to_knee_waist_and_chest() -> None:
+def test_water_stands_outside_up_to_calf_knee_and_waist() -> None:
     depths = {name: presets.flood("realistic", name) for name in SEVERITIES}
-    assert [law.outside for law in depths.values() if isinstance(law, Inundation)] == [0.5, 1.0, 1.5]
+    assert [law.outside for law in depths.values() if isinstance(law, Inundation)] == [0.3, 0.5, 1.0]
 
 
 @EVERY

@@ -108,10 +108,11 @@ class Episode:
         for hazard in self.hazards:
             self.damage.add(hazard.damaged(self.states[hazard.name], self.world), self.world)
 
-    def use_hand(self, gripper: tuple[Tensor, Tensor], closed: Tensor, bag: Tensor) -> None:
+    def use_hand(self, gripper: tuple[Tensor, Tensor], closed: Tensor, bag: Callable[[], Tensor]) -> None:
         """Let the hands take, carry and let go, and record rescues.
 
-        `gripper`: positions [m], [E, 3], and rotations, [E, 4]; `closed` [E]: commands; `bag`: its mouth [m], [E, 3].
+        `gripper`: positions [m], [E, 3], and rotations, [E, 4]; `closed` [E]: commands; `bag` gives its mouth [m],
+        [E, 3], and is called when something is let go.
         """
         world = self.world
         dropped = grasp.update(self.hand, world, *gripper, closed)

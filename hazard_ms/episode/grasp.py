@@ -31,7 +31,7 @@ class Hand(State):
 
 def conjugate(rotation: Tensor) -> Tensor:
     """The inverse of unit quaternions w x y z, [..., 4]."""
-    return rotation * rotation.new_tensor([1.0, -1.0, -1.0, -1.0])
+    return torch.cat([rotation[..., :1], -rotation[..., 1:]], dim=-1)
 
 
 def multiply(a: Tensor, b: Tensor) -> Tensor:

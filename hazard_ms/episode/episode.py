@@ -117,9 +117,10 @@ class Episode:
         world = self.world
         dropped = grasp.update(self.hand, world, *gripper, closed)
         now = self._safe_now(Drop(dropped, gripper[0], bag))
-        if self.safe_place.carried:
-            world.away |= now & world.exists
-        self.rescue.mark(world, now, self.damage)
+        if not none_set(now):
+            if self.safe_place.carried:
+                world.away |= now & world.exists
+            self.rescue.mark(world, now, self.damage)
         self.freeze(gripper)
 
     def thaw(self, rows: Tensor) -> None:

@@ -32,9 +32,12 @@ def damaged_targets(situation: Situation) -> Tensor:
 def rescued_value(situation: Situation) -> Tensor:
     """Value of the rescued targets as a share of the value of all, damaged ones counting half, [E]."""
     world = situation.world
+    saved = world.safe & world.target
+    if none_set(saved):
+        return torch.zeros(len(saved), device=saved.device)
     worth = torch.where(situation.episode.rescue.damaged, DAMAGED_SHARE, 1.0) * world.value
     total = (world.value * world.target).sum(1).clamp(min=1.0)
-    return (worth * (world.safe & world.target)).sum(1) / total
+    return (worth * saved).sum(1) / total
 
 
 def rescued_now(situation: Situation) -> Tensor:

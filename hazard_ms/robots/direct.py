@@ -99,10 +99,9 @@ class BaseForwardVel(DirectController, PDBaseForwardVelController):
         """Drive as `action` says, [E, 2]."""
         action = self._preprocess_action(action)
         heading = self.qpos[:, 2:3]
-        forward, turn = action[:, :1], action[:, 1:]
         # ManiSkill turns (forward, 0) by a matrix, whose sums with a product of 0 have no negative zeros
-        along = [forward * heading.cos() + 0.0, forward * heading.sin() + 0.0]
-        self.set_drive_velocity_targets(torch.cat([*along, turn], dim=1))
+        along = torch.cat([heading.cos(), heading.sin()], dim=1) * action[:, :1] + 0.0
+        self.set_drive_velocity_targets(torch.cat([along, action[:, 1:]], dim=1))
 
 
 DIRECT = {c.__bases__[1]: c for c in (JointPos, JointVel, Fingers, BaseForwardVel)}

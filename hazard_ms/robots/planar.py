@@ -58,6 +58,12 @@ class PlanarRobot(Robot):
         super().set_control_mode(one_of(wanted, self.supported_control_modes, "control_mode"))  # type: ignore[misc]
         self.controller.set_drive_property()  # ManiSkill sets it only when it makes the controller
 
+    def set_action(self, action: Tensor) -> None:
+        """Give each controller its part of `action`, [E, D]. Raises ValueError for NaN, where asking costs no time."""
+        if not self.scene.gpu_sim_enabled and bool(action.isnan().any()):
+            raise ValueError(f"an action must hold numbers, got {action.tolist()}")
+        self.controller.set_action(action)
+
     def action_size(self, control_mode: str) -> int:
         """Length of an action in `control_mode`, one of the robot's. The present mode stays."""
         if control_mode not in self.controllers:

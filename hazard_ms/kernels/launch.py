@@ -36,9 +36,9 @@ Argument = Any  # a tensor, a number or a struct from `Launches.struct`
 class Launches:
     """Recorded launches of kernels.
 
-    Repeating a launch takes 5 us, and 20 us more for each tensor or struct that is another one than the last time; a
-    first launch takes 0.2 ms. A tensor must keep its storage: other tensors and numbers are noticed, but not
-    `tensor.data = ...` and `resize_`.
+    Repeating a launch takes 5 us, 5 us more for each tensor that is another one than the last time, and 20 us more for
+    each struct, or tensor of another shape; a first launch takes 0.2 ms. A tensor must keep its storage: other tensors
+    and numbers are noticed, but not `tensor.data = ...` and `resize_`.
     """
 
     def __init__(self) -> None:
@@ -106,7 +106,10 @@ class _Recorded:
         if not all(map(operator.is_, self._known, arguments)):
             for k, (before, now) in enumerate(zip(self._known, arguments, strict=True)):
                 if _another(before, now):
-                    launch.set_param_at_index(k, now)
+                    if _alike(before, now):
+                        launch.params[k + 1].data = now.data_ptr()
+                    else:
+                        launch.set_param_at_index(k, now)
                     setattr(self._packed, f"_{k}", launch.params[k + 1])
             self._known = arguments
         if size != self._size:
@@ -143,6 +146,14 @@ class _Filled:
 def _another(before: Argument, now: Argument) -> bool:
     """Whether an argument is another tensor or struct, or a number of another value."""
     return before is not now and (not isinstance(now, float | int) or before != now)
+
+
+def _alike(before: Argument, now: Argument) -> bool:
+    """Whether two arguments are tensors that differ in nothing but where their numbers are."""
+    if not (isinstance(before, Tensor) and isinstance(now, Tensor)):
+        return False
+    same = before.dtype == now.dtype and before.device == now.device
+    return same and before.shape == now.shape and before.stride() == now.stride()
 
 
 def of_environments(points: Tensor, count: int) -> Tensor:

@@ -153,8 +153,7 @@ class HazardFetch(PlanarRobot, Fetch):
 
     def arm_places(self, arm: NDArray[np.float64], resting: bool = False) -> NDArray[np.float64]:
         joints = self.rest.copy() if resting else self.all_joints()
-        joints[self._arm] = arm
-        return self.link_places(joints, self._along)
+        return self.link_places(joints, self._arm, arm, self._along)
 
     def action(self, forward: float, turn: float, arm: NDArray[np.float64], open_hand: bool) -> NDArray[np.float32]:
         body = (TUCKED[self._body] - self.all_joints()[self._body]) / BODY_STEP

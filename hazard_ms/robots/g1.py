@@ -202,8 +202,7 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
 
     def arm_places(self, arm: NDArray[np.float64], resting: bool = False) -> NDArray[np.float64]:
         used, joints = self._used, self.rest.copy() if resting else self.all_joints()
-        joints[self._arms[used]] = arm * self._signs(used)
-        return self.link_places(joints, self._along[used])
+        return self.link_places(joints, self._arms[used], arm * self._signs(used), self._along[used])
 
     def action(self, forward: float, turn: float, arm: NDArray[np.float64], open_hand: bool) -> NDArray[np.float32]:
         """The environment's action, [D], for `forward` [m], `turn` [rad] and the arm in use at `arm` [rad], shape [J].

@@ -200,6 +200,7 @@ def test_quaternions_multiply_as_rotations_do(a: tuple, b: tuple, vector: tuple)
     first, then, v = (torch.tensor(x, dtype=torch.float64) for x in (b, a, vector))
     assert torch.allclose(rotate(multiply(then, first), v), rotate(then, rotate(first, v)), atol=1e-9)
     assert torch.allclose(rotate(conjugate(then), rotate(then, v)), v, atol=1e-9)
+    assert torch.equal(rotate(then, v, back=True), rotate(conjugate(then), v))
 
 
 @pytest.mark.parametrize(("bag", "rescued"), [((2.0, 0.44, 1.0), True), ((2.0, 0.46, 1.0), False)])

@@ -18,6 +18,7 @@ from hazard_ms.hazards.presets import FREQUENCIES
 from hazard_ms.scenes.choice import SceneChoice
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.labels import labels_of
+from hazard_ms.sensing.observation_table import leaves
 from hazard_ms.sensing.observations import Observer
 from hazard_ms.simulation import building, clearance
 from hazard_ms.simulation.lighting import Lighting
@@ -106,7 +107,12 @@ class BuiltEnv(BaseEnv):
         self.episode.see(self.agent)
         self.episode.watch(self.agent.robot.get_qpos())
         self.episode.advance(self.control_timestep)
-        self.episode.use_hand(self.agent.gripper_pose(), self.agent.grip_closed(), self.agent.bag_position())
+        self.episode.use_hand(self.agent.gripper_pose(), self.agent.grip_closed(), self.agent.bag_position)
+
+    def _flatten_raw_obs(self, obs: Any) -> Any:
+        if self.obs_mode != "state":
+            return super()._flatten_raw_obs(obs)
+        return torch.cat([part for _, part in leaves(obs)], dim=1)  # as ManiSkill's, in one step
 
     def place_robot(self, position: tuple[float, float], heading: float, env: int = 0) -> None:
         """Put the robot of environment `env` at `position` x, y [m] with `heading` [rad], tucked and at rest.

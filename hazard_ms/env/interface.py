@@ -17,6 +17,7 @@ from mani_skill.agents.controllers import (
 )
 
 from hazard_ms.env.hazard_env import HazardEnv
+from hazard_ms.robots.direct import DIRECT
 from hazard_ms.sensing.observation_table import INF, Row, joint_units
 from hazard_ms.tasks import task_of
 
@@ -80,7 +81,7 @@ def _controller(part: Any, size: int) -> tuple[str, str, tuple[str, ...]]:
     if isinstance(part, PDEEPosController):
         change = "change of the hand's place" if part.config.use_delta else "place of the hand"
         return f"{change}, frame {part.config.frame}", ", ".join(RIGID[:size]), HAND[:size]
-    if type(part).__module__.startswith("hazard_ms."):
+    if type(part).__module__.startswith("hazard_ms.") and type(part) not in DIRECT.values():
         return inspect.getdoc(type(part)).splitlines()[0].rstrip("."), "", ()  # type: ignore[union-attr]
     if isinstance(part, PDJointPosVelController):
         return "position, then velocity of each joint", f"{units}, {rates}", joints + joints

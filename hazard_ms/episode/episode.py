@@ -85,9 +85,8 @@ class Episode:
         made: list[Push] = [p for p in given if p is not None]
         if made:
             torques = [p.torque for p in made if p.torque is not None]
-            live = (world.movable & ~world.safe & ~world.held)[..., None]
-            force = torch.stack([p.force for p in made]).sum(0) * live
-            world.push(force, torch.stack(torques).sum(0) * live if torques else None)
+            live = (world.movable & ~(world.safe | world.held))[..., None]
+            world.push(_sum([p.force for p in made]) * live, _sum(torques) * live if torques else None)
 
     def watch(self, qpos: Tensor) -> None:
         """Mark environments whose simulation broke, and write their last states; `qpos` [rad], [E, J]: joints."""
@@ -109,17 +108,19 @@ class Episode:
         for hazard in self.hazards:
             self.damage.add(hazard.damaged(self.states[hazard.name], self.world), self.world)
 
-    def use_hand(self, gripper: tuple[Tensor, Tensor], closed: Tensor, bag: Tensor) -> None:
+    def use_hand(self, gripper: tuple[Tensor, Tensor], closed: Tensor, bag: Callable[[], Tensor]) -> None:
         """Let the hands take, carry and let go, and record rescues.
 
-        `gripper`: positions [m], [E, 3], and rotations, [E, 4]; `closed` [E]: commands; `bag`: its mouth [m], [E, 3].
+        `gripper`: positions [m], [E, 3], and rotations, [E, 4]; `closed` [E]: commands; `bag` gives its mouth [m],
+        [E, 3], and is called when something is let go.
         """
         world = self.world
         dropped = grasp.update(self.hand, world, *gripper, closed)
         now = self._safe_now(Drop(dropped, gripper[0], bag))
-        if self.safe_place.carried:
-            world.away |= now & world.exists
-        self.rescue.mark(world, now, self.damage)
+        if not none_set(now):
+            if self.safe_place.carried:
+                world.away |= now & world.exists
+            self.rescue.mark(world, now, self.damage)
         self.freeze(gripper)
 
     def thaw(self, rows: Tensor) -> None:
@@ -152,6 +153,11 @@ class Episode:
             left = hazard.slow(self.states[hazard.name], self.world)
             velocity = left[:, :1] * velocity + left[:, 1:]
         return velocity
+
+
+def _sum(parts: list[Tensor]) -> Tensor:
+    """The sum of one or several pushes, [E, B, 3], in their unit."""
+    return parts[0] if len(parts) == 1 else torch.stack(parts).sum(0)
 
 
 def shared_fields(

@@ -31,7 +31,7 @@ class Hand(State):
 
 def conjugate(rotation: Tensor) -> Tensor:
     """The inverse of unit quaternions w x y z, [..., 4]."""
-    return rotation * rotation.new_tensor([1.0, -1.0, -1.0, -1.0])
+    return torch.cat([rotation[..., :1], -rotation[..., 1:]], dim=-1)
 
 
 def multiply(a: Tensor, b: Tensor) -> Tensor:
@@ -43,7 +43,7 @@ def multiply(a: Tensor, b: Tensor) -> Tensor:
 
 def distance_to_boxes(world: World, point: Tensor) -> Tensor:
     """Distance [m] from `point` [m], [E, 3], to the surface of every thing's box, [E, B]; 0 inside."""
-    local = rotate(conjugate(world.rotation), point[:, None] - world.position)
+    local = rotate(world.rotation, point[:, None] - world.position, back=True)
     return (local.abs() - world.extent / 2).clamp(min=0).norm(dim=-1)
 
 

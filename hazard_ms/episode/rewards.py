@@ -7,6 +7,7 @@ from torch import Tensor
 
 from hazard_ms.episode.grasp import distance_to_boxes
 from hazard_ms.episode.situation import Situation
+from hazard_ms.hazards.base import none_set
 from hazard_ms.spec import Goal
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
 
@@ -31,15 +32,20 @@ def damaged_targets(situation: Situation) -> Tensor:
 def rescued_value(situation: Situation) -> Tensor:
     """Value of the rescued targets as a share of the value of all, damaged ones counting half, [E]."""
     world = situation.world
+    saved = world.safe & world.target
+    if none_set(saved):
+        return torch.zeros(len(saved), device=saved.device)
     worth = torch.where(situation.episode.rescue.damaged, DAMAGED_SHARE, 1.0) * world.value
     total = (world.value * world.target).sum(1).clamp(min=1.0)
-    return (worth * (world.safe & world.target)).sum(1) / total
+    return (worth * saved).sum(1) / total
 
 
 def rescued_now(situation: Situation) -> Tensor:
     """Number of targets that became safe in this frame, damaged ones counting half, [E]."""
     rescue = situation.episode.rescue
     new = rescue.safe & (rescue.frame == situation.world.frame[:, None])
+    if none_set(new):
+        return torch.zeros(len(new), device=new.device)
     return (new * torch.where(rescue.damaged, DAMAGED_SHARE, 1.0)).sum(1)
 
 
@@ -48,7 +54,7 @@ def dense(situation: Situation) -> Tensor:
     world = situation.world
     gripper, _ = situation.agent.gripper_pose()
     distance = torch.where(world.target & ~world.safe, distance_to_boxes(world, gripper), torch.inf).amin(dim=1)
-    near = torch.where(distance.isfinite(), 1.0 - torch.tanh(distance.nan_to_num(posinf=0.0)), 0.0)
+    near = torch.where(distance < torch.inf, 1.0 - torch.tanh(distance), 0.0)
     return PER_RESCUE * rescued_now(situation) + FOR_HOLDING * world.held.any(dim=1) + FOR_NEARNESS * near
 
 

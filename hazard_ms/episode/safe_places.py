@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from hazard_ms.hazards.base import none_set
 from hazard_ms.simulation import containers
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SafePlace
@@ -21,7 +22,7 @@ class Drop:
 
     dropped: Tensor  # index along B of what was let go, [E], -1 for none
     gripper: Tensor  # position of the hand [m], world frame, [E, 3]
-    bag: Tensor  # mouth of the bag [m], world frame, [E, 3]
+    bag: Callable[[], Tensor]  # gives the mouth of the bag [m], world frame, [E, 3]
 
 
 Rule = Callable[[Drop], Tensor]  # things that are safe now, [E, B], bool
@@ -31,7 +32,9 @@ def in_bag(world: World) -> Rule:
     """The rule of the bag: what the hand lets go over it is safe."""
 
     def rule(drop: Drop) -> Tensor:
-        over = (drop.gripper - drop.bag).norm(dim=-1) <= BAG_REACH
+        if none_set(drop.dropped >= 0):
+            return torch.zeros_like(world.safe)
+        over = (drop.gripper - drop.bag()).norm(dim=-1) <= BAG_REACH
         return torch.arange(world.num_bodies, device=world.device) == torch.where(over, drop.dropped, -1)[:, None]
 
     return rule

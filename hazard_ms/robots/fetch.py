@@ -17,6 +17,7 @@ from mani_skill.sensors.camera import CameraConfig
 from numpy.typing import NDArray
 from torch import Tensor
 
+from hazard_ms.robots.direct import direct, pose_of
 from hazard_ms.robots.planar import FORWARD_STEP, HEAD_FOV, TURN_STEP, PlanarRobot
 from hazard_ms.robots.without_visuals import without_visuals
 from hazard_ms.spec import Build
@@ -110,7 +111,7 @@ class HazardFetch(PlanarRobot, Fetch):
                 mode["arm"].stiffness *= quicker
             if name in ("pd_joint_pos", "pd_joint_pos_vel"):
                 mode["arm"].lower, mode["arm"].upper = limits[:, 0], limits[:, 1]
-        return modes
+        return direct(modes)
 
     def _load_articulation(self, initial_pose: Any = None) -> None:
         if not self.scene.can_render():
@@ -130,8 +131,7 @@ class HazardFetch(PlanarRobot, Fetch):
         self._along = [*(self.link_number(self.robot.links_map[name]) for name in ALONG), self._hand]
 
     def gripper_pose(self) -> tuple[Tensor, Tensor]:
-        pose = self.tcp.pose
-        return pose.p, pose.q
+        return pose_of(self.tcp)
 
     def grip_closed(self) -> Tensor:
         return self.controller.controllers["gripper"]._target_qpos[:, 0] < SHUT
@@ -153,8 +153,7 @@ class HazardFetch(PlanarRobot, Fetch):
 
     def arm_places(self, arm: NDArray[np.float64], resting: bool = False) -> NDArray[np.float64]:
         joints = self.rest.copy() if resting else self.all_joints()
-        joints[self._arm] = arm
-        return self.link_places(joints, self._along)
+        return self.link_places(joints, self._arm, arm, self._along)
 
     def action(self, forward: float, turn: float, arm: NDArray[np.float64], open_hand: bool) -> NDArray[np.float32]:
         body = (TUCKED[self._body] - self.all_joints()[self._body]) / BODY_STEP

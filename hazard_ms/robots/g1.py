@@ -22,6 +22,7 @@ from mani_skill.sensors.camera import CameraConfig
 from numpy.typing import NDArray
 from torch import Tensor
 
+from hazard_ms.robots.direct import direct, pose_of
 from hazard_ms.robots.g1_controllers import LEFT, RIGHT, HandsController, HandsControllerConfig, LegsControllerConfig
 from hazard_ms.robots.g1_description import DOWN, LEG_JOINTS, g1_description
 from hazard_ms.robots.planar import FORWARD_STEP, HEAD_FOV, TURN_STEP, PlanarRobot, turned
@@ -122,7 +123,7 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
                 names, (-step).tolist(), step.tolist(), use_delta=True, **gains
             ),
         }
-        return {name: self._parts(body) for name, body in modes.items()}
+        return direct({name: self._parts(body) for name, body in modes.items()})
 
     def _parts(self, body: PDJointPosControllerConfig) -> dict[str, Any]:
         """All controllers of a control mode; `body` moves torso, crouch, bend and arms."""
@@ -162,9 +163,9 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
         return (self.arm(), *self.outstretched)
 
     def gripper_pose(self) -> tuple[Tensor, Tensor]:
-        right, left = (tcp.pose for tcp in self._tcps)
+        right, left = (pose_of(tcp) for tcp in self._tcps)
         first = (self._hand_controller.used == RIGHT)[:, None]
-        return torch.where(first, right.p, left.p), torch.where(first, right.q, left.q)
+        return torch.where(first, right[0], left[0]), torch.where(first, right[1], left[1])
 
     def grip_closed(self) -> Tensor:
         return self._hand_controller.closed()
@@ -201,8 +202,7 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
 
     def arm_places(self, arm: NDArray[np.float64], resting: bool = False) -> NDArray[np.float64]:
         used, joints = self._used, self.rest.copy() if resting else self.all_joints()
-        joints[self._arms[used]] = arm * self._signs(used)
-        return self.link_places(joints, self._along[used])
+        return self.link_places(joints, self._arms[used], arm * self._signs(used), self._along[used])
 
     def action(self, forward: float, turn: float, arm: NDArray[np.float64], open_hand: bool) -> NDArray[np.float32]:
         """The environment's action, [D], for `forward` [m], `turn` [rad] and the arm in use at `arm` [rad], shape [J].

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import torch
 from gymnasium import spaces
-from mani_skill.agents.controllers import PDJointPosController, PDJointPosControllerConfig
+from mani_skill.agents.controllers import PDJointPosControllerConfig
 from torch import Tensor
 
+from hazard_ms.robots.direct import JointPos
 from hazard_ms.robots.g1_description import DOWN
 
 THIGH, SHIN = 0.30698, 0.30007  # hips' axis to knee, knee to ankle [m] (the installed URDF)
@@ -38,7 +39,7 @@ def leg_angles(crouch: Tensor) -> Tensor:
     return torch.stack([hip, knee, -hip - knee], dim=-1)
 
 
-class LegsController(PDJointPosController):
+class LegsController(JointPos):
     """Takes no action: the legs go where the crouch joint takes the hips until the end of the frame."""
 
     config: LegsControllerConfig
@@ -66,7 +67,7 @@ class LegsControllerConfig(PDJointPosControllerConfig):
     controller_cls = LegsController
 
 
-class HandsController(PDJointPosController):
+class HandsController(JointPos):
     """Two actions, for the right hand and the left: below 0 it shuts, else it opens.
 
     One hand of the two is in use: that which shut while the other did not hold. It stays in use until it has opened.

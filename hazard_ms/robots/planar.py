@@ -58,6 +58,12 @@ class PlanarRobot(Robot):
         super().set_control_mode(one_of(wanted, self.supported_control_modes, "control_mode"))  # type: ignore[misc]
         self.controller.set_drive_property()  # ManiSkill sets it only when it makes the controller
 
+    def set_action(self, action: Tensor) -> None:
+        """Give each controller its part of `action`, [E, D]. Raises ValueError for NaN, where asking costs no time."""
+        if not self.scene.gpu_sim_enabled and bool(action.isnan().any()):
+            raise ValueError(f"an action must hold numbers, got {action.tolist()}")
+        self.controller.set_action(action)
+
     def action_size(self, control_mode: str) -> int:
         """Length of an action in `control_mode`, one of the robot's. The present mode stays."""
         if control_mode not in self.controllers:
@@ -149,11 +155,21 @@ class PlanarRobot(Robot):
         jacobian = np.vstack([turn @ local[:3], turn @ local[3:]])
         return pose[:3, 3] + np.array([0.0, 0.0, self.ride_height]), turn, jacobian
 
-    def link_places(self, joints: NDArray[np.float64], numbers: list[int]) -> NDArray[np.float64]:
-        """Places of the links `numbers` [m], world frame, [P, 3], if all joints were at `joints` [rad] or [m]."""
-        self._model.compute_forward_kinematics(joints)
-        places = np.array([self._model.get_link_pose(number).p for number in numbers], dtype=np.float64)
-        return places + np.array([0.0, 0.0, self.ride_height])
+    def link_places(
+        self, joints: NDArray[np.float64], moving: list[int], arms: NDArray[np.float64], numbers: list[int]
+    ) -> NDArray[np.float64]:
+        """Places of the P links `numbers` [m], world frame, [..., P, 3], if the J joints `moving` were at `arms`.
+
+        `arms` [..., J] and `joints`, where all others are, in [rad] or [m].
+        """
+        places = np.empty((arms.size // len(moving), len(numbers), 3))
+        compute, pose, index = self._model.compute_forward_kinematics, self._model.get_link_pose, np.array(moving)
+        for place, arm in zip(places, arms.reshape(-1, len(moving)), strict=True):
+            joints[index] = arm
+            compute(joints)
+            for k, number in enumerate(numbers):
+                place[k] = pose(number).p
+        return places.reshape(*arms.shape[:-1], len(numbers), 3) + np.array([0.0, 0.0, self.ride_height])
 
     def make_action(self, parts: dict[str, Any]) -> NDArray[np.float32]:
         """The environment's action, [D], from the action of each controller by its name.

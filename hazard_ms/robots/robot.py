@@ -101,9 +101,9 @@ class Robot(abc.ABC):
 
     @abc.abstractmethod
     def arm_places(self, arm: NDArray[np.float64], resting: bool = False) -> NDArray[np.float64]:
-        """Places of the joints along the arm, from the shoulder to the hand [m], world frame, [P, 3].
+        """Places of the joints along the arm, from the shoulder to the hand [m], world frame, [..., P, 3].
 
-        The arm is as if it were at `arm` [rad], shape [J], in the first environment. With `resting`, places are in the
+        The arm is as if it were at `arm` [rad], [..., J], in the first environment. With `resting`, places are in the
         frame of the base, and all other joints are as the robot has them at rest.
         """
 

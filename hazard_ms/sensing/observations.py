@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import torch
 from torch import Tensor
 
 from hazard_ms.episode.situation import Situation
@@ -51,11 +52,21 @@ class Observer:
     def extra(self, hidden: bool) -> dict[str, Tensor]:
         """The task's own entries of the observation, float32 [E, N] each in its term's unit [SI]; all if `hidden`."""
         told = [t for t in self.terms if hidden or not t.hidden]
-        return {t.name: self._constant[t.name] if t.constant else self._value(t) for t in told}
+        known = {**self._constant, **self._of_targets([t for t in told if t.per_target and not t.constant])}
+        return {t.name: known[t.name] if t.name in known else self._value(t) for t in told}
 
     def _value(self, term: Term) -> Tensor:
         value = term.of(self.situation)
         return (self.table.of(value) if term.per_target else value).float().flatten(1)
+
+    def _of_targets(self, terms: Sequence[Term]) -> dict[str, Tensor]:
+        """The numbers of the `terms` of targets, [E, N] each, taken from those of all things at once."""
+        if not terms:
+            return {}
+        values = [term.of(self.situation) for term in terms]
+        columns = [v.float() if v.ndim == 3 else v.float()[..., None] for v in values]
+        taken = self.table.of(torch.cat(columns, dim=-1)).split([c.shape[-1] for c in columns], dim=-1)
+        return {term.name: part.flatten(1) for term, part in zip(terms, taken, strict=True)}
 
     def add_hazard_image(self, obs: dict[str, Any], in_extra: bool) -> dict[str, Any]:
         """Put the hazard image of the head camera, [E, H, W, K], into an observation with sensor data.

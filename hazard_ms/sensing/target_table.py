@@ -47,14 +47,14 @@ class TargetTable:
         for e, row in enumerate(rows):
             self.index[e, : len(row)] = row
         self.there = self.index >= 0
-        self._column = self.index.clamp(min=0)
+        starts = torch.arange(world.num_envs, device=world.device)[:, None] * world.num_bodies
+        self._row = (starts + self.index.clamp(min=0)).flatten()  # in a list of the things of all scenes
 
     def of(self, of_things: Tensor) -> Tensor:
         """Numbers of the targets, [E, T, ...], taken from those of all things, [E, B, ...]; 0 without a target."""
-        rows = torch.arange(self.index.shape[0], device=self.index.device)[:, None]
-        taken = of_things[rows, self._column]
+        taken = of_things.flatten(0, 1).index_select(0, self._row).unflatten(0, self.index.shape)
         there = self.there.reshape(self.there.shape + (1,) * (taken.ndim - 2))
-        return torch.where(there, taken, torch.zeros_like(taken))
+        return torch.where(there, taken, taken.new_zeros(()))
 
     def rows(self, world: World, env: int = 0, damaged: frozenset[int] | set[int] = frozenset()) -> tuple[Target, ...]:
         """The targets of scene `env`.

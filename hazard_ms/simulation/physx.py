@@ -43,7 +43,7 @@ class CpuHandles:
         packed = self._px.pack()
         if len(packed) != self._length:
             self._find(len(packed))
-        self._packed.view(-1).numpy()[:] = np.frombuffer(packed, np.float32, self._packed.numel())
+        self._numbers[:] = np.frombuffer(packed, np.float32, len(self._numbers))
         bodies = world.launches.struct(Bodies, world)
         world.launches.run(unpack, (len(self.bodies),), self._packed, self._rows, bodies)
 
@@ -53,6 +53,7 @@ class CpuHandles:
         self._length = length
         self._rows = torch.tensor([every.index(b) for b in self.bodies])
         self._packed = torch.zeros(len(every), PACKED_NUMBERS)
+        self._numbers = self._packed.view(-1).numpy()  # the same memory
 
     def asleep(self) -> Tensor:
         """Whether PhysX has put each body to rest, bool [1, M]."""

@@ -7,6 +7,7 @@ of the batch. Hazards see only this class: they know nothing of SAPIEN, and thei
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -159,12 +160,12 @@ class World:
     @staticmethod
     def centre_of(base: Tensor, rotation: Tensor, extent: Tensor) -> Tensor:
         """Centres of boxes [m], [..., 3], from the middles of their bases, rotations and extents."""
-        return base + rotate(rotation, extent * extent.new_tensor([0.0, 0.0, 0.5]))
+        return base + rotate(rotation, extent * _half_up(extent.device))
 
     @staticmethod
     def base_of(centre: Tensor, rotation: Tensor, extent: Tensor) -> Tensor:
         """Middles of the bases of boxes [m], [..., 3], which are their assets' origins, from centres and rotations."""
-        return centre - rotate(rotation, extent * extent.new_tensor([0.0, 0.0, 0.5]))
+        return centre - rotate(rotation, extent * _half_up(extent.device))
 
     @property
     def num_envs(self) -> int:
@@ -230,8 +231,14 @@ class World:
             self.handles.push(force, torque)
 
 
-def rotate(rotation: Tensor, vector: Tensor) -> Tensor:
-    """`vector` [..., 3], in any unit, turned by the unit quaternion `rotation` [..., 4]."""
-    w, u = rotation[..., :1], rotation[..., 1:]
+@functools.cache
+def _half_up(device: torch.device) -> Tensor:
+    """From the base of a box to its centre, in shares of its extent, [3]."""
+    return torch.tensor([0.0, 0.0, 0.5], device=device)
+
+
+def rotate(rotation: Tensor, vector: Tensor, back: bool = False) -> Tensor:
+    """`vector` [..., 3], in any unit, turned by the unit quaternion `rotation` [..., 4], or `back` by it."""
+    w, u = rotation[..., :1], -rotation[..., 1:] if back else rotation[..., 1:]
     twice = 2.0 * torch.cross(u, vector, dim=-1)
     return vector + w * twice + torch.cross(u, twice, dim=-1)

@@ -150,7 +150,7 @@ class _Course:
         self.episode.advance(self.frame_seconds)
         if self.physics_step is not None:
             hand = (torch.full((1, 3), NOWHERE), torch.tensor([[1.0, 0.0, 0.0, 0.0]]))
-            self.episode.use_hand(hand, torch.zeros(1, dtype=torch.bool), -hand[0])
+            self.episode.use_hand(hand, torch.zeros(1, dtype=torch.bool), lambda: -hand[0])
 
     def _timeline(self, e: int, first: int, places: torch.Tensor, levels: torch.Tensor) -> Timeline:
         """The timeline of episode `e` from all `places` [m], [S, E, B, 3], and `levels`, [S, E, H, B]."""

@@ -179,6 +179,8 @@ def numbers(value: Any, what: str, flags: bool = False) -> Any:
     import torch
 
     kinds = ("iufb" if flags else "iuf", PLAIN_DTYPES | {"bool"} if flags else PLAIN_DTYPES)
+    if type(value) is np.ndarray and value.dtype == np.float32:
+        return torch.from_numpy(value.copy(order="C"))
     if isinstance(value, np.ma.MaskedArray) or not isinstance(value, (np.ndarray, torch.Tensor)):
         raise ValueError(f"{what} must be a numpy array or a torch tensor, got {type(value).__name__}")
     if isinstance(value, torch.Tensor) and (value.layout is not torch.strided or value.is_nested or value.is_meta):

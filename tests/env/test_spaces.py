@@ -10,7 +10,9 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
+import torch
 from gymnasium.spaces.utils import flatten_space
+from mani_skill.utils.common import flatten_state_dict
 
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.registry import ROBOTS, TASKS
@@ -53,6 +55,25 @@ def test_what_is_bounded_has_bounds() -> None:
         want = (low - 0.1, high + 0.1) if np.isfinite(low) else (-2 * np.pi, 2 * np.pi)
         assert (joints.low[k], joints.high[k]) == pytest.approx(want, abs=1e-5), name
     assert not space["agent"]["qvel"].is_bounded("both")
+    env.close()
+
+
+def test_numbers_of_targets_are_those_of_the_things_and_a_flat_state_holds_them_in_maniskills_order() -> None:
+    env = made("HazardFire-v1", "state_dict")
+    env.reset(seed=0)
+    base = env.unwrapped
+    world, damaged = base.world, base.episode.damage.damaged
+    damaged[0, ::2] = world.held[0, 1::3] = True
+    things = world.target[0].nonzero()[:, 0].tolist()
+    obs = base.get_obs()
+    of = {"target_position": world.position, "target_damaged": damaged, "target_held": world.held}
+    for name, numbers in of.items():
+        rows = obs["extra"][name][0].reshape(32, -1)
+        for row, thing in enumerate(things):
+            assert rows[row].tolist() == numbers[0, thing].float().reshape(-1).tolist(), (name, row)
+        assert not rows[len(things) :].any()
+    base._obs_mode = "state"
+    assert torch.equal(base._flatten_raw_obs(obs), flatten_state_dict(obs, use_torch=True))
     env.close()
 
 

@@ -125,7 +125,7 @@ def test_a_rescue_is_worth_what_was_left_of_it(rescue_at: int, damaged: bool) ->
             world.chance.tick()  # a frame in which nothing is damaged yet
         else:
             episode.advance(FRAME)
-        episode.use_hand(HERE, torch.tensor([frame < rescue_at]), HERE[0])
+        episode.use_hand(HERE, torch.tensor([frame < rescue_at]), lambda: HERE[0])
     assert episode.rescue.frame[0, 0] == rescue_at and bool(episode.rescue.damaged[0, 0]) == damaged
     assert bool(episode.damage.damaged[0, 0]) == damaged and world.safe[0].tolist() == [True, False, False, False]
 
@@ -137,7 +137,7 @@ def test_the_simulator_is_told_what_to_keep_in_place_and_when_no_more() -> None:
     away = torch.full((1, 3), 50.0)
     for shut, want in ((False, []), (True, [[0]]), (True, [[0]]), (False, [[]]), (False, [])):
         simulator.told.clear()
-        episode.use_hand(gripper, torch.tensor([shut]), away)
+        episode.use_hand(gripper, torch.tensor([shut]), lambda: away)
         assert [frozen[0].nonzero().flatten().tolist() for frozen, _ in simulator.of("freeze")] == want
 
 
@@ -170,9 +170,9 @@ def test_what_lies_in_a_cart_is_rescued_and_stays_in_the_scene() -> None:
     episode.hand.held[:] = 1
     episode.hand.closed[:] = True
     gripper = (world.position[:, 1].clone(), HERE[1])
-    episode.use_hand(gripper, torch.tensor([True]), HERE[0])
+    episode.use_hand(gripper, torch.tensor([True]), lambda: HERE[0])
     assert not episode.rescue.safe.any()
-    episode.use_hand(gripper, torch.tensor([False]), HERE[0])
+    episode.use_hand(gripper, torch.tensor([False]), lambda: HERE[0])
     assert episode.rescue.safe[0].tolist() == world.safe[0].tolist() == [False, True, False, False]
     assert not world.away.any() and not simulator.of("freeze")[-1][0].any()
 

@@ -200,6 +200,7 @@ def test_quaternions_multiply_as_rotations_do(a: tuple, b: tuple, vector: tuple)
     first, then, v = (torch.tensor(x, dtype=torch.float64) for x in (b, a, vector))
     assert torch.allclose(rotate(multiply(then, first), v), rotate(then, rotate(first, v)), atol=1e-9)
     assert torch.allclose(rotate(conjugate(then), rotate(then, v)), v, atol=1e-9)
+    assert torch.equal(rotate(then, v, back=True), rotate(conjugate(then), v))
 
 
 @pytest.mark.parametrize(("bag", "rescued"), [((2.0, 0.44, 1.0), True), ((2.0, 0.46, 1.0), False)])
@@ -213,7 +214,8 @@ def test_letting_go_over_the_bag_is_a_rescue_and_elsewhere_is_none(
     frames = (((1.0, 0.0, 0.1), True), ((2.0, 0.0, 1.0), True), ((2.0, 0.0, 1.0), False), ((2.0, 0.0, 1.0), False))
     for number, (point, shut) in enumerate(frames):
         episode.advance(1 / 30)
-        episode.use_hand((at(*point), turn), torch.tensor([shut]), at(*bag) if number >= 2 else elsewhere)
+        mouth = at(*bag) if number >= 2 else elsewhere
+        episode.use_hand((at(*point), turn), torch.tensor([shut]), lambda mouth=mouth: mouth)
         assert world.held[0].any() == (number < 2) and not (world.safe.any() and number < 2)
     assert world.safe[0].nonzero().flatten().tolist() == ([CUP] if rescued else [])
     assert episode.rescue.frame[0].tolist() == [3 if rescued else -1, -1, -1, -1, -1]

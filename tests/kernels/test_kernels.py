@@ -69,6 +69,9 @@ def test_a_repeated_launch_follows_its_arguments() -> None:
         launches.run(scale, shape, 3.0, other, there)
         assert torch.equal(there, 3 * other)
     assert torch.equal(made, 3 * given)  # what was written before stays
+    for other in (torch.rand(2, 3), torch.rand(2, 3), torch.rand(3, 2).T, torch.rand(2, 6)[:, ::2]):
+        launches.run(scale, (2, 3), 3.0, other, made)  # of the same shape, side by side or not
+        assert torch.equal(made, 3 * other)
 
 
 def test_a_struct_is_filled_anew_only_when_its_source_has_other_tensors_or_numbers() -> None:

@@ -174,6 +174,8 @@ def test_kinematics_agree_with_the_simulator_and_with_finite_differences(arena: 
         links = np.array([link.pose.p[0].numpy() for link in agent.robot.links])
         places = agent.arm_places(arm)
         assert (np.linalg.norm(places[:, None] - links, axis=-1).min(axis=1) < 1e-3).all() and len(places) > 2
+        both = agent.arm_places(np.array([agent.tucked, arm]))
+        np.testing.assert_array_equal(both, [agent.arm_places(agent.tucked), places])
         for j in range(len(arm)):
             step = np.zeros(len(arm))
             step[j] = 1e-3

@@ -89,8 +89,14 @@ def _descend(
         if (error < CONVERGED and tilt < CONVERGED / WEIGHT) or iteration - since > WITHOUT_GAIN:
             break
         rows[:3], rows[3:] = jacobian[:3], WEIGHT * jacobian[3:]
-        aim[:3], aim[3:] = off, WEIGHT * np.cross(axis, pointing)
+        aim[:3], aim[3:] = off, WEIGHT * _cross(axis, pointing)
         step = rows.T @ np.linalg.solve(rows @ rows.T + damping, aim)
         step *= min(1.0, STRIDE / max(float(np.abs(step).max()), 1e-9))
         arm = np.clip(arm + step, limits[:, 0], limits[:, 1])
     return best
+
+
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The vector product of `a` and `b`, [3] each; numpy's own takes ten times as long."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])

@@ -118,4 +118,4 @@ def _along(robot: Robot, first: Postures, last: Postures) -> tuple[NDArray[np.fl
     number = np.arange(len(owner)) - np.repeat(np.cumsum(steps) - steps, steps)
     share = (number + 0.5) / steps[owner]
     arms = first[owner] + share[:, None] * (last - first)[owner]
-    return np.array([robot.arm_places(arm, resting=True) for arm in arms]), owner
+    return robot.arm_places(arms, resting=True), owner

@@ -100,7 +100,7 @@ class Surface:
             steps = max(1, int(np.ceil(np.abs(end.arm - start.arm).max() / SPACING)))
             shares = np.arange(1, steps + 1) / steps
             arms = start.arm + shares[:, None] * (end.arm - start.arm)
-            places = np.array([self._stage.robot.arm_places(arm, resting=True) for arm in arms])
+            places = self._stage.robot.arm_places(arms, resting=True)
             self._known[key] = int(self._touching(places, start.ahead + shares * (end.ahead - start.ahead)).sum())
         return self._known[key]
 
@@ -153,7 +153,8 @@ class Surface:
 
 def _dense(places: NDArray[np.float64]) -> NDArray[np.float64]:
     """The points that are checked, [N, Q, 3], along arms whose joints are at `places`, [N, P, 3]; the hand is last."""
-    links = [places[:, :-1] + b * np.diff(places, axis=1) for b in BETWEEN]
+    along = places[:, 1:] - places[:, :-1]
+    links = [places[:, :-1] + b * along for b in BETWEEN]
     return np.concatenate([*links, places[:, -1:]], axis=1)
 
 

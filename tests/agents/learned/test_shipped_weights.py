@@ -14,7 +14,11 @@ from hazard_ms.registry import TASKS
 from tests.worlds.playground import Playground, brief
 
 FILES = sorted(SHIPPED.glob(f"*{ENDING}"))
-BROUGHT = ["rl_HazardFire-v1", "rl_HazardFlood-v1"]
+BROUGHT = [
+    *("rl_HazardFire-v1", "rl_HazardFlood-v1", "rl_HazardWind-v1"),
+    *("rl_paper_HazardFire-v1", "rl_paper_HazardFlood-v1"),
+]
+MOST = {"rl": 60, "rl_paper": 1000}  # decisions in which two targets are rescued
 LARGEST = 1_500_000  # of all files together [bytes]
 
 
@@ -36,7 +40,7 @@ def test_their_agents_play_at_once(path: Path) -> None:
     ground.look()
     player = agent(name)
     player.reset(brief(task))
-    for _ in range(60):
+    for _ in range(MOST[name]):
         if len(ground.rescued) < 2:
             ground.do(player.act(ground.decision()))
     assert ground.rescued == {"mug", "book"}
@@ -46,12 +50,14 @@ def test_their_agents_play_at_once(path: Path) -> None:
 def test_their_facts_are_those_of_their_training(path: Path) -> None:
     told = json.loads(path.with_suffix(".json").read_text())
     assert told["command"].startswith(f"hazard-ms train ppo -e {task_of(path)} ") and task_of(path) in TASKS
-    assert told["best"]["validation"] > told["best"]["greedy"], "in the sketch it is better than the plain rule"
+    # in the sketch options are better than the plain rule; the six actions have at least what the paper's learner had
+    least = told["best"]["greedy"] if path.stem.startswith("rl_Hazard") else 0.461
+    assert told["best"]["validation"] > least
 
 
 @pytest.mark.long
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("path", [path for path in FILES if path.stem.startswith("rl_")], ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", [path for path in FILES if path.stem.startswith("rl_Hazard")], ids=lambda path: path.stem)
 def test_they_reproduce_the_score_that_was_kept_with_them(path: Path) -> None:
     from hazard_ms.learning.ppo import FEW, value_of
     from hazard_ms.sketch.scenes import more_scenes

@@ -89,10 +89,12 @@ def taken(e: int, c: int, along: int, u: float, bed: wp.array2d(dtype=float), de
 @wp.func
 def limit(e: int, c: int, pitch: int, ratio: float, basin: Basin):
     """Let a cell lose no more than it holds."""
+    held = basin.depth[e, c]
+    if held <= 0.0:  # nothing leaves it
+        return
     west, east = basin.discharge_x[e, c], basin.discharge_x[e, c + pitch]
     south, north = basin.discharge_y[e, c], basin.discharge_y[e, c + 1]
     lost = ratio * (wp.max(east, 0.0) - wp.min(west, 0.0) + wp.max(north, 0.0) - wp.min(south, 0.0))
-    held = basin.depth[e, c]
     if lost > held:
         share = held / lost
         if east > 0.0:
@@ -175,10 +177,12 @@ def flow(
         for i in range(1, rows + 1):
             for j in range(1, columns + 1):
                 c = i * pitch + j
-                basin.velocity_x[e, c] = new_x[e, c]
-                basin.velocity_y[e, c] = new_y[e, c]
-                basin.discharge_x[e, c] = taken(e, c, pitch, new_x[e, c], basin.bed, basin.depth)
-                basin.discharge_y[e, c] = taken(e, c, 1, new_y[e, c], basin.bed, basin.depth)
+                if new_x[e, c] != 0.0 or basin.velocity_x[e, c] != 0.0:
+                    basin.velocity_x[e, c] = new_x[e, c]
+                    basin.discharge_x[e, c] = taken(e, c, pitch, new_x[e, c], basin.bed, basin.depth)
+                if new_y[e, c] != 0.0 or basin.velocity_y[e, c] != 0.0:
+                    basin.velocity_y[e, c] = new_y[e, c]
+                    basin.discharge_y[e, c] = taken(e, c, 1, new_y[e, c], basin.bed, basin.depth)
         came += wp.float64(let_in(e, step, outside, pitch, basin))
         for i in range(1, rows + 1):
             for j in range(1, columns + 1):

@@ -145,7 +145,7 @@ def test_the_future_is_told_anew_when_it_comes_otherwise(room: SkillEnv) -> None
 
 
 @pytest.mark.render
-@pytest.mark.parametrize("known", [False, True])
+@pytest.mark.parametrize("known", [pytest.param(False, marks=pytest.mark.long), True])
 def test_everything_in_a_small_room_is_rescued(known: bool, room: SkillEnv) -> None:
     """Without a look around by the oracle, which needs none, and with one where it must know first."""
     played = Runner(room, agent(f"oracle:known={known}")).run(0)

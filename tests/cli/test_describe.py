@@ -70,6 +70,7 @@ def test_unknown_names_are_refused(wrong: list[str], said: str, capsys: pytest.C
     assert said in capsys.readouterr().err
 
 
+@pytest.mark.long
 @pytest.mark.render
 def test_the_page_is_what_the_command_makes() -> None:
     made = page(tuple(TASKS), tuple(ROBOTS))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import signal
 import subprocess
@@ -64,7 +65,9 @@ def test_a_page_shows_what_could_be_seen(tmp_path: Path, capsys: pytest.CaptureF
 
 def test_the_scripted_server_serves_until_it_is_interrupted(capsys: pytest.CaptureFixture[str]) -> None:
     command = [sys.executable, "-m", "hazard_ms.cli", "llm", "serve-scripted"]
-    server = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    # shells let their background jobs ignore it
+    heard = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    server = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heard)
     assert server.stdout is not None
     address = server.stdout.readline().removeprefix("address: ").strip()
     with urllib.request.urlopen(f"{address}/models") as answer:

@@ -43,13 +43,8 @@ def test_gym_make_gives_batched_torch(env: Any) -> None:
     assert not bool(info["success"]) and not bool(terminated)
 
 
-@pytest.mark.parametrize(
-    "mode",
-    [
-        pytest.param("state", marks=pytest.mark.long),  # test_learners.py asks the same checker and one more
-        pytest.param("rgb+depth+segmentation", marks=pytest.mark.render),
-    ],
-)
+@pytest.mark.long  # test_learners.py asks the same checker and one more about states
+@pytest.mark.parametrize("mode", ["state", pytest.param("rgb+depth+segmentation", marks=pytest.mark.render)])
 def test_check_env_has_nothing_to_say(mode: str) -> None:
     made = NumpyEnv(gym.make("HazardFire-v1", obs_mode=mode, render_backend="none" if mode == "state" else "auto"))
     with warnings.catch_warnings(record=True) as caught:

@@ -57,6 +57,7 @@ def test_recorded_actors_are_one_dataset_each(recording: Path) -> None:
         assert all(name.startswith("env-0_") for name in actors)
 
 
+@pytest.mark.long
 def test_recorded_id_imports_the_package_by_itself(recording: Path) -> None:
     info = json.loads(recording.with_suffix(".json").read_text())["env_info"]
     assert info["env_id"] == "hazard_ms:HazardFire-v1" and info["max_episode_steps"] == 1500
@@ -95,7 +96,8 @@ def test_short_names_stand_for_modules_of_maniskill() -> None:
             full_name(wrong)
 
 
-@pytest.mark.parametrize("robot", ["hazard_fetch", pytest.param("hazard_g1", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("robot", ["hazard_fetch", "hazard_g1"])
 def test_our_robots_stand_in_scenes_of_maniskill(robot: str) -> None:
     """In a process of its own, in which nothing but `import hazard_ms` makes them known."""
     code = (

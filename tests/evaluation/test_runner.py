@@ -92,7 +92,7 @@ def test_watchers_are_told_everything_in_order(env: SkillEnv) -> None:
     assert ("decided", ("explore", "why")) in first.told and sum(frames) == env.frame
 
 
-@pytest.mark.parametrize("frame", [0, 1, 25, 70])
+@pytest.mark.parametrize("frame", [0, *(pytest.param(frame, marks=pytest.mark.long) for frame in (1, 25)), 70])
 def test_a_run_ends_at_the_frame_that_was_asked_for(env: SkillEnv, frame: int) -> None:
     """Before the first decision, in the midst of the first (60 frames) and of the second one."""
     witness = Witness()

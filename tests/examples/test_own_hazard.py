@@ -110,6 +110,7 @@ def test_it_is_filmed(tmp_path: Path) -> None:
     assert film.stat().st_size > 10_000
 
 
+@pytest.mark.long
 @pytest.mark.render
 def test_it_is_rendered_with_its_dust(tmp_path: Path) -> None:
     """120 frames on, the room is hazier than without effects: darker things are brighter."""

@@ -133,6 +133,7 @@ def test_options_that_cannot_be_are_refused(data: Path, tmp_path: Path, given: d
         train(options(data, tmp_path, given))
 
 
+@pytest.mark.long
 def test_weights_of_a_network_with_other_classes_are_taken_but_for_their_heads(data: Path, tmp_path: Path) -> None:
     """As COCO's weights have 91 classes; the network is the one that they fit."""
     torch.manual_seed(1)

@@ -187,6 +187,7 @@ def test_random_actions_leave_it_finite_and_upright(mode: str) -> None:
         made.close()
 
 
+@pytest.mark.long
 def test_the_same_seed_gives_the_same_bits(env: Any) -> None:
     """After another episode, and in a new process."""
     command = [sys.executable, "-m", "tests.worlds.episodes", "--robot", "g1", "--steps", "60", "3"]

@@ -55,6 +55,7 @@ def test_wrong_keywords_are_refused_at_once(wrong: dict[str, Any], said: str) ->
         gym.make("HazardFireSkills-v1", **wrong)
 
 
+@pytest.mark.long
 @pytest.mark.render
 def test_the_checkers_of_gymnasium_and_stable_baselines_have_nothing_to_say() -> None:
     from stable_baselines3.common.env_checker import check_env as check_for_sb3

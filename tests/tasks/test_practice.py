@@ -198,7 +198,8 @@ def test_rooms_of_the_splits_differ_and_have_what_they_need(practice: Any) -> No
         practice.scene("kitchen_a/00", True)
 
 
-@pytest.mark.parametrize("task", [TASKS[0], pytest.param(TASKS[1], marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("task", TASKS)
 def test_checkers_find_nothing(task: str) -> None:
     from stable_baselines3.common.env_checker import check_env as check_for_learners
 

@@ -57,7 +57,9 @@ def test_their_facts_are_those_of_their_training(path: Path) -> None:
 
 @pytest.mark.long
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("path", [path for path in FILES if path.stem.startswith("rl_Hazard")], ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", [path for path in FILES if path.stem.startswith("rl_Hazard")], ids=lambda path: path.stem
+)
 def test_they_reproduce_the_score_that_was_kept_with_them(path: Path) -> None:
     from hazard_ms.learning.ppo import FEW, value_of
     from hazard_ms.sketch.scenes import more_scenes

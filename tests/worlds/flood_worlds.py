@@ -2,4 +2,4 @@
 
 from hazard_ms.validation.experiments.tank import GRAVITY, SAILS, Tank, Thing, begin, frames, on_a_plane, room
 
-__all__ = ["GRAVITY", "SAILS", "Tank", "Thing", "begin", "frames", "room"]
+__all__ = ["GRAVITY", "SAILS", "Tank", "Thing", "begin", "frames", "on_a_plane", "room"]

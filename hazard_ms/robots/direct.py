@@ -20,7 +20,7 @@ from torch import Tensor
 
 
 class DirectController(BaseController):
-    """What the controllers below share: the present joints, commands in the joints' units, and the way to SAPIEN."""
+    """A controller of ManiSkill with its own way to the present joints, to commands in their units, and to SAPIEN."""
 
     def _initialize_joints(self) -> None:
         super()._initialize_joints()

@@ -85,7 +85,7 @@ def test_grip_in_water_follows_the_robots_own_numbers(depth: float) -> None:
 
 
 def test_the_robot_of_the_world_is_the_one_that_wades() -> None:
-    law, found = flood("realistic"), []
+    law, found = flood_worlds.on_a_plane(flood("realistic")), []
     for build in (HazardFetch.build, HazardG1.build):
         world = flood_worlds.room([flood_worlds.Thing((0.2, 0.2, 0.2))], agent=(19.0, 10.0))
         world.agent_build = build

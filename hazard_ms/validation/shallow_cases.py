@@ -1,4 +1,4 @@
-"""Cases of water that flows over a floor: L-28 to L-34 of docs/physics.md 2.2, exact solutions without friction."""
+"""Cases of `realistic` water: L-12 and L-28 to L-34 of docs/physics.md 2.2, exact solutions without friction."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ RITTER, STOKER = (0.5, 0.0), (0.5, 0.05)  # depths behind the dam and before it,
 
 def cases() -> Iterator[Case]:
     """All cases of this module."""
+    # (1 - cos a) / 2 with a - sin a cos a = pi s
+    logs = {0.2: 0.25407, 0.5: 0.5, 0.9: 0.84352}
+    yield from table("L-12", "draught of a log that lies, density {}", logs, 1e-3, basin.lying)
     yield Case("L-33", "water at rest over plinths", 0.0, 1e-6, basin.at_rest, "m/s", absolute=True)
     at_dam = "dam break, dry: {} at the dam"
     yield Case("L-29", at_dam.format("depth"), 0.2222, 0.05, lambda: basin.dam_break(*RITTER)[0], "m")

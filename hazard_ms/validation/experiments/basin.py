@@ -10,6 +10,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from hazard_ms.hazards.flood.buoyancy import CYLINDER
 from hazard_ms.hazards.flood.realistic import floor_plan, shallow_water
 from hazard_ms.hazards.flood.realistic.inundation import Inundation
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
@@ -155,3 +156,24 @@ def inflow(outside: float) -> float:
     basin = Basin((6.4, 6.0), law=replace(SMOOTH, outside=outside), openings=(door(),))
     basin.run(1 / 3000, 1 / 3000)
     return float(basin.state.inflow) * 3000.0
+
+
+def lying(density: float) -> float:
+    """Depth under water of the lowest point of a log that lies and floats, in units of its diameter.
+
+    `density`: over that of water. Where its push equals the weight is found by bisection.
+    """
+    log = Thing((0.2, 0.2, 0.6), 1000.0 * density, (1.55, 0.55, 0.5), (0.5 * math.pi, 0.0, 0.0), CYLINDER)
+    basin = Basin((3.0, 1.0), depth=0.5, things=(log,))
+    basin.put("surface", np.full(basin.cells, 0.5))
+    basin.state.shape[:] = CYLINDER
+    basin.state.volume[:] = 0.25 * math.pi * 0.2**2 * 0.6
+    weight = log.kilograms * GRAVITY
+    low, high = 0.4, 0.6  # heights of the axis
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        basin.world.position[0, 0, 2] = middle
+        push = basin.law.force(basin.state, basin.world, 1e-3)
+        assert push is not None
+        low, high = (middle, high) if float(push.force[0, 0, 2]) > weight else (low, middle)
+    return (0.5 - low + 0.1) / 0.2

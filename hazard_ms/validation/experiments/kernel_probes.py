@@ -5,6 +5,7 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.hazards.flood import buoyancy, slab
+from hazard_ms.hazards.flood.realistic import cylinders
 from hazard_ms.kernels import drag as drags
 from hazard_ms.kernels.boxes import axes_of
 from hazard_ms.kernels.launch import OPTIONS
@@ -27,6 +28,27 @@ def immersion(
     """Write the immersion of every body."""
     n = wp.tid()
     found = buoyancy.immersion(height[n], slope[n], axes_of(rotation[n]), 0.5 * extent[n], int(shape[n]))
+    fraction[n] = found.fraction
+    arm[n] = found.arm
+    waterline[n] = found.waterline
+    steepest[n] = found.steepest
+
+
+@wp.kernel
+def immersed(
+    height: wp.array(dtype=float),
+    slope: wp.array(dtype=wp.vec2),
+    rotation: wp.array(dtype=wp.vec4),
+    extent: wp.array(dtype=wp.vec3),
+    shape: wp.array(dtype=wp.int64),
+    fraction: wp.array(dtype=float),
+    arm: wp.array(dtype=wp.vec3),
+    waterline: wp.array(dtype=float),
+    steepest: wp.array(dtype=float),
+):
+    """Write the immersion of every body, as the preset `realistic` has it."""
+    n = wp.tid()
+    found = cylinders.immersed(height[n], slope[n], axes_of(rotation[n]), 0.5 * extent[n], int(shape[n]))
     fraction[n] = found.fraction
     arm[n] = found.arm
     waterline[n] = found.waterline

@@ -22,13 +22,16 @@ class Immersion(NamedTuple):
     steepest: Tensor  # [1/m], [N]
 
 
-def immersion(height: Tensor, slope: Tensor, rotation: Tensor, extent: Tensor, shape: Tensor) -> Immersion:
+def immersion(
+    height: Tensor, slope: Tensor, rotation: Tensor, extent: Tensor, shape: Tensor, discs: bool = False
+) -> Immersion:
     """Immersion of N bodies under a surface that is `height` [m], [N], above them and rises by `slope`, [N, 2].
 
-    `rotation` is [N, 4], `extent` [m] is [N, 3], `shape` is [N].
+    `rotation` is [N, 4], `extent` [m] is [N, 3], `shape` is [N]; `discs`: with cylinders as in `realistic`.
     """
     found = Immersion(*(torch.empty_like(t) for t in (height, extent, height, height)))
-    _launches.run(kernel_probes.immersion, (len(height),), height, slope, rotation, extent, shape, *found)
+    kernel = kernel_probes.immersed if discs else kernel_probes.immersion
+    _launches.run(kernel, (len(height),), height, slope, rotation, extent, shape, *found)
     return found
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.hazards.flood import floating
-from hazard_ms.hazards.flood.buoyancy import immersion
 from hazard_ms.hazards.flood.kernels import Flooded, body_at, wet
 from hazard_ms.hazards.flood.realistic.basin import Basin, here
+from hazard_ms.hazards.flood.realistic.cylinders import immersed
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.boxes import axes_of
 from hazard_ms.kernels.launch import OPTIONS
@@ -26,7 +26,7 @@ def immerse(dt: float, damage_fraction: float, rows: int, columns: int, flooded:
         if water.level > 0.0:
             axes, half = axes_of(bodies.rotation[e, b]), 0.5 * bodies.extent[e, b]
             kind = int(flooded.shape[e, b])
-            share = immersion(water.level - centre[2], water.slope, axes, half, kind).fraction
+            share = immersed(water.level - centre[2], water.slope, axes, half, kind).fraction
     wet(e, b, share, dt, damage_fraction, flooded)
 
 
@@ -50,7 +50,7 @@ def push(
         water = here(e, centre[0], centre[1], rows, columns, basin)
         if water.level > 0.0:
             body, height = body_at(e, b, flooded, bodies), water.level - centre[2]
-            under = immersion(height, water.slope, body.axes, 0.5 * body.extent, body.shape)
+            under = immersed(height, water.slope, body.axes, 0.5 * body.extent, body.shape)
             made = floating.push(liquid, body, under, wp.vec3(water.velocity[0], water.velocity[1], 0.0), height, dt)
     force[e, b] = made.force
     torque[e, b] = made.torque

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             item.add_marker(pytest.mark.skip(reason="no NVIDIA GPU"))
         if item.get_closest_marker("render") and rendering_backend() == "none":
             item.add_marker(pytest.mark.skip(reason="nothing draws here: hazard-ms doctor"))
+
+
+def pytest_collection_finish() -> None:
+    """Spare the garbage collector, which runs at every change of scene, all that belongs to thousands of tests."""
+    gc.freeze()
 
 
 def rendering_backend() -> str:

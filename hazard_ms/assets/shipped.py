@@ -15,6 +15,7 @@ from hazard_ms.assets.rows import Asset, read_row
 LICENCES = ("CC0-1.0", "CC-BY-3.0", "CC-BY-3.0-US", "CC-BY-4.0", "own work")
 
 
+@lru_cache(maxsize=1)
 def root() -> Path:
     """The folder of the shipped assets. Raises ValueError if there is none."""
     here = Path(__file__).resolve().parents[1]

@@ -31,6 +31,8 @@ Call = tuple[str, str | None]  # the name of a function, and the thing that it i
 class ToolsAgent(Agent):
     """Lets a model choose by a function call what to go for; what follows from that is done without asking."""
 
+    colours = False
+
     def __init__(self, base_url: str = "", model: str = "") -> None:
         """`base_url`, `model`: of the server; else those of the environment."""
         self.client = Client(endpoint(base_url, model), tries=3, seed=0)

@@ -20,6 +20,8 @@ MOST_FAILURES = 8  # with one target before it is given up: a walk that gets hal
 class Careful(Agent):
     """Fetches the most valuable known target, then the nearest, unless a hazard nearly reaches it."""
 
+    colours = False
+
     def __init__(self, caution: float = 1.2) -> None:
         """`caution`: factor on the level of a hazard over a target before it is judged."""
         self.caution = caution

@@ -45,6 +45,7 @@ class Agent(abc.ABC):
     ending: str = "stopped"  # how an episode ends that it stops
     thought: Thought | None = None  # what its last decision took, where it knows better than a watch
     counters: Mapping[str, float] = MappingProxyType({})  # its own counts of the episode, kept with the result
+    colours: bool = True  # whether it reads `decision.images.rgb`: None without, and an episode takes less time
     privileged: ClassVar[bool] = False  # whether it may see what is hidden: only subclasses of PrivilegedAgent do
 
     @abc.abstractmethod

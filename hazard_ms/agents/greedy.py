@@ -31,6 +31,8 @@ VISITS = 2  # of one landmark in search
 class Greedy(Agent):
     """Rule of the paper with the target, and in wind the container, of the lowest cost."""
 
+    colours = False
+
     def __init__(self, give_up: int = GIVE_UP) -> None:
         """`give_up`: failures after which a target is given up. Raises ValueError unless it is positive."""
         if give_up < 1:

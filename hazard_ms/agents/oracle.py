@@ -61,6 +61,8 @@ class Attempts:
 class Oracle(PrivilegedAgent):
     """Plans with the true future and acts by ordinary skills."""
 
+    colours = False
+
     def __init__(self, known: bool = False) -> None:
         """`known`: whether it plans only with the targets and carts that its map holds."""
         self._only_known = known

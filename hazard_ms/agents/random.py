@@ -16,6 +16,8 @@ class Random(Agent):
     something in sight.
     """
 
+    colours = False
+
     def reset(self, brief: Brief) -> None:
         """Begin a sequence of random numbers, fixed by `brief.random_seed`."""
         # "RAND": not the stream of another agent with the same seed

@@ -20,6 +20,8 @@ UNFINISHED = 0.25  # what a walk that ran out of frames counts as a failure: eig
 class Rule(Agent):
     """Draws targets, carts and places to look from, stays with what it has drawn, and gives up what fails."""
 
+    colours = False
+
     def __init__(self, give_up: int = GIVE_UP) -> None:
         """`give_up`: failures after which a thing is given up. Raises ValueError unless it is positive."""
         if give_up < 1:

@@ -65,6 +65,8 @@ class Recorded(PrivilegedAgent):
     Nobody's code is loaded because a file names it: only registered agents are asked.
     """
 
+    colours = False
+
     def __init__(self, actions: tuple[tuple[str, str | None], ...], name: str, waits: tuple[int, ...] = ()) -> None:
         self._left = [Action(STOP), *(Action(verb, target) for verb, target in reversed(actions))]
         self._waits = list(reversed(waits))

@@ -58,6 +58,7 @@ class Runner:
         agent that calls sys.exit.
         """
         self._start()
+        self.env.colours = self.agent.colours or any(watcher.colours for watcher in self.watchers)
         with self._timed("build"):
             decision, _ = self.env.reset(seed=seed, options=options)
         with self._timed("agent"), staying("reset of the agent"):

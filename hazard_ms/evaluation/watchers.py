@@ -19,6 +19,8 @@ LOG_EVERY = 5.0  # the same in a file, where every update is a line of its own [
 class Watcher:
     """Base of watchers: a `Runner` calls these methods; each does nothing unless it is overridden."""
 
+    colours: bool = False  # whether it reads `decision.images.rgb`, which is None where nobody does
+
     def begin(self, env: SkillEnv, decision: Decision) -> None:
         """The episode has begun, and `decision` is the first one."""
 

@@ -49,6 +49,8 @@ def decision_pictures(record: EpisodeResult, frames: Collection[int], load: tupl
 class DecisionPictures(Watcher):
     """Keeps the pictures of the decisions at some frames, in `views`."""
 
+    colours = True
+
     def __init__(self, frames: Collection[int]) -> None:
         self._frames = frozenset(frames)
         self._path: list[tuple[float, float]] = []
@@ -61,10 +63,11 @@ class DecisionPictures(Watcher):
     def decided(self, decision: Decision, action: Action, note: str) -> None:
         """Take the pictures of a decision, as it was when the agent was asked."""
         self._path.append(decision.agent_position)
-        if decision.frame in self._frames and decision.images is not None:
+        picture = None if decision.images is None else decision.images.rgb
+        if decision.frame in self._frames and picture is not None:
             agent = (*decision.agent_position, decision.agent_heading)
             plan = self._map.draw(decision.map, decision.targets, decision.names, agent, self._path, action.target)
-            self.views.setdefault(decision.frame, (_url(_small(decision.images.rgb)), _url(plan)))
+            self.views.setdefault(decision.frame, (_url(_small(picture)), _url(plan)))
 
 
 def _small(picture: Pixels) -> Pixels:

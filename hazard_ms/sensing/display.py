@@ -38,16 +38,16 @@ class Display:
         for some in cameras:
             take_over(some, lambda: int(world.frame[0]) / FRAMES_PER_SECOND)
 
-    def show(self) -> None:
-        """Show everything as it is now; call it before a picture is taken."""
-        if self.renders:
+    def show(self, effects: bool = True) -> None:
+        """Show everything as it is now; call it before a picture is taken. Without `effects`, only what has labels."""
+        if self.renders and effects:
             tell_of_first_picture(on_cpu=not self.scene.sub_scenes[0].render_system.device.is_cuda())
         world, agent = self._situation.world, self._situation.agent
         depth = extent_of_bag()[2]
         mouths, headings = agent.bag_position().tolist(), world.agent_heading.tolist()
         for bag, (x, y, z), heading in zip(self._bags, mouths, headings, strict=False):
             bag._objs[0].set_pose(pose_of((x, y, z - depth), heading).sp)
-        if self.effects is not None and self._lights is not None:
+        if effects and self.effects is not None and self._lights is not None:
             self._lights.show(world.chance.seed, world.frame)
             self.effects.light(self._lights.air())
             self.effects.update(world, self._situation.episode.states, world.frame)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import torch
@@ -12,6 +13,7 @@ from hazard_ms.episode.situation import Situation
 from hazard_ms.sensing.camera import relabel
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.hazard_image import enlarge, hazard_images, sample_points
+from hazard_ms.sensing.label_camera import LabelCamera
 from hazard_ms.sensing.labels import label_table
 from hazard_ms.sensing.target_table import TargetTable
 from hazard_ms.sensing.view import View
@@ -35,6 +37,10 @@ class Observer:
     def renders(self) -> bool:
         """Whether pictures can be taken."""
         return self.display.renders
+
+    @cached_property
+    def _labels(self) -> LabelCamera | None:
+        return LabelCamera.beside(self.camera, self.display.scene)
 
     @property
     def camera(self) -> Any:
@@ -97,11 +103,27 @@ class Observer:
 
     def look(self) -> tuple[Tensor, View]:
         """One look of the first environment's head camera: its image [H, W, 3], uint8, and the view for the map."""
-        self.show()
-        self.display.scene.update_render(update_sensors=True, update_human_render_cameras=False)
+        labels = self._labels  # made before the scene is prepared, or its first picture would be empty
+        self.display.show()
+        self._refresh()
         self.camera.capture()
-        seen = self._textures(rgb=True, depth=True, segmentation=True)
+        seen = self._textures(rgb=True, depth=labels is None, segmentation=labels is None)
+        return seen["rgb"][0], self._view(seen if labels is None else labels.take())
+
+    def glance(self) -> View:
+        """The view of a look without its image, in a third of the time."""
+        if self._labels is None:
+            return self.look()[1]
+        self.display.show(effects=False)
+        self._refresh()
+        return self._view(self._labels.take())
+
+    def _refresh(self) -> None:
+        self.display.scene.update_render(update_sensors=True, update_human_render_cameras=False)
+
+    def _view(self, seen: dict[str, Tensor]) -> View:
+        """The view of "depth" in [mm] and "segmentation", [E, H, W, 1] each."""
         params = self.camera.get_params()
         levels = self._levels(seen["depth"], params)
         labels = relabel(seen["segmentation"], self.labels)
-        return seen["rgb"][0], View.of(seen["depth"], params["intrinsic_cv"], params["cam2world_gl"], labels, levels)
+        return View.of(seen["depth"], params["intrinsic_cv"], params["cam2world_gl"], labels, levels)

@@ -5,7 +5,10 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
+from hazard_ms.robots import robot_name
+from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
 
@@ -39,6 +42,23 @@ class Brief:
     radius: float  # of the robot's base [m]
     random_seed: int  # seed of the agent's own randomness, derived one-way from that of the episode
     damaged_share: float = DAMAGED_SHARE  # of its value that a target counts when it is rescued damaged
+
+
+def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
+    """The brief of the episode of `max_frames` that has begun in the HazardEnv `base`, in the words of `labeller`."""
+    return Brief(
+        task=base.task.name,
+        text=base.task.text,
+        targets=labeller.targets(),
+        containers=labeller.containers,
+        safe_place=base.task.safe_place.name,
+        hazards=tuple(HazardBrief(h.name, h.level.title, h.level.unit, h.threatens) for h in base.task.hazards),
+        max_frames=max_frames,
+        frame_seconds=float(base.control_timestep),
+        robot=robot_name(base.agent.uid),
+        radius=base.agent.build.radius,
+        random_seed=random_seed(int(base.world.chance.seed[0])),
+    )
 
 
 def random_seed(seed: int) -> int:

@@ -56,7 +56,7 @@ class Result:
 class Images:
     """The last images of the head camera, H x W. `segmentation`: labels of `sensing.camera`; None: withheld."""
 
-    rgb: NDArray[np.uint8]  # [H, W, 3]
+    rgb: NDArray[np.uint8] | None  # [H, W, 3]; None where nobody wants colours: `Agent.colours`
     depth: NDArray[np.float32]  # [H, W], along the optical axis [m]; 0: nothing there
     segmentation: NDArray[np.int64] | None  # [H, W]
     hazard: NDArray[np.float32]  # [K, 16, 16], levels of the task's K hazards in their order, in their units

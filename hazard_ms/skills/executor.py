@@ -12,13 +12,13 @@ import torch
 
 from hazard_ms.env import HazardEnv
 from hazard_ms.env.time_limit import is_bare
-from hazard_ms.robots import robot_name, skill_control_mode
+from hazard_ms.robots import skill_control_mode
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.detection.perception import TRUTH
 from hazard_ms.sensing.detection.perception import perception as perception_of
 from hazard_ms.sensing.semantic_map import SemanticMap, cells_for
 from hazard_ms.skills.actions import skill
-from hazard_ms.skills.brief import Brief, HazardBrief, random_seed
+from hazard_ms.skills.brief import Brief, brief_of
 from hazard_ms.skills.context import LowLevel, Skill, Stage
 from hazard_ms.skills.decision import (
     DROP,
@@ -70,6 +70,7 @@ class SkillEnv:
         self.watch = watch
         self._perception = perception_of(perception)
         self.until_frame: int | None = None
+        self.colours = True  # whether decisions have pictures with colours: other looks take a third of the time
         self.look_seconds = 0.0  # wall time spent in looks since it was made
         self.stage: Stage
         self._over = True
@@ -110,20 +111,7 @@ class SkillEnv:
 
     def brief(self) -> Brief:
         """Everything that an agent is told before the episode: nothing that shows which scene it is."""
-        base = self.base
-        return Brief(
-            task=base.task.name,
-            text=base.task.text,
-            targets=self._labeller.targets(),
-            containers=self._labeller.containers,
-            safe_place=base.task.safe_place.name,
-            hazards=tuple(HazardBrief(h.name, h.level.title, h.level.unit, h.threatens) for h in base.task.hazards),
-            max_frames=self.max_frames,
-            frame_seconds=float(base.control_timestep),
-            robot=robot_name(base.agent.uid),
-            radius=base.agent.build.radius,
-            random_seed=random_seed(int(base.world.chance.seed[0])),
-        )
+        return brief_of(self.base, self._labeller, self.max_frames)
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Decision, dict[str, Any]]:
         """Start an episode, as the environment's own reset, which says what it refuses, with a first look."""
@@ -139,7 +127,7 @@ class SkillEnv:
         self._images: Images | None = None
         self._last: tuple[Action | None, Result | None] = (None, None)
         self._reward, self._over = 0.0, False
-        self.look()
+        self.look(self.colours)
         return self.decision(), info
 
     def step(self, action: Action) -> tuple[Decision, float, bool, bool, dict[str, Any]]:
@@ -168,7 +156,7 @@ class SkillEnv:
         truncated = self._broken_off()
         self._over = terminated or truncated
         if not bool(info["sim_error"][0]):
-            self.look()
+            self.look(self.colours)
         info["result"] = result
         return self.decision(), self._reward, terminated, truncated, info
 
@@ -211,11 +199,15 @@ class SkillEnv:
         last = self.max_frames if self.until_frame is None else min(self.until_frame, self.max_frames)
         return self.frame >= last or bool(self.base.episode.sim_error[0])
 
-    def look(self) -> None:
-        """Look through the head camera and enter what is seen into the map."""
+    def look(self, colours: bool = False) -> None:
+        """Look through the head camera, with `colours` or where a detector needs them, and enter what is seen."""
         start, world, base, labeller = time.perf_counter(), self.base.world, self.base, self._labeller
-        picture, true = base.observer.look()
-        rgb = picture.cpu().numpy().copy()
+        rgb = None
+        if colours or labeller.needs_colours:
+            picture, true = base.observer.look()
+            rgb = picture.cpu().numpy().copy()
+        else:
+            true = base.observer.glance()
         view = labeller.view(rgb, true, self.frame)
         gone, damaged = labeller.unmapped(), labeller.damaged(base.episode.damage.damaged[0].cpu().numpy())
         where = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))

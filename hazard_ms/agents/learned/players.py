@@ -54,6 +54,7 @@ def check_hazards(ranges: Sequence[tuple[float, float]], brief: Brief) -> None:
 class Learned(Agent):
     """Asks a policy which option is best, and plays it to its end. It sees nothing but what all agents see."""
 
+    colours = False
     name: ClassVar[str]  # with which its files begin
     made_by: ClassVar[str]  # command that trains such policies
 
@@ -124,6 +125,7 @@ class RlPaper(Agent):
     would often lead nowhere. A choice that cannot be taken is drawn anew, and counted as `impossible`.
     """
 
+    colours = False
     name, made_by = "rl_paper", "train ppo --actions paper"
 
     def __init__(self, weights: str = "") -> None:

@@ -30,7 +30,7 @@ from hazard_ms.agents.llm.choices import FULL, LETTERS, LOOK, MOVES, PICK, PUT, 
 from hazard_ms.agents.llm.client import Client, NoAnswerError, RefusedError
 from hazard_ms.agents.llm.endpoint import endpoint
 from hazard_ms.agents.llm.memory import Memory
-from hazard_ms.agents.llm.prompt import FORECAST, HISTORIES, VERSIONS, Message, messages, system_text
+from hazard_ms.agents.llm.prompt import FORECAST, HISTORIES, IMAGE, VERSIONS, Message, messages, system_text
 from hazard_ms.agents.llm.rules import RULES
 from hazard_ms.agents.llm.scene_text import Block, block, plain_names
 from hazard_ms.agents.llm.trace import Trace
@@ -80,6 +80,7 @@ class Llm(Agent):
     def __post_init__(self) -> None:
         """Check all parameters, and see that the server is there. Raises ValueError for what cannot be used."""
         one_of(self.version, VERSIONS, "version")
+        self.colours = self.version == IMAGE
         one_of(self.way, WAYS, "way")
         one_of(self.moves, MOVES, "moves")
         one_of(self.stand_in, RULES, "stand_in")

@@ -14,6 +14,8 @@ from hazard_ms.skills.decision import Action, Decision
 class Greedy(Agent):
     """Takes the option of the lowest cost over value, which is halved where the hazard's level, continued, harms it."""
 
+    colours = False
+
     def reset(self, brief: Brief) -> None:
         """Begin an episode. Nothing is random."""
         self._memory = Memory(brief)

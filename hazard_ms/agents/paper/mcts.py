@@ -17,6 +17,8 @@ MOST_SIMULATIONS = 10**6  # of a decision: any larger number must be a mistake [
 class Mcts(Agent):
     """Tree search with costs over predicted values, as the text of the paper says, or costs alone, as its code does."""
 
+    colours = False
+
     def __init__(self, value: bool = True, simulations: int = SIMULATIONS) -> None:
         """`value`: divide costs by predicted values; `simulations`: of each decision.
 

@@ -15,6 +15,8 @@ from hazard_ms.spec.checks import whole
 class MctsDiff(Agent):
     """Tree search with costs over values, doubled where the level changed between the last two sightings."""
 
+    colours = False
+
     def __init__(self, simulations: int = SIMULATIONS) -> None:
         """`simulations`: of each decision. Raises ValueError unless it is a positive whole number."""
         self._simulations = whole(simulations, 1, MOST_SIMULATIONS, "simulations")

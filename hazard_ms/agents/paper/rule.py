@@ -19,6 +19,8 @@ class Rule(Agent):
     They are: look around (counted twice), pick up, drop, and walk to a target or cart, which is drawn next.
     """
 
+    colours = False
+
     def reset(self, brief: Brief) -> None:
         """Begin a sequence of random numbers, fixed by `brief.random_seed`."""
         self._memory = Memory(brief)

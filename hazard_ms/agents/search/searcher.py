@@ -32,6 +32,8 @@ class First(NamedTuple):
 class Searcher(Agent):
     """An agent that forms beliefs, plans the rest of the rescue at each decision, and does what comes first."""
 
+    colours = False
+
     def __init__(self, weights: Weights, reach: float, give_up: int) -> None:
         """Choose how it weighs things.
 

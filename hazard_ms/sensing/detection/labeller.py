@@ -28,6 +28,7 @@ class Labeller:
     """The things of an episode of one environment, as its agent knows them: here, the truth."""
 
     withheld = False  # whether agents are kept from the labels of pictures
+    needs_colours = False  # whether each look must show colours
 
     def __init__(self, world: World, containers: Sequence[str] = ()) -> None:
         """Begin an episode in `world`; `containers`: names of its carts."""
@@ -36,10 +37,10 @@ class Labeller:
         self.containers: tuple[str, ...] = tuple(containers)  # names of those that are known to exist
         self.loose: NDArray[np.bool_] = world.movable[0].cpu().numpy()  # by the agent's index: whether it can move
 
-    def view(self, rgb: NDArray[np.uint8], true: View, frame: int) -> View:
+    def view(self, rgb: NDArray[np.uint8] | None, true: View, frame: int) -> View:
         """The view that the agent gets of the picture `rgb`, [H, W, 3], of `frame`, whose labels are the `true` ones.
 
-        Labels of its view are the agent's indices.
+        Labels of its view are the agent's indices. There is no picture where the class needs no colours.
         """
         return true
 
@@ -82,6 +83,7 @@ class DetectingLabeller(Labeller):
     """Base of labellers that ask a detector; labels that are neither things nor the robot's own are STRUCTURE."""
 
     withheld = True
+    needs_colours = True
 
     def __init__(self, world: World, containers: Sequence[str], detector: Detector, threshold: float) -> None:
         """Begin an episode in `world`; detections of `detector` with a score below `threshold` do not count."""
@@ -93,8 +95,9 @@ class DetectingLabeller(Labeller):
         furniture = [name for name, row in CATEGORIES.items() if row.kind == "fixture"]
         detector.begin(tuple(dict.fromkeys([*wanted, *furniture])))
 
-    def _detect(self, rgb: NDArray[np.uint8], true: View, frame: int) -> list[Detection]:
+    def _detect(self, rgb: NDArray[np.uint8] | None, true: View, frame: int) -> list[Detection]:
         """What counts of the detections in a picture, the surest last. Raises ValueError for masks of another kind."""
+        assert rgb is not None
         assert true.labels is not None
         if isinstance(self._detector, PrivilegedDetector):
             seed = int(self._world.chance.seed[0])
@@ -124,7 +127,7 @@ class PublishedLabeller(DetectingLabeller):
     Detections that overlap none are dropped. Whether things are damaged is the truth, too.
     """
 
-    def view(self, rgb: NDArray[np.uint8], true: View, frame: int) -> View:
+    def view(self, rgb: NDArray[np.uint8] | None, true: View, frame: int) -> View:
         assert true.labels is not None
         own, boxes = self._own(true.labels), boxes_of(true.labels)
         labels = blank(own, true.depth)

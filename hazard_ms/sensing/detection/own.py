@@ -59,7 +59,7 @@ class OwnLabeller(DetectingLabeller):
         self._lost: list[int] = []
         self._frame = 0  # of the last look
 
-    def view(self, rgb: NDArray[np.uint8], true: View, frame: int) -> View:
+    def view(self, rgb: NDArray[np.uint8] | None, true: View, frame: int) -> View:
         assert true.labels is not None
         self._frame, own = frame, self._own(true.labels)
         found = self._detect(rgb, true, frame)

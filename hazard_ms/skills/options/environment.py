@@ -82,6 +82,7 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
             settings["max_episode_steps"] = whole(max_frames, 1, 2**31, "max_frames")
         settings.setdefault("effects", "off" if render_mode is None else "full")  # effects only change pictures
         self.skills = SkillEnv.make(task, reward_mode="none", render_mode=render_mode, **settings)
+        self.skills.colours = False
         base = self.skills.base
         ranges = [(hazard.level.low, hazard.level.high) for hazard in base.task.hazards]
         self.encoder = Encoder(ranges, base.agent.build.radius)

@@ -1,7 +1,6 @@
 """The curve of PPO that learns to pick things up: `./run python results/ppo_pick_up.py` draws docs/ppo_pick_up.svg.
 
-ppo_pick_up.csv beside this file is what `examples/ppo_low_level.py --task pick_up --minutes 60` had written when it was
-stopped after 48 minutes.
+ppo_pick_up.csv beside this file is what `examples/ppo_low_level.py --task pick_up --minutes 60` has written.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ def main() -> None:
         rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
     figure, ax = pyplot.subplots(figsize=(6.0, 3.2))
     ax.plot([row["frames"] / 1000.0 for row in rows], [100.0 * row["success"] for row in rows])
-    ax.set(xlabel="frames, thousands", ylabel="success of the last 100 [%]", ylim=(0, 100), xlim=(0, None))
+    ax.set(xlabel="frames, thousands", ylabel="success of the last 100 [%]", ylim=(0, 102), xlim=(0, None))
     ax.grid(alpha=0.3)
     figure.tight_layout()
     figure.savefig(CHART, metadata={"Date": None})

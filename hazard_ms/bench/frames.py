@@ -25,6 +25,7 @@ from hazard_ms.spec.checks import whole
 PHASES = ("read", "force", "push", "physics", "advance", "hand", "robot", "observe")
 HOOKS = ("force", "advance")  # what hazards do, "damaged" included
 FEWEST, MOST = 20, 10**6  # frames to average over [ours]
+LOOKS = 20  # of each kind to take a median of [ours]
 
 
 class Stopwatch:
@@ -124,6 +125,7 @@ def resets(env_id: str, **keywords: Any) -> str:
 def greedy_episode(env_id: str, seed: int, **keywords: Any) -> str:
     """The line on a whole greedy episode, after a first look that compiles the shaders."""
     made = SkillEnv.make(env_id, **keywords)
+    made.colours = False  # as greedy plays it
     made.reset(seed=seed)
     made.step(Action(EXPLORE))
     start = time.perf_counter()
@@ -133,6 +135,21 @@ def greedy_episode(env_id: str, seed: int, **keywords: Any) -> str:
     per = f"{made.max_frames * seconds / made.frame:.1f} s per {made.max_frames} frames"
     what = f"{made.frame} frames, {len(played.decisions)} decisions ({played.ended})"
     return f"greedy episode, seed {seed}: {what} in {seconds:.1f} s: {per}"
+
+
+def looks(env_id: str, seed: int, **keywords: Any) -> str:
+    """The line on looks of the head camera with and without colours, taken in turn; each enters what it sees."""
+    made = SkillEnv.make(env_id, **keywords)
+    made.reset(seed=seed)
+    spans: dict[bool, list[float]] = {False: [], True: []}
+    for _ in range(LOOKS + 1):
+        for colours, row in spans.items():
+            start = time.process_time()
+            made.look(colours)
+            row.append(time.process_time() - start)
+    made.close()
+    plain, full = (1e3 * np.median(row[1:]) for row in spans.values())
+    return f"look, medians of {LOOKS} in turn: {plain:.1f} ms of processor time, with colours {full:.1f} ms"
 
 
 def report(env_id: str, frames: int, seed: int, episode: bool, physics: str = "paper", severity: str = "severe") -> str:
@@ -153,4 +170,6 @@ def report(env_id: str, frames: int, seed: int, episode: bool, physics: str = "p
         lines += [f"  {speed}, hazards {found['hooks']:.1%} of it", "  " + resets(env_id, **keywords, **strong)]
         lines += [f"  {name:10s} {us:9.1f} us  {100 * us / total:5.1f} %" for name, us in found["phases_us"].items()]
         lines.append("")
-    return "\n".join([*lines, greedy_episode(env_id, seed, **strong)] if episode else lines)
+    if episode:
+        lines += [looks(env_id, seed, **strong), greedy_episode(env_id, seed, **strong)]
+    return "\n".join(lines)

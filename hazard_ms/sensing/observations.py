@@ -39,7 +39,7 @@ class Observer:
         return self.display.renders
 
     @cached_property
-    def _labels(self) -> LabelCamera | None:
+    def _label_camera(self) -> LabelCamera | None:
         return LabelCamera.beside(self.camera, self.display.scene)
 
     @property
@@ -103,7 +103,7 @@ class Observer:
 
     def look(self) -> tuple[Tensor, View]:
         """One look of the first environment's head camera: its image [H, W, 3], uint8, and the view for the map."""
-        labels = self._labels  # made before the scene is prepared, or its first picture would be empty
+        labels = self._label_camera  # made before the scene is prepared, or its first picture would be empty
         self.display.show()
         self._refresh()
         self.camera.capture()
@@ -112,11 +112,11 @@ class Observer:
 
     def glance(self) -> View:
         """The view of a look without its image, in a third of the time."""
-        if self._labels is None:
+        if self._label_camera is None:
             return self.look()[1]
         self.display.show(effects=False)
         self._refresh()
-        return self._view(self._labels.take())
+        return self._view(self._label_camera.take())
 
     def _refresh(self) -> None:
         self.display.scene.update_render(update_sensors=True, update_human_render_cameras=False)

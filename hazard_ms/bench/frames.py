@@ -31,9 +31,10 @@ LOOKS = 20  # of each kind to take a median of [ours]
 class Stopwatch:
     """Adds up the time spent in wrapped callables, by phase; a phase inside another counts for itself only."""
 
-    def __init__(self) -> None:
+    def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
         self.seconds: dict[str, float] = defaultdict(float)
         self._inner = [0.0]
+        self._clock = clock
 
     def wrap(self, owner: Any, method: str, phase: str) -> None:
         """Count the time spent in a `method` of `owner` as that of `phase`."""
@@ -41,11 +42,11 @@ class Stopwatch:
 
         def timed(*args: Any, **kwargs: Any) -> Any:
             self._inner.append(0.0)
-            start = time.perf_counter()
+            start = self._clock()
             try:
                 return plain(*args, **kwargs)
             finally:
-                spent = time.perf_counter() - start
+                spent = self._clock() - start
                 self.seconds[phase] += spent - self._inner.pop()
                 self._inner[-1] += spent
 
@@ -73,16 +74,22 @@ def phases(env_id: str, frames: int, seed: int, **keywords: Any) -> dict[str, An
     return {**made, **speed, "phases_us": rows}
 
 
-def watched(base: Any) -> Stopwatch:
-    """A stopwatch on all phases of a frame of a HazardEnv."""
-    watch = Stopwatch()
-    watch.wrap(base.world, "read", "read")
-    watch.wrap(base.world, "push", "push")
+def watched_maniskill(base: Any, clock: Callable[[], float] = time.perf_counter) -> Stopwatch:
+    """A stopwatch, by `clock` [s], on those phases of a frame that every environment of ManiSkill has."""
+    watch = Stopwatch(clock)
     watch.wrap(base.scene, "step", "physics")
-    watch.wrap(base.episode, "use_hand", "hand")
     watch.wrap(base.agent, "set_action", "robot")
     watch.wrap(base.agent, "before_simulation_step", "robot")
     watch.wrap(base, "get_obs", "observe")
+    return watch
+
+
+def watched(base: Any, clock: Callable[[], float] = time.perf_counter) -> Stopwatch:
+    """A stopwatch, by `clock` [s], on all phases of a frame of a HazardEnv."""
+    watch = watched_maniskill(base, clock)
+    watch.wrap(base.world, "read", "read")
+    watch.wrap(base.world, "push", "push")
+    watch.wrap(base.episode, "use_hand", "hand")
     for hazard in base.task.hazards:
         watch.wrap(hazard, "force", "force")
         watch.wrap(hazard, "advance", "advance")

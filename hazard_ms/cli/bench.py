@@ -10,6 +10,7 @@ from hazard_ms.evaluation.choices import PRESETS, SEVERITIES, flag, offer
 
 PICTURES_SHARE = 10  # frames for one picture: pictures take that much longer [ours]
 FEWEST_PICTURES = 3  # of which a median is taken [ours]
+OTHERS = ("stock",)  # what frames and resets can be compared with
 
 
 def bench(
@@ -22,6 +23,9 @@ def bench(
     effects: Annotated[bool, flag("--effects", old="looks")] = False,
     kernels: bool = False,
     pickups: bool = False,
+    against: Annotated[str | None, offer(OTHERS)] = None,
+    resets: bool = False,
+    scaling: bool = False,
     robot: Annotated[str, offer(registry.ROBOTS), flag("-r")] = "fetch",
     count: Annotated[int, flag("-n")] = 500,
     output: Annotated[Path | None, flag("-o", "--output", old="out")] = None,
@@ -38,7 +42,10 @@ def bench(
         effects: Only print what the effects of each mode cost in a picture.
         kernels: Only print what the kernels of flood and wind cost for 1,024 environments of 64 bodies on one thread.
         pickups: Only print how often picking up and putting away work, and how many frames they take.
-        robot: Robot that picks up.
+        against: Only print what frames and resets of all tasks cost beside those of ManiSkill's own PickCube-v1.
+        resets: Only print what 200 resets over 20 scenes cost, and whether their episodes start as freshly built ones.
+        scaling: Only print how frames grow with the number of things, and with the size of pictures.
+        robot: Robot that picks up, or whose scenes are reset.
         count: Number of targets that it picks up.
         output: File for what each pick-up and drop cost, one JSON object a line.
     """
@@ -46,6 +53,19 @@ def bench(
         from hazard_ms.bench.kernels import report as report_kernels
 
         print(report_kernels())
+    elif against:
+        from hazard_ms.bench.stock import report as report_stock
+
+        print(report_stock(frames, seed))
+    elif resets:
+        from hazard_ms.bench.resets import report as report_resets
+        from hazard_ms.bench.turns import Case
+
+        print(report_resets([Case(env_id, robot, physics)]))
+    elif scaling:
+        from hazard_ms.bench.scaling import report as report_scaling
+
+        print(report_scaling(frames, seed))
     elif pickups:
         _pickups(env_id, robot, count, seed, output)
     elif effects:

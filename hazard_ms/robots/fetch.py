@@ -126,7 +126,6 @@ class HazardFetch(PlanarRobot, Fetch):
             for shape in (s for body in link._bodies for s in body.collision_shapes):
                 # they lie within the base's own hull and would scrape on the floor
                 shape.set_collision_groups([0, 0, 0, 0])
-        self.make_model()
         self._hand = self.link_number(self.tcp)
         self._along = [*(self.link_number(self.robot.links_map[name]) for name in ALONG), self._hand]
 

@@ -150,7 +150,6 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
         self.base_link = self.robot.links_map["base_link"]
         self._arms = [self.joint_numbers([*BODY, *names]) for names in ARMS]
         self._tcps = (self.right_tcp, self.left_tcp)
-        self.make_model()
         self._hands = [self.link_number(tcp) for tcp in self._tcps]
         self._along = [
             [*(self.link_number(self.robot.links_map[f"{side}_{part}_link"]) for part in ALONG), hand]

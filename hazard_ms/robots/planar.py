@@ -7,6 +7,7 @@ names its joints and its resting posture; a mixin for agents of ManiSkill.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -191,9 +192,10 @@ class PlanarRobot(Robot):
         """Positions of all joints of the first environment [rad] or [m], [Joints]."""
         return self.robot.get_qpos()[0].cpu().numpy().astype(np.float64)
 
-    def make_model(self) -> None:
-        """Prepare the model for `hand_kinematics`. Call it once, when the robot is built."""
-        self._model = self.robot._objs[0].create_pinocchio_model()
+    @cached_property
+    def _model(self) -> Any:
+        """SAPIEN's model of the robot's kinematics: made when a skill first asks, since many episodes play none."""
+        return self.robot._objs[0].create_pinocchio_model()
 
     def link_number(self, link: Any) -> int:
         """Index of `link` among the robot's links."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -13,6 +14,12 @@ def without_visuals(urdf: Path) -> Path:
 
     SAPIEN's loader makes a material for each visual shape, which fails without a Vulkan device.
     """
+    return kept_folder("robots", _bare(urdf)) / urdf.name
+
+
+@cache
+def _bare(urdf: Path) -> dict[str, str]:
+    """The files of that copy, text by name: derived once, since a robot is built for every scene."""
     tree = ElementTree.parse(urdf)
     for link in tree.getroot().iter("link"):
         for visual in link.findall("visual"):
@@ -23,4 +30,4 @@ def without_visuals(urdf: Path) -> Path:
     collisions = urdf.with_suffix(".srdf")  # pairs of links that may overlap; the loader reads it from beside the URDF
     if collisions.exists():
         files[collisions.name] = collisions.read_text(encoding="utf-8")
-    return kept_folder("robots", files) / urdf.name
+    return files

@@ -48,10 +48,9 @@ def fires(
         & (apart >= MIN_TARGET_DISTANCE)
         & (np.hypot(x - agent.position[0], y - agent.position[1]) >= MIN_AGENT_DISTANCE)
     )
-    paths = _paths(free, agent, targets, size)
     found: list[Vec2] = []
     for k in range(number):
-        near = (apart <= MAX_TARGET_DISTANCE) if k == 0 or draw.whole(0, 1) else paths
+        near = (apart <= MAX_TARGET_DISTANCE) if k == 0 or draw.whole(0, 1) else _paths(free, agent, targets, size)
         choices = np.argwhere(allowed & near)
         if len(choices) == 0:
             choices = np.argwhere(allowed & (apart <= MAX_TARGET_DISTANCE))

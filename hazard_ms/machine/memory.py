@@ -1,4 +1,4 @@
-"""What Python's garbage collector need not look at.
+"""Objects that Python's garbage collector need not look at.
 
 ManiSkill collects all garbage whenever a scene is built or closed. That looks at every object of the process, of which
 nearly all are functions and classes of imported modules: it was three quarters of the time of a change of scene.

@@ -22,6 +22,7 @@ def bench(
     effects: Annotated[bool, flag("--effects", old="looks")] = False,
     kernels: bool = False,
     pickups: bool = False,
+    vector: bool = False,
     robot: Annotated[str, offer(registry.ROBOTS), flag("-r")] = "fetch",
     count: Annotated[int, flag("-n")] = 500,
     output: Annotated[Path | None, flag("-o", "--output", old="out")] = None,
@@ -38,6 +39,7 @@ def bench(
         effects: Only print what the effects of each mode cost in a picture.
         kernels: Only print what the kernels of flood and wind cost for 1,024 environments of 64 bodies on one thread.
         pickups: Only print how often picking up and putting away work, and how many frames they take.
+        vector: Only print how many frames a second environments in processes play, one and several at once.
         robot: Robot that picks up.
         count: Number of targets that it picks up.
         output: File for what each pick-up and drop cost, one JSON object a line.
@@ -48,6 +50,10 @@ def bench(
         print(report_kernels())
     elif pickups:
         _pickups(env_id, robot, count, seed, output)
+    elif vector:
+        from hazard_ms.bench.vector import report as report_vector
+
+        print(report_vector(env_id, frames, seed))
     elif effects:
         from hazard_ms.bench.effects import report as report_effects
 

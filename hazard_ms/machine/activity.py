@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 LEAST = 0.02  # processor time that is no work: threads that wake up for a moment [s] [ours]
-TICKS = 100  # of processor time in a second, in Linux' tables
+TICKS = 100  # of processor time in a second, in Linux's tables
 WAITS_ITS_TURN = "RD"  # states of a process that runs, could run, or waits for a disk
 
 
@@ -15,21 +15,26 @@ class Activity:
 
     def __init__(self, pid: int) -> None:
         """Watch the process `pid` from now on."""
-        self._file = Path(f"/proc/{pid}/stat")
-        self._since, self._spent = time.monotonic(), self._read()[1]
+        self._pid, self._since, self._spent = pid, time.monotonic(), _state(pid)[1]
 
     def idle_seconds(self) -> float:
         """Time for which it has done nothing, as far as calls of this method have seen [s]."""
-        state, spent = self._read()
+        state, spent = _state(self._pid)
         now = time.monotonic()
         if state in WAITS_ITS_TURN or spent - self._spent > LEAST:
             self._since, self._spent = now, spent
         return now - self._since
 
-    def _read(self) -> tuple[str, float]:
-        """State of its main thread, and processor time of all, with those of processes that it started and ended."""
-        try:
-            fields = self._file.read_text().rpartition(")")[2].split()
-        except OSError:
-            return "R", 0.0
-        return fields[0], sum(map(int, fields[11:15])) / TICKS
+
+def processor_seconds(pid: int) -> float:
+    """Processor time that a process has used, with those that it started and that have ended [s]; 0 without /proc."""
+    return _state(pid)[1]
+
+
+def _state(pid: int) -> tuple[str, float]:
+    """State of the main thread of a process, and processor time of all its threads [s]."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return "R", 0.0
+    return fields[0], sum(map(int, fields[11:15])) / TICKS

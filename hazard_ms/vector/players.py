@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import contextlib
 import multiprocessing
+import selectors
 import signal
 import time
 from collections.abc import Mapping, Sequence
-from multiprocessing.connection import wait
 from typing import Any
 
 from gymnasium.vector import AutoresetMode
@@ -102,10 +102,12 @@ class Processes:
         ends = [num_envs * k // count for k in range(count + 1)]
         self._ticket, self._all = 0, list[Process]()
         self._board: Board | None = None
+        self._selector = selectors.DefaultSelector()
         try:
             for k in range(count):
                 share = Share(k, range(ends[k], ends[k + 1]), env_id, keywords, autoreset)
                 self._all.append(Process(share, max(1, cores() // count)))
+                self._selector.register(self._all[k].connection, selectors.EVENT_READ, self._all[k])
             answers = self._gather(self._all, START, start=True)
             self.spaces: Spaces = answers[0]
             self._share_board(num_envs)
@@ -147,19 +149,19 @@ class Processes:
 
     def _gather(self, asked: Sequence[Process], patience: float, start: bool = False) -> dict[int, Any]:
         """The answers of processes, by their number, without those to earlier questions that were broken off."""
-        waiting, answers = {p.connection: p for p in asked}, dict[int, Any]()
+        waiting, answers = {p.index: p for p in asked}, dict[int, Any]()
         end = time.monotonic() + patience
         while waiting:
-            ready = wait(list(waiting), LOOK)
-            for connection in ready:
-                process = waiting[connection]  # type: ignore[index]
+            ready = self._selector.select(LOOK)
+            for key, _ in ready:
+                process: Process = key.data
                 try:
                     ticket, answer = process.connection.recv()
                 except (EOFError, OSError):
                     self._lose(process, process.death() + GUARD * start)
                 if ticket == self._ticket:
                     answers[process.index] = answer
-                    del waiting[process.connection]
+                    del waiting[process.index]
                     if start:
                         _raise_if_failed(answer)
             for process in waiting.values() if not ready else ():
@@ -180,12 +182,18 @@ class Processes:
 
     def end(self, at_once: bool = False) -> None:
         """Let all processes end, or kill them `at_once`; those that do not end by themselves are killed, too."""
+        self._selector.close()
         for process in self._all:
             process.connection.close()  # they end when nobody can ask them any more
         until = time.monotonic() + (0.0 if at_once else GOODBYE)
         for process in self._all:
             process.end(until)
         self._all.clear()
+
+    @property
+    def pids(self) -> tuple[int, ...]:
+        """The numbers that the system gave to the processes."""
+        return tuple(process.pid for process in self._all)
 
     @property
     def ended(self) -> bool:

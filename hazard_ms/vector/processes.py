@@ -99,6 +99,11 @@ class ProcessVectorEnv(gym.vector.VectorEnv[Any, Any, NDArray[Any]]):
         ends = np.array(terminated, np.bool_), np.array(truncated, np.bool_)
         return self._processes.seen(), np.array(rewards, np.float64), *ends, self._together(infos)
 
+    @property
+    def pids(self) -> tuple[int, ...]:
+        """The numbers that the system gave to the processes, [P]."""
+        return self._processes.pids
+
     def render(self) -> tuple[Any, ...]:
         """The picture of each environment."""
         return self.call("render")

@@ -36,7 +36,6 @@ def test_frames_of_all_environments_count_and_processor_time_leaves_waiting_out(
         turns.play()
     assert envs.steps == 6 * TURN and len(turns.spans) == 5
     assert turns.rate <= 3 / 0.002
-    assert turns.rate == pytest.approx(3 * TURN / min(turns.spans))
     assert 0.001 / 3 <= turns.cost < 0.002 / 3
 
 

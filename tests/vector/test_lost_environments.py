@@ -23,7 +23,7 @@ ROOT = Path(__file__).parents[2]
 @pytest.mark.parametrize("action", [DIE, SLEEP])
 def test_who_dies_or_hangs_in_a_step_is_named_soon(action: int) -> None:
     before = pids()
-    with naughty(5) as envs:
+    with naughty(5, patience=20.0) as envs:
         envs.reset(seed=0)
         start = time.monotonic()
         with pytest.raises(LostEnvironmentError, match="environment 3 is lost, and with it 2, 4: its process") as lost:
@@ -40,7 +40,7 @@ def test_who_dies_or_hangs_in_a_step_is_named_soon(action: int) -> None:
 def test_whose_process_is_killed_or_stopped_is_named_soon(how: signal.Signals) -> None:
     """The one that goes on computes for ever, so that it is not its answer that ends the wait."""
     before = pids()
-    with naughty(2) as envs:
+    with naughty(2, patience=20.0) as envs:
         envs.reset(seed=0)
         victim = max(pids() - before)  # started last
         threading.Timer(0.5, os.kill, (victim, how)).start()

@@ -12,6 +12,7 @@ Third parties add tasks, hazards, robots, agents and detectors with `register_ta
 
 from __future__ import annotations
 
+import importlib
 from typing import Any
 
 from hazard_ms.registry import load, register_agent, register_hazard, register_robot, register_task
@@ -59,6 +60,8 @@ __all__ = [  # noqa: PLE0604
 
 
 def __getattr__(name: str) -> Any:
+    if name == "vector":  # hazard_ms.vector.make
+        return importlib.import_module("hazard_ms.vector")
     if name not in _LAZY:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return globals().setdefault(name, load(_LAZY[name]))

@@ -26,6 +26,7 @@ def bench(
     against: Annotated[str | None, offer(OTHERS)] = None,
     resets: bool = False,
     scaling: bool = False,
+    vector: bool = False,
     robot: Annotated[str, offer(registry.ROBOTS), flag("-r")] = "fetch",
     count: Annotated[int, flag("-n")] = 500,
     output: Annotated[Path | None, flag("-o", "--output", old="out")] = None,
@@ -45,6 +46,7 @@ def bench(
         against: Only print what frames and resets of all tasks cost beside those of ManiSkill's own PickCube-v1.
         resets: Only print what 200 resets over 20 scenes cost, and whether their episodes start as freshly built ones.
         scaling: Only print how frames grow with the number of things, and with the size of pictures.
+        vector: Only print how many frames a second environments in processes play, one and several at once.
         robot: Robot that picks up, or whose scenes are reset.
         count: Number of targets that it picks up.
         output: File for what each pick-up and drop cost, one JSON object a line.
@@ -68,6 +70,10 @@ def bench(
         print(report_scaling(frames, seed))
     elif pickups:
         _pickups(env_id, robot, count, seed, output)
+    elif vector:
+        from hazard_ms.bench.vector import report as report_vector
+
+        print(report_vector(env_id, frames, seed))
     elif effects:
         from hazard_ms.bench.effects import report as report_effects
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import threading
+from collections.abc import Iterator
 
 
 def end_with_parent() -> None:
@@ -20,3 +22,21 @@ def _watch() -> None:
     if parent is not None:
         parent.join()
         os._exit(1)
+
+
+@contextlib.contextmanager
+def few_threads(drawing: int) -> Iterator[None]:
+    """Let processes that are started meanwhile compute with one thread, and draw on the processor with some.
+
+    Processes with more threads than cores get in each other's way. A choice of the user's own for drawing stays.
+    """
+    kept = {name: os.environ.get(name) for name in ("OMP_NUM_THREADS", "LP_NUM_THREADS")}
+    os.environ["OMP_NUM_THREADS"] = "1"
+    os.environ.setdefault("LP_NUM_THREADS", str(drawing))  # of Mesa's lavapipe
+    try:
+        yield
+    finally:
+        for name, value in kept.items():
+            os.environ.pop(name)
+            if value is not None:
+                os.environ[name] = value

@@ -118,9 +118,8 @@ def backends(num_envs: int, sim: Any, render: Any) -> None:
 
     if num_envs > 1 and (sim in ("cpu", "physx_cpu") or not torch.cuda.is_available()):
         raise ValueError(
-            f"num_envs must be 1 without a CUDA GPU, got {num_envs}; on a CPU each runs in a process of its own: "
-            f"gymnasium.vector.AsyncVectorEnv([lambda: hazard_ms.NumpyEnv(gymnasium.make(...))] * {num_envs}, "
-            "context='spawn')"
+            f"num_envs must be 1 without a CUDA GPU, got {num_envs}; on a CPU they run in processes: "
+            f"hazard_ms.vector.make(..., num_envs={num_envs})"
         )
 
 

@@ -62,8 +62,7 @@ def test_what_can_be_known_before_building_is_refused_before() -> None:
 def test_several_environments_without_a_gpu_are_told_how() -> None:
     with pytest.raises(ValueError, match="num_envs must be 1 without a CUDA GPU, got 4") as error:
         make(num_envs=4)
-    line = re.search(r"gymnasium\.vector\.AsyncVectorEnv\(.*\)", str(error.value))
-    assert line and "hazard_ms.NumpyEnv(gymnasium.make(" in line[0] and "* 4" in line[0]
+    assert str(error.value).endswith("hazard_ms.vector.make(..., num_envs=4)")
 
 
 @pytest.mark.parametrize("robot", ["fetch", "hazard_fetch", ("fetch",), ("hazard_fetch",), ["fetch"]])

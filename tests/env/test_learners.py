@@ -100,11 +100,10 @@ def test_training_in_processes() -> None:
 def test_the_line_that_is_advised_runs(tmp_path: Path) -> None:
     """In a script of its own: new processes import the main module again."""
     code = (
-        "import gymnasium, hazard_ms\n"
+        "import hazard_ms\n"
         "if __name__ == '__main__':\n"
         "    keywords = dict(obs_mode='state', render_backend='none')\n"
-        "    envs = gymnasium.vector.AsyncVectorEnv([lambda: hazard_ms.NumpyEnv(gymnasium.make("
-        "'HazardFire-v1', **keywords))] * 2, context='spawn')\n"
+        "    envs = hazard_ms.vector.make('HazardFire-v1', num_envs=2, **keywords)\n"
         "    obs, _ = envs.reset(seed=[1, 2])\n"
         "    print(obs.shape[0], (obs[0] != obs[1]).any(), envs.step(envs.action_space.sample())[1].shape)\n"
         "    envs.close()\n"

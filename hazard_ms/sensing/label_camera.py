@@ -35,7 +35,7 @@ class LabelCamera:
         return cls(camera.camera._render_cameras[0], pack)
 
     def take(self) -> dict[str, Tensor]:
-        """What is seen now: "depth" in [mm] and "segmentation", [1, H, W, 1] each, as ManiSkill's cameras give them.
+        """A picture: "depth" in [mm] and "segmentation", [1, H, W, 1] each, as those of ManiSkill's cameras.
 
         Call it after the scene's `update_render`.
         """

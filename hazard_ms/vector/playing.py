@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import copy
+import os
 import signal
 import sys
 import traceback
@@ -62,6 +63,8 @@ def single(env_id: str, keywords: Mapping[str, Any]) -> gym.Env[Any, Any]:
 def serve(connection: Connection, share: Share) -> None:
     """Make the environments and play them, until nobody asks any more. Ctrl-C is for the process that started this."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if share.process:
+        os.environ["HAZARD_MS_QUIET"] = "1"  # the first process says what takes so long
     end_with_parent()
     with contextlib.suppress(EOFError, OSError):
         player = Player(share)

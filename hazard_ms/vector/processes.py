@@ -12,6 +12,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from hazard_ms.spec.checks import whole
 from hazard_ms.vector.players import Processes
 
 PATIENCE = 600.0  # longest time of a step or a reset by default [s] [ours]
@@ -63,7 +64,10 @@ class ProcessVectorEnv(gym.vector.VectorEnv[Any, Any, NDArray[Any]]):
             ValueError: For what an environment refuses, and for lists and masks of another length.
         """
         self._check_open()
-        seeds = [None if seed is None else seed + k for k in range(self.num_envs)] if _one(seed) else [*seed]  # type: ignore
+        if isinstance(seed, (list, tuple, np.ndarray)):
+            seeds = [*seed]
+        else:
+            seeds = [None if seed is None else whole(seed, 0, 2**32 - 1, "seed") + k for k in range(self.num_envs)]
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed must be one number, or {self.num_envs} of them, got {len(seeds)}")
         given = dict(options or {})
@@ -72,9 +76,9 @@ class ProcessVectorEnv(gym.vector.VectorEnv[Any, Any, NDArray[Any]]):
             raise ValueError(f"reset option 'reset_mask' must be {self.num_envs} flags with one set, got {mask!r:.100}")
         if not (self._begun or mask.all()):
             raise ValueError("reset option 'reset_mask' must be all at the first reset")
-        whole = given if options else None
+        others = given if options else None
         self._begun = False
-        infos = self._play("reset", [(s, whole) if on else None for s, on in zip(seeds, mask, strict=True)])
+        infos = self._play("reset", [(s, others) if on else None for s, on in zip(seeds, mask, strict=True)])
         self._begun = True
         return self._processes.seen(), self._together(infos)
 
@@ -161,7 +165,3 @@ class ProcessVectorEnv(gym.vector.VectorEnv[Any, Any, NDArray[Any]]):
     def _check_open(self) -> None:
         if self.closed or self._processes.ended:
             raise ClosedEnvironmentError("the vector environment must not be closed")
-
-
-def _one(seed: Any) -> bool:
-    return seed is None or np.ndim(seed) == 0

@@ -116,6 +116,8 @@ def three() -> Iterator[ProcessVectorEnv]:
     ("keywords", "word"),
     [
         ({"seed": [1, 2]}, "3 of them, got 2"),
+        ({"seed": "one"}, "seed must be a whole number"),
+        ({"seed": -1}, "seed must be a whole number"),
         ({"options": {"reset_mask": np.zeros(3, bool)}}, "one set"),
         ({"options": {"reset_mask": [True, False]}}, "3 flags"),
     ],

@@ -25,7 +25,7 @@ from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.sketch.timeline import Timeline
-from hazard_ms.sketch.ways import WALK
+from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action
 from hazard_ms.skills.motor.walking import ARRIVED, MIDPOINT, WALK_FRAMES
 from hazard_ms.spec.catalogue import DAMAGED_SHARE

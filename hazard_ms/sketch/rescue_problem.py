@@ -12,7 +12,7 @@ from hazard_ms.planning.travel import MovingTravel, StaticTravel, Travel, straig
 from hazard_ms.simulation import building
 from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.timeline import Timeline
-from hazard_ms.sketch.ways import SETTLE, TURN, WALK, Ways
+from hazard_ms.sketch.travel.ways import SETTLE, TURN, WALK, Ways
 from hazard_ms.skills.motor.walking import ARRIVED
 from hazard_ms.spec import SceneSpec
 

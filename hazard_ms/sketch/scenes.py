@@ -21,7 +21,7 @@ from hazard_ms.sketch.recording import recorded
 from hazard_ms.sketch.rescues.scene import LOOKS, SPOTS, Floats, Ints, SketchScene, spot_offsets
 from hazard_ms.sketch.sight import FETCH, G1, Sight
 from hazard_ms.sketch.timeline import STRIDE, Timeline
-from hazard_ms.sketch.ways import Ways
+from hazard_ms.sketch.travel.ways import Ways
 from hazard_ms.skills.options.landmarks import MIN_SPACING
 from hazard_ms.spec import SceneSpec, Task
 from hazard_ms.spec.catalogue import CATEGORIES

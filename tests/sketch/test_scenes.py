@@ -11,7 +11,7 @@ from hazard_ms.scenes import splits
 from hazard_ms.sketch.limits import limit_of
 from hazard_ms.sketch.rescues.scene import SketchScene
 from hazard_ms.sketch.scenes import scenes_of, training_scenes
-from hazard_ms.sketch.ways import ARRIVED
+from hazard_ms.sketch.travel.ways import ARRIVED
 from hazard_ms.spec.catalogue import CATEGORIES
 
 

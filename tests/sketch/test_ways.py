@@ -11,8 +11,8 @@ from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.robots.g1 import HazardG1
 from hazard_ms.scenes.floor import boxes_of
 from hazard_ms.scenes.splits import scene
-from hazard_ms.sketch import ways as module
-from hazard_ms.sketch.ways import INDOOR_CELL, OUTDOOR_CELL, SETTLE, TURN, WALK, Ways
+from hazard_ms.sketch.travel import ways as module
+from hazard_ms.sketch.travel.ways import INDOOR_CELL, OUTDOOR_CELL, SETTLE, TURN, WALK, Ways
 from hazard_ms.skills.motor.navigation import plan
 from hazard_ms.skills.motor.walking import ARRIVED
 from hazard_ms.spec import AgentStart, Body, Partition, Room, SceneSpec

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.agents.llm.scene_text import Block, as_text, shortened
 from hazard_ms.agents.search.outlook import skill_frames
-from hazard_ms.sketch.ways import WALK
+from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.brief import Brief
 
 VERSIONS = ("llm-1", "llm-2", "llm-3", "llm-2-image")

@@ -23,7 +23,7 @@ from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.sketch import skill_times
-from hazard_ms.sketch.ways import WALK
+from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.motor.walking import ARRIVED

@@ -8,7 +8,7 @@ from scipy import ndimage
 from scipy.sparse import csgraph
 
 from hazard_ms.sensing.semantic_map import SemanticMap
-from hazard_ms.sketch.ways import WALK
+from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.motor.navigation import AT_MOST, BORDER, OBSTACLE_COST, SHORT, known_floor
 
 Array = NDArray[np.float64]

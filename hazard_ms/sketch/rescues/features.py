@@ -11,12 +11,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.sketch.geodesic import on_the_spot
 from hazard_ms.sketch.rescues.menu import edges
 from hazard_ms.sketch.rescues.pursuit import ahead
 from hazard_ms.sketch.rescues.scene import Floats, Ints, Stack
 from hazard_ms.sketch.rescues.state import Rescues
-from hazard_ms.sketch.ways import TURN
+from hazard_ms.sketch.travel.geodesic import on_the_spot
+from hazard_ms.sketch.travel.ways import TURN
 from hazard_ms.skills.options.feature_columns import SOON
 from hazard_ms.skills.options.features import Encoder
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.sensing.sighting import SEEN_PIXELS
-from hazard_ms.sketch.geodesic import on_the_spot
 from hazard_ms.sketch.rescues.looking import sample, target_site
 from hazard_ms.sketch.rescues.scene import LOOKS, Bools, Floats, Ints, Stack
 from hazard_ms.sketch.rescues.state import Rescues
 from hazard_ms.sketch.timeline import STRIDE
-from hazard_ms.sketch.ways import TURN, WALK
+from hazard_ms.sketch.travel.geodesic import on_the_spot
+from hazard_ms.sketch.travel.ways import TURN, WALK
 
 
 def ahead(stack: Stack, state: Rescues, rows: Ints, goal: Ints) -> Floats:

@@ -8,7 +8,7 @@ import pytest
 from hazard_ms.agents.search import walks
 from hazard_ms.agents.search.walks import LONGEST_DETOUR, NO_DETOUR, TURNING, detours, frames_between
 from hazard_ms.sensing.semantic_map import SemanticMap
-from hazard_ms.sketch.ways import RADIUS, WALK
+from hazard_ms.sketch.travel.ways import RADIUS, WALK
 
 
 def open_floor(half: float = 4.0) -> SemanticMap:

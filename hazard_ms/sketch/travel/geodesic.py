@@ -8,20 +8,24 @@ therefore those of the straight pieces that a robot drives, not of the steps ove
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
+from hazard_ms.kernels.launch import Launches
+from hazard_ms.sketch.travel import straightening
 from hazard_ms.skills.motor.motion import ALONG
 from hazard_ms.skills.motor.navigation import AT_MOST, OBSTACLE_COST, SHORT
 
 Array = NDArray[np.float64]
 NEARLY_NOTHING = 1e-9  # cost of ending at the goal: a graph drops edges that cost nothing
 ROUNDING = 1e-6  # by which costs of equal ways differ
+
+_launches = Launches()
 
 
 class Field(NamedTuple):
@@ -60,7 +64,7 @@ def fields(
     spent, before = _search(cost.ravel(), graph, centres, goals, near)
     reached = (spent < OBSTACLE_COST * cell / 2) & (cost.ravel() < OBSTACLE_COST)
     return [
-        _straightened(cost, spent_on_it / cell, centres, np.where(found, chain, -1), np.asarray(goal), far)
+        straightened(cost, spent_on_it / cell, centres, np.where(found, chain, -1), np.asarray(goal), far)
         for found, spent_on_it, chain, goal, far in zip(reached, spent, before, goals, near, strict=True)
     ]
 
@@ -89,29 +93,32 @@ def _search(
     return spent[:, :count], np.where(before[:, :count] == roots[:, None], here, before[:, :count])
 
 
-def _straightened(
+def straightened(
     cost: Array, spent: Array, centres: Array, before: NDArray[np.int32], goal: Array, near: float
 ) -> Field:
     """The field of one goal; `before` [N]: the next cell of each, itself where its way ends, -1 without a way.
 
-    `spent` [N]: costs of the ways from the cells, in cells.
+    `cost` [Y, X] of the cells; `spent` [N]: costs of the ways from the cells, in cells.
     """
-    corner, end = before.copy(), before.copy()
+    flat, width = np.ascontiguousarray(cost.ravel()), cost.shape[1]
+    rows, depths = _by_depth(before)
+    before = before.astype(np.int32)
+    dearest, corner, end = flat.copy(), before.copy(), before.copy()
+    known = (flat, np.ascontiguousarray(spent), before, rows, depths)
+    made = (torch.from_numpy(part) for part in (*known, dearest, corner, end))
+    _launches.run(straightening.choose, (1,), width, ROUNDING, *made)
+
+    chosen, own = corner[rows], np.zeros((2, len(before)))
+    last = chosen == end[chosen]
+    own[0, rows] = leg(centres[rows], centres[chosen], last, goal, near)
+    onward = np.where(last[:, None], goal, centres[corner[chosen]])
+    turn = wrapped(direction(centres[chosen], onward) - direction(centres[rows], centres[chosen]))
+    own[1, rows] = np.where(last, np.abs(turn), on_the_spot(turn))
     rest = np.where(before >= 0, 0.0, np.inf).astype(np.float32)
-    turned, dearest, width = np.zeros_like(rest), cost.ravel().copy(), cost.shape[1]
-    for row in _by_depth(before):
-        following = before[row]
-        ahead = corner[following]
-        limit = np.maximum(cost.ravel()[row], dearest[following])
-        clear = _clear(cost.ravel(), width, row, ahead, limit, spent[row] - spent[ahead])
-        chosen = np.where(clear, ahead, following)
-        corner[row], end[row] = chosen, end[chosen]
-        dearest[row] = np.where(clear, limit, np.maximum(cost.ravel()[row], cost.ravel()[following]))
-        rest[row] = rest[chosen] + leg(centres[row], centres[chosen], chosen == end[chosen], goal, near)
-        onward = np.where((chosen == end[chosen])[:, None], goal, centres[corner[chosen]])
-        turn = wrapped(direction(centres[chosen], onward) - direction(centres[row], centres[chosen]))
-        turned[row] = turned[chosen] + np.where(chosen == end[chosen], np.abs(turn), on_the_spot(turn))
-    return Field(corner.astype(np.int32), end.astype(np.int32), rest, turned)
+    turned = np.zeros_like(rest)
+    for part, total in zip(own, (rest, turned), strict=True):
+        _launches.run(straightening.add_up, (1,), *map(torch.from_numpy, (rows, corner, part, total)))
+    return Field(corner, end, rest, turned)
 
 
 def leg(start: Array, corner: Array, last: NDArray[np.bool_], goal: Array, near: Array | float) -> Array:
@@ -126,29 +133,13 @@ def leg(start: Array, corner: Array, last: NDArray[np.bool_], goal: Array, near:
     return np.where(arrives, np.maximum(to_goal, 0.0), whole)
 
 
-def _by_depth(before: NDArray[np.int32]) -> Sequence[NDArray[np.int64]]:
-    """The cells that have a way and are not its end, in groups by their number of steps to the end."""
+def _by_depth(before: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """The cells that have a way and are not its end, by their number of steps to the end, and where each begins."""
     here = np.arange(len(before))
     jump = np.where(before >= 0, before, here)
     depth = (jump != here).astype(np.int64)
     while (jump[jump] != jump).any():
         depth += depth[jump]
         jump = jump[jump]
-    order = np.argsort(depth, kind="stable")
-    return np.split(order, np.cumsum(np.bincount(depth))[:-1])[1:]
-
-
-def _clear(
-    cost: Array, width: int, start: NDArray[np.int64], end: NDArray[np.int32], dearest: Array, most: Array
-) -> NDArray[np.bool_]:
-    """Whether the straight lines between cells, [P], cost at most `most` [P] and cross none dearer than `dearest` [P].
-
-    Costs are in cells.
-    """
-    y, x = np.divmod(start, width)
-    down, right = np.divmod(end, width)
-    down, right = down - y, right - x
-    share = np.linspace(0.0, 1.0, 2 * int(max(np.abs(down).max(), np.abs(right).max())) + 1)[:, None]
-    crossed = cost[np.rint(y + down * share).astype(np.int64) * width + np.rint(x + right * share).astype(np.int64)]
-    spent = crossed.mean(axis=0) * np.hypot(down, right)
-    return np.asarray((crossed.max(axis=0) <= dearest) & (spent <= most * (1.0 + ROUNDING)))
+    starts = np.cumsum(np.bincount(depth))
+    return np.argsort(depth, kind="stable")[starts[0] :].astype(np.int32), (starts - starts[0]).astype(np.int32)

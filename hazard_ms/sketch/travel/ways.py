@@ -19,7 +19,7 @@ from scipy import ndimage
 
 from hazard_ms.scenes.boxes import Box
 from hazard_ms.scenes.floor import OVERHEAD_HEIGHT, boxes_of, partitions
-from hazard_ms.sketch.geodesic import Array, Field, direction, fields, leg, on_the_spot
+from hazard_ms.sketch.travel.geodesic import Array, Field, direction, fields, leg, on_the_spot
 from hazard_ms.skills.motor.navigation import OBSTACLE_COST, known_floor
 from hazard_ms.skills.motor.walking import ARRIVED
 from hazard_ms.spec import SceneSpec

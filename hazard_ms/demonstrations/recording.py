@@ -33,6 +33,7 @@ from hazard_ms.machine.files import make_folder
 from hazard_ms.skills.failures import BLOCKED
 
 MOST_BLOCKED = 3  # skills of one episode that may have been blocked, for it to be kept [ours]
+REWARD = "normalized_dense"  # that recorded frames hold: what gym.make gives if no other is asked for
 ELSEWHERE = "another process records it"
 
 
@@ -132,7 +133,7 @@ def _recorded(job: RecordJob, say: Say) -> EpisodeResult:
     with _camera(part, options) as pictures:
         watchers = [Teller(job.options, say), recorder, foresight, *pictures]
         keywords = {"obs_mode": "state"} if options.state else {}
-        result = play(job.options, watchers, teacher, **keywords)
+        result = play(job.options, watchers, teacher, reward_mode=REWARD, **keywords)
     reason, verified = why_not(result, foresight.bests[0], options.keep), False
     seconds = {**result.phase_seconds, "labels": foresight.seconds}
     if options.verify:

@@ -47,7 +47,7 @@ class TimeLimit(gym.Wrapper, RecordConstructorArgs):
 
 
 def is_bare(env: gym.Env) -> bool:
-    """Whether `env` is wrapped in nothing, or only in the TimeLimit above: then nobody else has to see its steps."""
-    while isinstance(env, TimeLimit):
+    """Whether only the TimeLimit above and gymnasium's OrderEnforcing wrap `env`: then nobody has to see its steps."""
+    while isinstance(env, TimeLimit | gym.wrappers.OrderEnforcing):
         env = env.env
     return env is env.unwrapped

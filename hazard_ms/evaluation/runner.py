@@ -161,7 +161,7 @@ def play(
     start = time.perf_counter()
     options.check()
     player = player or agent_of(options)
-    env = SkillEnv.make(options.env_id, options.perception, **{**options.settings, **keywords})
+    env = environment(options, **keywords)
     made = time.perf_counter()
     try:
         played = Runner(env, player, watchers, options.clock).run(options.seed, options.reset_options)
@@ -170,6 +170,14 @@ def play(
         return replace(result, wall_seconds=time.perf_counter() - start)
     finally:
         env.close()
+
+
+def environment(options: EpisodeOptions, **keywords: Any) -> SkillEnv:
+    """The environment of the episode of `options`, made with `keywords` of gym.make besides.
+
+    It computes no rewards, unless `keywords` ask for them: results hold none, and they are a tenth of a frame.
+    """
+    return SkillEnv.make(options.env_id, options.perception, **{"reward_mode": "none", **options.settings, **keywords})
 
 
 def agent_of(options: EpisodeOptions) -> Agent:
@@ -212,7 +220,7 @@ def played_to(options: EpisodeOptions, frame: int, **keywords: Any) -> SkillEnv:
     `keywords` are those of gym.make besides those of `options`. Raises ValueError for what cannot be played.
     """
     player = agent_of(options)
-    env = SkillEnv.make(options.env_id, options.perception, **{**options.settings, **keywords})
+    env = environment(options, **keywords)
     Runner(env, player, clock=options.clock).run(options.seed, options.reset_options, until_frame=frame)
     return env
 

@@ -193,6 +193,8 @@ class SkillEnv:
         if not self._bare:
             return float(self.env.step(action)[1])
         info = self.base.advance(action)
+        if self.base.reward_mode == "none" or bool(info["sim_error"][0]):
+            return 0.0
         return float(self.base.get_reward(None, torch.as_tensor(action)[None], info)[0])
 
     def _broken_off(self) -> bool:

@@ -14,8 +14,9 @@ import pytest
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.agents.base import Agent
 from hazard_ms.evaluation.hashes import extended
+from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import Link
-from hazard_ms.evaluation.runner import FRAME_REACHED, Runner
+from hazard_ms.evaluation.runner import FRAME_REACHED, Runner, environment
 from hazard_ms.evaluation.watchers import Progress, Watcher
 from hazard_ms.skills.brief import Brief, random_seed
 from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision, Result
@@ -168,3 +169,11 @@ def extended_by(links: list[Link], env: SkillEnv) -> list[Link]:
     made = list(links)
     extended(made, env)
     return made
+
+
+def test_episodes_compute_no_rewards_unless_somebody_asks_for_them() -> None:
+    """They are a tenth to a fifth of a frame, and results hold none; demonstrations do."""
+    for asked, mode in ({}, "none"), ({"reward_mode": "dense"}, "dense"):
+        made = environment(EpisodeOptions(), **asked)
+        assert made.base.reward_mode == mode
+        made.close()

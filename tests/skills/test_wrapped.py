@@ -13,6 +13,7 @@ import torch
 from mani_skill.utils.wrappers.record import RecordEpisode
 
 from hazard_ms import Action, NumpyEnv, SkillEnv
+from hazard_ms.env.time_limit import is_bare
 from hazard_ms.skills.decision import EXPLORE
 from hazard_ms.skills.failures import EPISODE_OVER
 
@@ -33,6 +34,13 @@ def play(env: gym.Env) -> tuple[SkillEnv, float, Any]:
     _, reward, _, truncated, info = skills.step(Action(EXPLORE))
     assert truncated and skills.frame == FRAMES
     return skills, reward, info["result"]
+
+
+def test_only_wrappers_of_others_have_to_see_every_frame() -> None:
+    """What gym.make itself wraps an environment in need not: frames of skills go round it."""
+    env = make()
+    assert is_bare(env) and not is_bare(gym.wrappers.RecordEpisodeStatistics(env)) and not is_bare(NumpyEnv(env))
+    env.close()
 
 
 def test_what_records_sees_every_frame(tmp_path: Path) -> None:

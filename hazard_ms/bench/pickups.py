@@ -29,7 +29,7 @@ from hazard_ms.scenes.floor import FLOOR_CELL, connected, free_floor
 from hazard_ms.skills.context import Skill
 from hazard_ms.skills.decision import DROP, PICK_UP, Action, Result
 from hazard_ms.skills.executor import SkillEnv
-from hazard_ms.skills.motor.grasping import free_postures, reaching
+from hazard_ms.skills.motor.reaching import free_postures, reaching
 from hazard_ms.skills.motor.walking import ARRIVED, known
 from hazard_ms.spec.checks import whole
 

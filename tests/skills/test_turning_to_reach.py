@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hazard_ms.skills.motor import grasping
+from hazard_ms.skills.motor import grasping, reaching
 from hazard_ms.skills.motor.arm import posture_for
 from hazard_ms.skills.motor.motion import turn_by, wrap
 from hazard_ms.skills.motor.surface import Leg, Place, Surface, place_of
@@ -47,6 +47,7 @@ def test_an_arm_that_is_in_the_table_is_free_when_the_base_draws_back(fresh: Are
 
 
 def test_the_base_turns_where_its_arm_would_meet_less(fresh: Arena, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(grasping, "better_place", lambda *_: None)
     turned = []
     for post in POSTS:
         fresh.restart()
@@ -55,10 +56,10 @@ def test_the_base_turns_where_its_arm_would_meet_less(fresh: Arena, monkeypatch:
         _post(fresh, *post)
         fresh.agent.use_hand(stage.position(index))
         with monkeypatch.context() as patch:
-            patch.setattr(grasping, "TURNS", (0.0,))
-            straight = grasping._way(stage, index, set(), stage.position(index))
+            patch.setattr(reaching, "TURNS", (0.0,))
+            straight = reaching.arm_way(stage, index, set(), stage.position(index))
         before = fresh.agent.base()[2]
-        way = grasping._way(stage, index, set(), stage.position(index))
+        way = reaching.arm_way(stage, index, set(), stage.position(index))
         assert straight is not None and way is not None and straight.turn == 0.0
         assert way.cost <= straight.cost and way.cost == pytest.approx(way.frames + way.route.cost - way.route.frames)
         if way.turn:
@@ -74,5 +75,5 @@ def test_the_base_does_not_turn_aside_for_a_thing_that_moves(fresh: Arena) -> No
     stage, index = fresh.stage, fresh.index("mug")
     _post(fresh, *POSTS[0])
     fresh.agent.use_hand(stage.position(index))
-    way = grasping._way(stage, index, set(), stage.position(index), grasping.HURRY)
+    way = reaching.arm_way(stage, index, set(), stage.position(index), reaching.HURRY)
     assert way is not None and way.turn == 0.0

@@ -20,9 +20,10 @@ from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, follow, go, lacking
-from hazard_ms.skills.motor.grasping import LIMIT, SHUT_FRAMES, come_near, standings
+from hazard_ms.skills.motor.grasping import LIMIT, SHUT_FRAMES, come_near
 from hazard_ms.skills.motor.kinematics import Posture, lifted, solve
 from hazard_ms.skills.motor.motion import turn_to
+from hazard_ms.skills.motor.reaching import standings
 from hazard_ms.skills.motor.routes import Route, quickest
 from hazard_ms.skills.motor.surface import NEARLY, Leg, Place, Surface
 from hazard_ms.skills.motor.walking import known

@@ -51,14 +51,17 @@ def place_of(stage: Stage, index: int) -> Place:
 class Surface:
     """The heights that the arm keeps above, as the map has them now."""
 
-    def __init__(self, stage: Stage, place: Place, turn: float = 0.0) -> None:
+    def __init__(self, stage: Stage, place: Place, turn: float = 0.0, at: NDArray[np.float64] | None = None) -> None:
         """Take the map of `stage` as it is; around `place` the hand may come down.
 
-        The base is taken to have turned by `turn` [rad], anticlockwise, from where it is.
+        The base is taken to have turned by `turn` [rad], anticlockwise, from where it is, and to stand `at` [m], [2],
+        world frame; None: where it is.
         """
         self._stage = stage
-        self._place = place
+        self.place = place
         self._x, self._y, heading = stage.robot.base()
+        if at is not None:
+            self._x, self._y = at.tolist()
         self._ahead = np.array([np.cos(heading + turn), np.sin(heading + turn)])
         self._origin, self._height = self._window()
         self._paths: dict[tuple[float, bytes], Paths] = {}
@@ -141,11 +144,9 @@ class Surface:
         x, y = np.floor((points[:, :2] - self._origin) / self._stage.seen.cell).astype(int).T
         within = (x >= 0) & (y >= 0) & (x < self._height.shape[1]) & (y < self._height.shape[0])
         height = np.where(within, self._height[np.where(within, y, 0), np.where(within, x, 0)], 0.0)
-        beside = np.hypot(*(points[:, :2] - self._place.middle[:2]).T) - self._place.radius
-        cone = self._place.bottom + SLOPE * np.maximum(beside, 0.0)
-        level = (height < self._place.top + ARM_RADIUS) | (
-            beside < ARM_RADIUS
-        )  # neither a wall nor the back of a chair
+        beside = np.hypot(*(points[:, :2] - self.place.middle[:2]).T) - self.place.radius
+        cone = self.place.bottom + SLOPE * np.maximum(beside, 0.0)
+        level = (height < self.place.top + ARM_RADIUS) | (beside < ARM_RADIUS)  # neither a wall nor the back of a chair
         low = np.where(level, np.minimum(height + ARM_RADIUS, cone), height + ARM_RADIUS)
         own = np.hypot(*(points[:, :2] - base).T) < self._stage.robot.build.radius
         return np.asarray(points[:, 2] < np.where(own, OWN_HEIGHT, low))

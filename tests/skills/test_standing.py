@@ -1,0 +1,50 @@
+"""A robot goes round a thing that its arm does not get at from where it stands, and knows where it never will."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hazard_ms.skills import failures
+from hazard_ms.skills.motor.grasping import DOUBTFUL, pick_up
+from hazard_ms.skills.motor.reaching import arm_way
+from tests.worlds.arena import Arena
+from tests.worlds.skill_room import horizontal, walk
+
+HIGH = 1.5  # of what the robot believes to stand around the thing [m]
+NEAR, FAR = 0.2, 0.5  # from the middle of the thing to that [m]
+LITTLE = 20  # frames in which nothing but a turn is done
+
+
+def _believe(arena: Arena, name: str, opening: float) -> None:
+    """Let the robot believe in a wall around a thing, open on the far side over the angle `opening` [rad]."""
+    x, y, _ = arena.agent.base()
+    seen, thing = arena.stage.seen, arena.stage.position(arena.index(name))
+    row, column = np.mgrid[0 : seen.height.shape[0], 0 : seen.height.shape[1]]
+    away_x = seen.origin[0] + (column + 0.5) * seen.cell - thing[0]
+    away_y = seen.origin[1] + (row + 0.5) * seen.cell - thing[1]
+    far = np.hypot(away_x, away_y)
+    behind = np.arctan2(thing[1] - y, thing[0] - x)
+    off = np.abs(np.angle(np.exp(1j * (np.arctan2(away_y, away_x) - behind))))
+    wall = (far > NEAR) & (far < FAR) & (off > opening / 2)
+    seen.tell(np.where(wall, HIGH, 0.0).astype(np.float32), np.zeros_like(seen.explored))
+
+
+def test_the_base_goes_round_to_where_the_arm_gets_at_a_thing(fresh: Arena) -> None:
+    assert walk(fresh, "bowl")
+    stage, index = fresh.stage, fresh.index("bowl")
+    _believe(fresh, "bowl", np.deg2rad(200.0))
+    fresh.agent.use_hand(stage.position(index))
+    here = arm_way(stage, index, set(), stage.position(index))
+    assert here is None or here.route.hits > DOUBTFUL
+    x, y, _ = fresh.agent.base()
+    assert fresh.run(pick_up(stage, index)).ok
+    assert np.hypot(*np.subtract(fresh.agent.base()[:2], (x, y))) > 0.5  # it went to the side, or behind the bowl
+
+
+def test_an_arm_that_would_not_get_there_stays_where_it_is(fresh: Arena) -> None:
+    assert walk(fresh, "bowl")
+    _believe(fresh, "bowl", 0.0)
+    before = horizontal(fresh, "bowl")
+    result = fresh.run(pick_up(fresh.stage, fresh.index("bowl")))
+    assert not result.ok and result.reason == failures.UNREACHABLE and result.frames < LITTLE
+    assert fresh.stage.arm_gap(fresh.agent.tucked) < 0.1 and abs(horizontal(fresh, "bowl") - before) < 0.05

@@ -1,4 +1,4 @@
-"""Cases of `realistic` water: L-12 and L-28 to L-34 of docs/physics.md 2.2, exact solutions without friction."""
+"""Cases of `realistic` water: L-12 and L-28 to L-35 of docs/physics.md 2.2, exact solutions without friction."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ def cases() -> Iterator[Case]:
     yield from table(
         "L-29", "dam break, dry: speed of {} m", fronts, 0.10, lambda h: basin.front(*RITTER, h), unit="m/s"
     )
+    yield Case("L-35", "dam break, dry: error of cells of 0.1 over 0.05 m", 2.0, 0.25, basin.refined, slow=True)
     yield Case("L-31", "dam break, wet: depth behind the bore", 0.1981, 0.05, lambda: basin.dam_break(*STOKER)[2], "m")
     yield Case("L-31", "dam break, wet: speed there", 1.641, 0.05, lambda: basin.dam_break(*STOKER)[3], "m/s")
     yield Case("L-31", "dam break, wet: the bore", 2.196, 0.05, lambda: basin.front(*STOKER, 0.124), "m/s")

@@ -38,9 +38,9 @@ def in_water(
 
 @pytest.mark.parametrize(("area", "mass", "frame"), [(0.01, 1.0, 50), (0.06, 1.0, 8), (0.12, 1.0, 4), (0.06, 5.0, 42)])
 def test_the_shipped_current_carries_things_off_in_so_many_frames(area: float, mass: float, frame: int) -> None:
-    """L-5: v_n = u (1 - (1 - 2 A / m)^n); 1 - 1 / e of u at the frame told."""
+    """L-5: v_n = u (1 - (1 - 2 A / m)^n); 1 - 1 / e of u at the frame told. A: across the flow, which is along x."""
     width = math.sqrt(area)
-    tank = Tank(flood("shipped"), [Thing((width,) * 3, at=(12.0, 10.0, 50.0), mass=mass)], level=100.0)
+    tank = Tank(flood("shipped"), [Thing((3 * width, width, width), at=(12.0, 10.0, 50.0), mass=mass)], level=100.0)
     for n in range(1, 2 * frame):
         tank.run(0.01)
         want = 0.9540568 * (1 - (1 - 2 * area / mass) ** n)
@@ -118,6 +118,9 @@ def test_porous_things_soak_and_sink() -> None:
     assert float(left[0, 0] / state.volume[0, 0]) == pytest.approx(50.0 / 1380.0, rel=2e-3)
     assert 1000 * float(left[0, 0]) < float(world.mass[0, 0])
     assert float(left[0, 1]) == float(state.volume[0, 1])
+    push, weight = preset.force(state, world, 1e-4), 9.81 * world.mass[0]
+    assert push is not None
+    assert float(push.force[0, 0, 2]) < float(weight[0]) and float(push.force[0, 1, 2]) > float(weight[1])
 
 
 @pytest.mark.parametrize("dt", [0.03, 0.1, 1.0])

@@ -228,6 +228,17 @@ def test_turning_is_slowed_and_never_reversed(w: tuple, turn: tuple, dt: float) 
     assert (np.abs(after) <= np.abs(before) + 1e-3).all() and (after * before >= -1e-3).all()
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_turning_has_the_drag_of_mujocos_boxes(axis: int) -> None:
+    """About an axis of edge a, with edges b and c across: density a (b^4 + c^4) w^2 / 64 (MuJoCo's fluid forces)."""
+    size, spin = np.array([0.3, 0.2, 0.1]), np.zeros(3)
+    spin[axis] = 4.0
+    torque = spin_drag(tensor([spin]), tensor([[1.0, 0, 0, 0]]), tensor([size]), tensor([0.5]), RHO, 1e-7)[0].numpy()
+    others = np.delete(size, axis)
+    assert -torque[axis] == pytest.approx(RHO * size[axis] * (others**4).sum() * 4.0**2 / 64, rel=1e-4)
+    assert np.delete(torque, axis) == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
 def test_the_table_of_costs_names_every_kernel_and_refuses_nonsense() -> None:
     table = kernels.report(3, 5, 1).splitlines()
     assert table[0].startswith("3 environments of 5 bodies") and len(table) > 5

@@ -125,6 +125,31 @@ def test_a_thing_feels_the_slope_and_the_depth_where_it_is() -> None:
         assert float(level) == pytest.approx(0.5 - 0.05 * at, abs=1e-4)
 
 
+def test_a_beam_under_a_sloping_surface_is_turned_by_it() -> None:
+    """A box of length L and width b, cut at its sides only: the torque is density g slope b L^3 / 12."""
+    beam = Thing((0.4, 0.1, 0.1), 500.0, (1.5, 0.5, 0.425))
+    basin = Basin((3.0, 1.0), depth=0.5, things=(beam,))
+    x = 0.1 * (np.arange(30) + 0.5)
+    basin.put("surface", np.broadcast_to((0.5 - 0.05 * x)[:, None], basin.cells))
+    push = basin.law.force(basin.state, basin.world, 1e-4)
+    assert push is not None and push.torque is not None
+    assert float(push.torque[0, 0, 1]) == pytest.approx(1000 * 9.81 * 0.05 * 0.1 * 0.4**3 / 12, rel=1e-3)
+
+
+def test_a_cell_loses_no_more_water_than_it_holds() -> None:
+    """Water in one cell runs off to all sides, so fast that twice as much would leave it in the first frame."""
+    depth = np.zeros((21, 21))
+    depth[10, 10] = 0.05
+    basin = Basin((2.1, 2.1), depth=depth)
+    away = np.zeros((21, 21))
+    away[10, 10], away[11, 10] = -1.3, 1.3
+    basin.put("velocity_x", away)
+    basin.put("velocity_y", away.T)
+    basin.run(1 / 30)
+    assert basin.get("depth").sum() == pytest.approx(0.05, rel=1e-6)
+    assert basin.get("depth") == pytest.approx(basin.get("depth").T, abs=1e-6) and basin.get("depth").min() >= 0.0
+
+
 def test_inside_furniture_water_stands_as_high_as_around_it() -> None:
     """A cupboard of 0.8 m in water of 0.4 m: a book on its shelf gets wet, the top stays dry."""
     ground = np.zeros((20, 20))

@@ -10,11 +10,13 @@ import pytest
 import torch
 
 from hazard_ms.hazards.presets import wind
-from hazard_ms.hazards.wind import shelter
 from tests.worlds.fire_worlds import about_z
 from tests.worlds.wind_worlds import Block, Thing, begin, push, run, street
 
 REAL = wind("realistic")
+# The lee of docs/physics.md 3.3: its length in heights of the obstacle, the share that is gone close behind, the cells
+# of its map [m], the least height of what has one [m], and what lets part of the wind through
+LEE, DEEPEST, CELL, LOWEST, SOLID = 10.0, 0.75, 0.5, 0.5, {"hedge": 0.8}
 
 
 @pytest.mark.parametrize(("dt", "time"), [(0.01, 5.0), (1 / 30, 5.0), (1.0, 5.0), (0.5, 2.0)])
@@ -97,16 +99,16 @@ def traced(point: tuple[float, float, float], heading: float, blocks: list[Block
     x, y, z = point
     deepest = 0.0
     for b in blocks:
-        solid, high = shelter.SOLIDITY.get(b.category, 1.0), b.at[2] + b.extent[2]
+        solid, high = SOLID.get(b.category, 1.0), b.at[2] + b.extent[2]
         turn = 2 * math.atan2(b.rotation[3], b.rotation[0])
         d = np.arange(0.25, 40.0, 0.01)
         dx, dy = x - d * math.cos(heading) - b.at[0], y - d * math.sin(heading) - b.at[1]
-        over = (np.abs(math.cos(turn) * dx + math.sin(turn) * dy) < (b.extent[0] + shelter.CELL) / 2) & (
-            np.abs(math.cos(turn) * dy - math.sin(turn) * dx) < (b.extent[1] + shelter.CELL) / 2
+        over = (np.abs(math.cos(turn) * dx + math.sin(turn) * dy) < (b.extent[0] + CELL) / 2) & (
+            np.abs(math.cos(turn) * dy - math.sin(turn) * dx) < (b.extent[1] + CELL) / 2
         )
-        if over.any() and high >= shelter.LOWEST:
-            near = 1 - d[over].min() / (shelter.LEE * high)
-            deepest = max(deepest, shelter.DEEPEST * solid * max(near, 0.0) * min(max(2 - 2 * z / high, 0.0), 1.0))
+        if over.any() and high >= LOWEST:
+            near = 1 - d[over].min() / (LEE * high)
+            deepest = max(deepest, DEEPEST * solid * max(near, 0.0) * min(max(2 - 2 * z / high, 0.0), 1.0))
     return 1 - deepest
 
 

@@ -1,0 +1,60 @@
+"""In 25 kitchens full of water, what is lighter than water is at its surface, or something holds it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import hazard_ms  # noqa: F401 registers the environments
+from hazard_ms.hazards.fire.floor import half_spans
+
+pytestmark = [pytest.mark.long, pytest.mark.timeout(1800)]
+
+FRAMES, KITCHENS = 1450, 25
+WATER = 1000.0  # density [kg/m^3]
+DEEP = 0.1  # distance of its middle below the surface from which on a thing counts as under water [m]
+MORE = 0.02  # share of its volume by which a thing that is held is deeper in the water than it floats
+NEAR = 0.03  # gap between boxes of bodies that may touch [m]
+MOST = 0.03  # share of the light things that may be under water with nothing above them
+
+
+def test_light_things_float_unless_something_is_above_them() -> None:
+    env = gym.make("HazardFlood-v1", obs_mode="none", render_backend="none", physics="realistic")
+    base: Any = env.unwrapped
+    light, under, beside = 0, [], []
+    for number in range(KITCHENS):
+        scene = f"kitchen_a/{number:02d}"
+        env.reset(seed=number, options={"scene": scene})
+        still = np.zeros(env.action_space.shape, np.float32)
+        for _ in range(FRAMES):
+            env.step(still)
+        world, state = base.world, base.episode.states["flood"]
+        world.read()
+        wet = world.exists[0] & world.movable[0] & (state.fraction[0] > 0.0)
+        share = world.mass[0] / (WATER * state.volume[0] * (1.0 - state.pores[0] * state.soaked[0]))
+        light += int((wet & (share < 1.0)).sum())
+        lifted = wet & (state.fraction[0] > share + MORE)  # by more than its weight, so something holds it
+        level = base.task.hazards[0].image(state, world, world.position)[0]
+        for thing in (lifted & (world.position[0, :, 2] < level - DEEP)).nonzero()[:, 0].tolist():
+            above, touching = _neighbours(world, thing)
+            assert touching, (scene, world.names[0][thing])  # water alone holds nothing down
+            (under if above else beside).append((scene, world.names[0][thing], above or touching))
+    env.close()
+    print(f"\n{light} light wet things, {len(under)} held down under something, {len(beside)} beside something")
+    print(*under, *beside, sep="\n")
+    assert light > 10 * KITCHENS
+    assert len(beside) <= MOST * light
+
+
+def _neighbours(world: Any, thing: int) -> tuple[list[str], list[str]]:
+    """Names of the bodies above the middle of a thing, and of all that may touch it, by boxes along the axes."""
+    half = half_spans(world.rotation, world.extent)[0]
+    gap = (world.position[0] - world.position[0, thing]).abs() - half - half[thing]
+    there = world.exists[0] & ~world.away[0] & (gap[:, :2] < NEAR).all(-1)
+    there[thing] = False
+    over = there & (gap[:, :2] < 0.0).all(-1) & (world.position[0, :, 2] + half[:, 2] > world.position[0, thing, 2])
+    above, all_of_them = ([world.names[0][k] for k in found.nonzero()[:, 0].tolist()] for found in (over, there))
+    return above, all_of_them

@@ -40,6 +40,9 @@ def test_light_things_float_unless_something_is_above_them() -> None:
         level = base.task.hazards[0].image(state, world, world.position)[0]
         for thing in (lifted & (world.position[0, :, 2] < level - DEEP)).nonzero()[:, 0].tolist():
             above, touching = _neighbours(world, thing)
+            off = (world.agent_position[0, :2] - world.position[0, thing, :2]).norm()
+            if off < base.agent.build.radius + float(half_spans(world.rotation, world.extent)[0, thing, :2].norm()):
+                touching.append("robot")
             assert touching, (scene, world.names[0][thing])  # water alone holds nothing down
             (under if above else beside).append((scene, world.names[0][thing], above or touching))
     env.close()

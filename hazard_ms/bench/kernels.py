@@ -1,4 +1,4 @@
-"""Measures what the kernels of hazards cost, in milliseconds of one thread.
+"""Measures what the laws of hazards cost, in milliseconds of one thread, and how that grows with the environments.
 
 The sizes are those of docs/physics.md 4: 1,024 environments of 64 bodies.
 """
@@ -13,12 +13,15 @@ import torch
 
 from hazard_ms.hazards import presets
 from hazard_ms.hazards.flood.buoyancy import BALL
+from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.hazards.presets import PRESETS
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition, Room, SceneSpec
 from hazard_ms.validation.experiments import probes
 
 ENVIRONMENTS, BODIES = 1024, 64
+FEWER = 16  # times fewer environments, to compare with
+WATER = 0.4  # depth in the room of `realistic` [m]
 REPEATS = 10  # calls, of which the fastest counts
 STEP = 0.01  # [s]
 
@@ -63,9 +66,28 @@ def flood_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
         state = hazard.state_type.allocate({"E": environments, "B": bodies, **hazard.sizes(world)}, "cpu")
         hazard.reset(state, world, torch.arange(environments))
         state.time[:] = 20.0
+        if isinstance(state, InundationState):
+            state.depth[state.bed < WATER] = WATER
         hazard.advance(state, world, STEP)
         made[f"flood: force, {name}"] = partial(hazard.force, state, world, STEP)
         made[f"flood: a frame, {name}"] = partial(hazard.advance, state, world, STEP)
+    return made
+
+
+def fire_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
+    """An update of each preset, which is due every few frames, on bodies in a room in whose middle a fire burns."""
+    things = tuple(Body(f"box_{k}", "box", "", (0.1 * k, 1.0 + 0.1 * k, 0.0)) for k in range(bodies))
+    spec = SceneSpec("bench/fire", Room((8.0, 8.0)), (), things, ("box",), ((4.0, 4.0),), AgentStart((1.0, 1.0)))
+    world = World.of(
+        (spec,) * environments, [[(0.3, 0.2, 0.25)] * bodies] * environments, [[1.0] * bodies] * environments
+    )
+    world.chance.frame[:] = 600
+    made: dict[str, Kernel] = {}
+    for name in PRESETS:
+        hazard = presets.fire(name)
+        state = hazard.state_type.allocate({"E": environments, "B": bodies, **hazard.sizes(world)}, "cpu")
+        hazard.reset(state, world, torch.arange(environments))
+        made[f"fire: an update, {name}"] = partial(hazard.advance, state, world, 1 / 30)
     return made
 
 
@@ -95,7 +117,7 @@ def wind_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
     return made
 
 
-KERNELS: tuple[Callable[[int, int], dict[str, Kernel]], ...] = (law_kernels, flood_kernels, wind_kernels)
+KERNELS: tuple[Callable[[int, int], dict[str, Kernel]], ...] = (law_kernels, flood_kernels, fire_kernels, wind_kernels)
 
 
 def milliseconds(kernel: Kernel, repeats: int = REPEATS) -> float:
@@ -113,19 +135,25 @@ def milliseconds(kernel: Kernel, repeats: int = REPEATS) -> float:
 
 
 def report(environments: int = ENVIRONMENTS, bodies: int = BODIES, repeats: int = REPEATS) -> str:
-    """A table of all kernels, one thread each. Raises ValueError for numbers that are not positive."""
+    """A table of all laws, one thread each, beside a sixteenth of the environments.
+
+    Raises ValueError for numbers that are not positive.
+    """
     for name, value in (("environments", environments), ("bodies", bodies), ("repeats", repeats)):
         if not value > 0:
             raise ValueError(f"{name} must be positive, got {value}")
-    threads = torch.get_num_threads()
+    few, threads = max(1, environments // FEWER), torch.get_num_threads()
     torch.set_num_threads(1)
     try:
-        found = {
-            name: milliseconds(kernel, repeats)
-            for make in KERNELS
-            for name, kernel in make(environments, bodies).items()
-        }
+        rows = [_row(make, few, environments, bodies, repeats) for make in KERNELS]
     finally:
         torch.set_num_threads(threads)
-    lines = [f"{environments} environments of {bodies} bodies, one thread, best of {repeats} calls"]
-    return "\n".join([*lines, *(f"  {name:34s} {ms:8.2f} ms" for name, ms in found.items())])
+    head = f"{environments} environments of {bodies} bodies, beside {few}, one thread, best of {repeats} calls"
+    return "\n".join([head, *(line for row in rows for line in row)])
+
+
+def _row(make: Callable[[int, int], dict[str, Kernel]], few: int, many: int, bodies: int, repeats: int) -> list[str]:
+    """A line for each of the kernels that `make` makes: `many` environments, and each of them over each of `few`."""
+    less = {name: milliseconds(kernel, repeats) for name, kernel in make(few, bodies).items()}
+    more = {name: milliseconds(kernel, repeats) for name, kernel in make(many, bodies).items()}
+    return [f"  {name:30s} {ms:8.2f} ms, each {ms / many / (less[name] / few):.2f} times" for name, ms in more.items()]

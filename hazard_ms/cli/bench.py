@@ -41,7 +41,7 @@ def bench(
         severity: How strong the hazards of the preset realistic are.
         episode: Also play a whole greedy episode.
         effects: Only print what the effects of each mode cost in a picture.
-        kernels: Only print what the kernels of flood and wind cost for 1,024 environments of 64 bodies on one thread.
+        kernels: Only print what the laws of all hazards cost on one thread, for 1,024 environments and for 64.
         pickups: Only print how often picking up and putting away work, and how many frames they take.
         against: Only print what frames and resets of all tasks cost beside those of ManiSkill's own PickCube-v1.
         resets: Only print what 200 resets over 20 scenes cost, and whether their episodes start as freshly built ones.

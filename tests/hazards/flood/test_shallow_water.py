@@ -59,6 +59,10 @@ def test_water_comes_in_through_doors_and_else_through_the_middle_of_the_side() 
     assert [(o.wall, o.centre) for o in floor_plan.openings(spec)] == [("south", 1.5)]
     shut = dataclasses.replace(spec, room=dataclasses.replace(spec.room, openings=()), second_flood_side="west")
     assert [(o.wall, o.centre, o.width) for o in floor_plan.openings(shut)] == [("north", 3.0, 0.9), ("west", 2.0, 0.9)]
+    both = dataclasses.replace(spec, flood_side="east", second_flood_side="south")  # the door is in the second wall
+    assert [(o.wall, o.centre) for o in floor_plan.openings(both)] == [("south", 1.5), ("east", 2.0)]
+    other = dataclasses.replace(spec, flood_side="east", second_flood_side="west")
+    assert [o.wall for o in floor_plan.openings(other)] == ["south", "west"]
     with pytest.raises(ValueError, match="flood_side must be one of west, east, south, north, got 'up'"):
         floor_plan.openings(dataclasses.replace(shut, flood_side="up"))
 

@@ -15,6 +15,7 @@ FLAME_FLUX.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import torch
@@ -29,7 +30,7 @@ EMISSIVITY = 0.9  # emissivity of surfaces [-] [docs/physics.md 4.4]
 CONVECTION = 0.010  # heat transfer by convection [kW/m^2 K] [docs/physics.md 4.4]
 FLAME_FLUX = 40.0  # largest flux on what a flame touches [kW/m^2] [M: SFPE, small flames 20 to 40]
 _TINY = 1e-9  # least value of a divisor, in its own unit, so that 0 / 0 cannot occur
-_BLOCK = 2**18  # most pairs worked on at a time on a CPU, see hazard_ms.hazards.fire.heat
+_BLOCK = 2**17  # most pairs worked on at a time on a CPU, see hazard_ms.hazards.fire.heat
 
 
 def to_power(base: Tensor, exponent: float) -> Tensor:
@@ -54,6 +55,19 @@ class Fires(NamedTuple):
     diameter: Tensor  # diameter of the base [m], [E, M]
 
 
+def in_blocks(work: Callable[..., Tensor], fires: Fires, points: Tensor, *more: Tensor) -> Tensor:
+    """The result of `work` on fires, `points` [m], [E, P, 3], and `more`, [E, ...], as if on all environments at once.
+
+    On a CPU it works on so few of them at a time that all pairs of fires and points stay in its cache.
+    """
+    environments = len(points)
+    block = environments if points.is_cuda else max(1, _BLOCK // max(1, points.shape[1] * fires.place.shape[1]))
+    if block >= environments:
+        return work(fires, points, *more)
+    parts = (slice(k, k + block) for k in range(0, environments, block))
+    return torch.cat([work(Fires(*(v[p] for v in fires)), points[p], *(v[p] for v in more)) for p in parts])
+
+
 def flame_length(power: Tensor, diameter: Tensor, ambient: float = 20.0) -> Tensor:
     """Mean length of flames [m], [...], of fires of `power` [kW] and `diameter` [m], [...], in air of `ambient` [C]."""
     density = AIR_DENSITY * (ambient + KELVIN) * math.sqrt(GRAVITY)
@@ -74,10 +88,7 @@ def flux(fires: Fires, points: Tensor, ceiling: Tensor) -> Tensor:
 
     Flames end at the `ceiling` [m], [E].
     """
-    environments = len(points)
-    block = environments if points.is_cuda else max(1, _BLOCK // max(1, points.shape[1] * fires.place.shape[1]))
-    parts = (slice(k, k + block) for k in range(0, environments, block))
-    return torch.cat([_flux(Fires(*(v[p] for v in fires)), points[p], ceiling[p]) for p in parts])
+    return in_blocks(_flux, fires, points, ceiling)
 
 
 def _flux(fires: Fires, points: Tensor, ceiling: Tensor) -> Tensor:

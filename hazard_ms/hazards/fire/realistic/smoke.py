@@ -5,13 +5,14 @@ The laws of the layers are those of `.twozone`.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import torch
 from torch import Tensor
 
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
-from hazard_ms.hazards.fire.realistic.radiation import AIR, GRAVITY, KELVIN, Fires, to_power
+from hazard_ms.hazards.fire.realistic.radiation import AIR, GRAVITY, KELVIN, Fires, in_blocks, to_power
 from hazard_ms.hazards.fire.realistic.twozone import balance, zones
 from hazard_ms.simulation.world import World
 
@@ -70,6 +71,10 @@ def above(fires: Fires, points: Tensor, room: float) -> Tensor:
 
     It is 0 outside of all plumes.
     """
+    return in_blocks(partial(_above, room), fires, points)
+
+
+def _above(room: float, fires: Fires, points: Tensor) -> Tensor:
     apart = points[:, None] - fires.place[:, :, None]  # [E, M, P, 3]
     height = apart[..., 2]
     aside = apart[..., :2].square().sum(-1)

@@ -3,7 +3,7 @@
 Cells are CELL wide; X along x, Y along y, with a ring of closed cells around them: cell (i, j) has the number
 (i + 1) (Y + 2) + j + 1. Furniture that stands on the floor is ground as high as its parts; what has legs is not, and
 water flows under it. Water comes in through the doors in the outer walls. A scene without any has an opening as wide
-as a door in the middle of its `flood_side`, and one in the middle of its `second_flood_side`, if it has one.
+as a door in the middle of its `flood_side`; one that names a `second_flood_side` has openings in two walls.
 """
 
 from __future__ import annotations
@@ -109,12 +109,14 @@ def _inlets(spec: SceneSpec, size: tuple[int, int]) -> tuple[list[int], list[int
 
 
 def openings(spec: SceneSpec) -> list[Opening]:
-    """The openings that water comes in through: outer doors, or stand-ins for them."""
+    """The openings that water comes in through: outer doors, or stand-ins for them where they are in too few walls."""
     doors = [o for o in spec.room.openings if o.kind == "door" and o.wall in SIDES]
-    stand_ins = [] if doors else [spec.flood_side]
-    if spec.second_flood_side is not None:
-        stand_ins.append(spec.second_flood_side)
-    return doors + [_middle(spec.room, wall) for wall in stand_ins]
+    walls = {door.wall for door in doors}
+    second = [] if spec.second_flood_side is None else [spec.second_flood_side]
+    sides = [*second, spec.flood_side] if doors else [spec.flood_side, *second]
+    without = [wall for wall in sides if wall not in walls]
+    missing = max(0, 1 + len(second) - len(walls))
+    return doors + [_middle(spec.room, wall) for wall in without[:missing]]
 
 
 def _middle(room: Room, wall: str) -> Opening:

@@ -20,8 +20,8 @@ from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition, Room, 
 from hazard_ms.validation.experiments import probes
 
 ENVIRONMENTS, BODIES = 1024, 64
-FEWER = 16  # times fewer environments, to compare with
-WATER = 0.4  # depth in the room of `realistic` [m]
+FEWER = 16  # times fewer environments, to compare with [ours]
+WATER = 0.4  # depth in the room of `realistic` [m] [ours]
 REPEATS = 10  # calls, of which the fastest counts
 STEP = 0.01  # [s]
 
@@ -51,15 +51,10 @@ def flood_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
     room = Room(
         (8.0, 8.0), partitions=(Partition("wall", "x", 4.0),), openings=(Opening("doorway", "wall", 4.0, 1.0, 2.0),)
     )
-    things = tuple(Body(f"box_{k}", "box", "", (0.1 * k, 1.0 + 0.1 * k, 0.0)) for k in range(bodies))
-    spec = SceneSpec("bench/room", room, (), things, ("box",), (), AgentStart((1.0, 1.0)))
-    world = World.of(
-        (spec,) * environments, [[(0.3, 0.2, 0.25)] * bodies] * environments, [[1.0] * bodies] * environments
-    )
+    world = _room_of_boxes(room, (), environments, bodies)
     chance = torch.Generator().manual_seed(0)
     world.rotation[:] = torch.nn.functional.normalize(torch.rand(world.rotation.shape, generator=chance) - 0.5, dim=-1)
     world.velocity[:] = torch.rand(world.velocity.shape, generator=chance) - 0.5
-    world.chance.frame[:] = 600
     made: dict[str, Kernel] = {}
     for name in PRESETS:
         hazard = presets.flood(name)
@@ -76,12 +71,7 @@ def flood_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
 
 def fire_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
     """An update of each preset, which is due every few frames, on bodies in a room in whose middle a fire burns."""
-    things = tuple(Body(f"box_{k}", "box", "", (0.1 * k, 1.0 + 0.1 * k, 0.0)) for k in range(bodies))
-    spec = SceneSpec("bench/fire", Room((8.0, 8.0)), (), things, ("box",), ((4.0, 4.0),), AgentStart((1.0, 1.0)))
-    world = World.of(
-        (spec,) * environments, [[(0.3, 0.2, 0.25)] * bodies] * environments, [[1.0] * bodies] * environments
-    )
-    world.chance.frame[:] = 600
+    world = _room_of_boxes(Room((8.0, 8.0)), ((4.0, 4.0),), environments, bodies)
     made: dict[str, Kernel] = {}
     for name in PRESETS:
         hazard = presets.fire(name)
@@ -89,6 +79,17 @@ def fire_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
         hazard.reset(state, world, torch.arange(environments))
         made[f"fire: an update, {name}"] = partial(hazard.advance, state, world, 1 / 30)
     return made
+
+
+def _room_of_boxes(room: Room, fires: tuple[tuple[float, float], ...], environments: int, bodies: int) -> World:
+    """Copies of a room with boxes in a row and fires at places [m], 600 frames after the start of an episode."""
+    things = tuple(Body(f"box_{k}", "box", "", (0.1 * k, 1.0 + 0.1 * k, 0.0)) for k in range(bodies))
+    spec = SceneSpec("bench/room", room, (), things, ("box",), fires, AgentStart((1.0, 1.0)))
+    world = World.of(
+        (spec,) * environments, [[(0.3, 0.2, 0.25)] * bodies] * environments, [[1.0] * bodies] * environments
+    )
+    world.chance.frame[:] = 600
+    return world
 
 
 def wind_kernels(environments: int, bodies: int) -> dict[str, Kernel]:

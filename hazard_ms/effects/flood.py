@@ -52,7 +52,7 @@ class _SceneFlood:
     def show(self, level: float, slope: float, time: float, surface: np.ndarray | None, size: tuple[int, int]) -> None:
         """Show water at `level` [m] at its source, with a surface slope.
 
-        `surface`: where it is on a grid of `size` cells, [N] [m], if it is no plane; then it is drawn at its mean.
+        `surface` gives its height on a grid of `size` cells, [N] [m], unless it is a plane; it is drawn at its mean.
         """
         if surface is None:
             self._around.water(level - slope * self._path_length, time)

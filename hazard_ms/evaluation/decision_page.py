@@ -59,7 +59,7 @@ def decision_page(
 
 
 def read_trace(path: Path) -> list[dict[str, Any]]:
-    """The lines of a trace, in order. Raises ValueError for a file that is no trace."""
+    """The lines of a trace, in order. Raises ValueError for a file that is not a trace."""
     try:
         rows = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
         for row in rows:

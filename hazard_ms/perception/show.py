@@ -45,8 +45,8 @@ b{{padding:1px 8px;border-radius:4px;color:#000;margin-right:6px}}</style>
 def show(dataset: Path, output: Path, pictures: int) -> Path:
     """Write the page, NAME.html, or only its pictures as one sheet, NAME.png or NAME.jpg. Returns its path.
 
-    `pictures` of each split are shown, evenly spread. Raises ValueError for a folder that is no dataset, and for a page
-    that cannot be written.
+    `pictures` of each split are shown, evenly spread. Raises ValueError for a folder that is not a dataset, and for a
+    page that cannot be written.
     """
     whole(pictures, 1, MOST_PICTURES, "pictures")
     splits = layout.splits_of(dataset)
@@ -93,7 +93,7 @@ def _some(dataset: Path, rows: Mapping[str, Any], count: int) -> list[tuple[NDAr
 def drawn(picture: Path, annotations: list[Mapping[str, Any]]) -> NDArray[np.uint8]:
     """A picture of EDGE pixels, [H, W, 3], RGB, with its masks, boxes and names in the colours of their states.
 
-    Raises ValueError for a file that is no picture.
+    Raises ValueError for a file that is not a picture.
     """
     read = cv2.imread(str(picture))
     if read is None:

@@ -53,10 +53,13 @@ def test_light_things_float_unless_something_is_above_them() -> None:
 
 
 def _neighbours(world: Any, thing: int) -> tuple[list[str], list[str]]:
-    """Names of the bodies above the middle of a thing, and of all that may touch it, by boxes along the axes."""
+    """Names of the bodies that touch a thing and reach above its middle, and of all that touch it.
+
+    Bodies are boxes along the axes, so what is caught between the legs of a table counts as under it.
+    """
     half = half_spans(world.rotation, world.extent)[0]
     gap = (world.position[0] - world.position[0, thing]).abs() - half - half[thing]
-    there = world.exists[0] & ~world.away[0] & (gap[:, :2] < NEAR).all(-1)
+    there = world.exists[0] & ~world.away[0] & (gap < NEAR).all(-1)
     there[thing] = False
     over = there & (gap[:, :2] < 0.0).all(-1) & (world.position[0, :, 2] + half[:, 2] > world.position[0, thing, 2])
     above, all_of_them = ([world.names[0][k] for k in found.nonzero()[:, 0].tolist()] for found in (over, there))

@@ -19,9 +19,8 @@ ABOUT = """\
 
 Written by `hazard-ms validate -o docs`; do not edit. Expected numbers are exact solutions, tables of the original
 benchmark's code, or publications (NIST FDS Correlation Guide, CFAST, NFPA, ISO 13571, Quintiere and Harkleroad): no
-number is computed by the code that it checks. Motion is that of the real simulator. Openings under water (L-26, L-27)
-are not covered: no room here has any; nor is the power law of wind (W-23): it is not used.
-Letters: I integrator, F fire of the original, N and 3.1 realistic fire, L flood, W wind.
+number is computed by the code that it checks. Motion is that of the real simulator. The power law of wind (W-23) is not
+covered, since it is not used. Letters: I integrator, F fire of the original, N and 3.1 realistic fire, L flood, W wind.
 """
 
 

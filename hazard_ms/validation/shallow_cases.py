@@ -1,4 +1,4 @@
-"""Cases of `realistic` water: L-12 and L-28 to L-35 of docs/physics.md 2.2, exact solutions without friction."""
+"""Cases of `realistic` water: L-12, L-26 to L-29 and L-31 to L-35 of docs/physics.md 2.2, solved without friction."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def cases() -> Iterator[Case]:
     at_dam = "dam break, dry: {} at the dam"
     yield Case("L-29", at_dam.format("depth"), 0.2222, 0.05, lambda: basin.dam_break(*RITTER)[0], "m")
     yield Case("L-29", at_dam.format("discharge"), 0.3281, 0.05, lambda: basin.dam_break(*RITTER)[1], "m^2/s")
-    # 2 c - 3 sqrt(g h) of Ritter's solution, c = sqrt(g 0.5 m)
-    fronts = {0.1: 1.4580, 0.05: 2.3282, 0.01: 3.4897}
+    # 2 c - 3 sqrt(g h) of Ritter's solution, c = sqrt(g 0.5 m); the last depth is that below which water does not flow
+    fronts = {0.1: 1.4580, 0.05: 2.3282, 0.01: 3.4897, 0.001: 4.1323, 0.00001: 4.3997}
     yield from table(
         "L-29", "dam break, dry: speed of {} m", fronts, 0.10, lambda h: basin.front(*RITTER, h), unit="m/s"
     )
@@ -35,4 +35,10 @@ def cases() -> Iterator[Case]:
     yield Case(
         "L-34", "mass in 50 s through a door", 0.0, 1e-6, lambda: basin.filled(1.0, 50.0)[1], absolute=True, slow=True
     )
+    yield Case("L-26", "two rooms joined under water: level after", 8.095, 0.01, lambda: basin.levelled()[0], "s")
+    yield Case("L-26", "the same: mass", 0.0, 1e-6, lambda: basin.levelled()[1], absolute=True)
+    # 0.611 a sqrt(2 g Z) / A, and Z (1 - (1 - t / 580.6 s)^2)
+    yield Case("L-27", "gap under a door: rise", 1.7223e-3, 0.02, lambda: basin.gap_under_door(5.0) / 5.0, "m/s")
+    gap = {60: 0.09800, 300: 0.38321}
+    yield from table("L-27", "gap under a door: depth after {} s", gap, 0.05, basin.gap_under_door, unit="m")
     yield Case("L-28", "open door, 0.5 m of water outside", 0.5638, 1e-3, lambda: basin.inflow(0.5), "m^3/s")

@@ -15,7 +15,7 @@ from hazard_ms.hazards.flood.realistic import floor_plan, shallow_water
 from hazard_ms.hazards.flood.realistic.inundation import Inundation
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.simulation.world import World
-from hazard_ms.spec import Opening
+from hazard_ms.spec import Opening, Partition
 from hazard_ms.validation.experiments.tank import Thing, begin, room
 
 GRAVITY = 9.81  # [m/s^2]
@@ -34,10 +34,11 @@ class Basin:
         law: Inundation = SMOOTH,
         things: tuple[Thing, ...] = (Thing((0.1,) * 3, at=(0.05, 0.05, 50.0)),),
         openings: tuple[Opening, ...] = (),
+        partitions: tuple[Partition, ...] = (),
     ) -> None:
         """Fill a room of `size` [m]; `ground` and `depth`, [X, Y] [m], of cells of floor_plan.CELL."""
         self.law = law
-        self.world: World = room(list(things), "south", size, 1, (0.5 * size[0], 0.5 * size[1]), (), openings)
+        self.world: World = room(list(things), "south", size, 1, (0.5 * size[0], 0.5 * size[1]), partitions, openings)
         self.state: InundationState = begin(law, self.world)  # type: ignore[assignment]
         if not openings:
             self.state.inlet[:] = -1  # closed on all sides
@@ -176,6 +177,33 @@ def inflow(outside: float) -> float:
     basin = Basin((6.4, 6.0), law=replace(SMOOTH, outside=outside), openings=(door(),))
     basin.run(1 / 3000, 1 / 3000)
     return float(basin.state.inflow) * 3000.0
+
+
+def levelled(fall: float = 0.3) -> tuple[float, float]:
+    """Two rooms of 20 m^2, whose levels differ by `fall` [m], joined by a slot of 0.5 m^2 under water along their wall.
+
+    Returns when they are level [s], and the relative error of mass. The root of the difference falls steadily, so nine
+    tenths of that time are over when 1 % of it is left.
+    """
+    wall, slot = Partition("middle", "y", 1.0), Opening("doorway", "middle", 10.0, 20.0, 0.025)
+    depth = np.where(np.arange(20) < 10, 1.0 + fall, 1.0)[:, None]
+    basin = Basin((2.0, 20.0), depth=depth, openings=(slot,), partitions=(wall,))
+    basin.state.inlet[:] = -1
+    start, dt, now, left = basin.volume, 1 / 60, 0.0, fall
+    while left > 0.01 * fall:
+        basin.run(dt, dt)
+        depths = basin.get("depth")
+        now, before, left = now + dt, left, float(depths[:10].mean() - depths[10:].mean())
+    over = (0.01 * fall - left) / (before - left)
+    return (now - over * dt) / 0.9, basin.volume / start - 1.0
+
+
+def gap_under_door(seconds: float) -> float:
+    """Depth in a room of 20 m^2 [m], `seconds` after water stands 0.5 m high before its door with a gap of 0.02 m."""
+    gap = Opening("door", "south", 2.5, 0.9, 0.02)
+    basin = Basin((5.0, 4.0), law=replace(SMOOTH, outside=0.5), openings=(gap,))
+    basin.run(seconds)
+    return basin.volume / 20.0
 
 
 def lying(density: float) -> float:

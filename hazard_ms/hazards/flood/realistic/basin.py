@@ -11,7 +11,10 @@ wp.set_module_options(OPTIONS)
 
 GRAVITY = wp.constant(9.81)  # [m/s^2]
 SIDE = wp.constant(CELL)
-DRY = wp.constant(1e-4)  # depth below which water does not flow [m] [ours]
+DRY = wp.constant(1e-4)  # depth below which water is not seen [m] [ours]
+FILM = wp.constant(1e-5)  # depth below which water does not flow [m] [ours]
+SAFE = wp.constant(1.0)  # share of a cell that the fastest wave may pass in a step [ours]
+FASTEST = wp.constant(0.45)  # share of a cell that water may pass in a step [ours]
 NOWHERE = wp.constant(-1.0)  # surface where there is no water [m]
 FENCE = wp.constant(0.5 * BEYOND)  # ground that is higher is not floor [m]
 WAVES = wp.constant(2.0**0.5)  # waves of both axes add up
@@ -35,6 +38,7 @@ class Basin:
     inlet: wp.array2d(dtype=wp.int64)
     inlet_side: wp.array2d(dtype=wp.int64)
     inlet_width: wp.array2d(dtype=float)
+    inlet_height: wp.array2d(dtype=float)
     inflow: wp.array(dtype=float)
     inflow_rest: wp.array(dtype=float)
     signal: wp.array(dtype=float)
@@ -119,7 +123,7 @@ def note(e: int, rows: int, columns: int, outside: float, basin: Basin):
                 total += basin.surface[e, c]
                 wet += 1.0
                 speed = wp.max(wp.abs(basin.velocity_x[e, c]), wp.abs(basin.velocity_y[e, c]))
-                fastest = wp.max(fastest, speed + WAVES * wp.sqrt(GRAVITY * deep))
+                fastest = wp.max(fastest, wp.max(speed * (SAFE / FASTEST), speed + WAVES * wp.sqrt(GRAVITY * deep)))
             elif basin.bed[e, c] > 0.0 and basin.bed[e, c] < FENCE:
                 around, count = float(0.0), float(0.0)
                 for k in range(4):

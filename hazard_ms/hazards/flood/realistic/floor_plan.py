@@ -2,8 +2,9 @@
 
 Cells are CELL wide; X along x, Y along y, with a ring of closed cells around them: cell (i, j) has the number
 (i + 1) (Y + 2) + j + 1. Furniture that stands on the floor is ground as high as its parts; what has legs is not, and
-water flows under it. Water comes in through the doors in the outer walls. A scene without any has an opening as wide
-as a door in the middle of its `flood_side`; one that names a `second_flood_side` has openings in two walls.
+water flows under it. An opening lets water through up to its height: a gap under a door is one that is 0.02 m high.
+Water comes in through the doors in the outer walls. A scene without any has an opening as wide as a door in the middle
+of its `flood_side`; one that names a `second_flood_side` has openings in two walls.
 """
 
 from __future__ import annotations
@@ -47,6 +48,7 @@ class FloorPlan(NamedTuple):
     inlet: list[int]
     inlet_side: list[int]
     inlet_width: list[float]
+    inlet_height: list[float]
 
 
 def size_of(rooms: Sequence[Room]) -> tuple[int, int]:
@@ -63,23 +65,25 @@ def plan_of(spec: SceneSpec, size: tuple[int, int], edges: Mapping[str, Sequence
     room = spec.room
     floor = (x < room.size[0]) & (y < room.size[1])
     ground = np.where(floor, _ground(spec, edges, x, y), BEYOND)
-    open_x, open_y = np.zeros((2, *size), bool)
-    open_x[1:], open_y[:, 1:] = floor[1:] & floor[:-1], floor[:, 1:] & floor[:, :-1]
+    open_x, open_y = np.zeros((2, *size))
+    open_x[1:], open_y[:, 1:] = BEYOND * (floor[1:] & floor[:-1]), BEYOND * (floor[:, 1:] & floor[:, :-1])
     for partition in room.partitions:
         doorways = [o for o in room.openings if o.kind == "doorway" and o.wall == partition.name]
         across = 0 if partition.axis == "y" else 1
         along = middles[1 - across]
-        closed = ~np.any([np.abs(along - o.centre) < o.width / 2 for o in doorways] or [np.zeros(len(along), bool)], 0)
+        height = np.zeros(len(along))
+        for o in doorways:
+            height[np.abs(along - o.centre) < o.width / 2] = o.height
         beyond = int(np.searchsorted(middles[across], partition.at))  # the first cells behind it
         if across == 0:
-            open_x[beyond, closed] = False
+            open_x[beyond] = np.minimum(open_x[beyond], height)
         else:
-            open_y[closed, beyond] = False
-    padded = [
-        np.pad(a, 1, constant_values=v).astype(np.float32) for a, v in ((ground, BEYOND), (open_x, 0), (open_y, 0))
-    ]
-    bed, open_x, open_y = (a.ravel() for a in padded)
-    return FloorPlan(bed, open_x, open_y, *_inlets(spec, size))
+            open_y[:, beyond] = np.minimum(open_y[:, beyond], height)
+    bed, west, south = (
+        np.pad(grid, 1, constant_values=edge).astype(np.float32).ravel()
+        for grid, edge in ((ground, BEYOND), (open_x, 0.0), (open_y, 0.0))
+    )
+    return FloorPlan(bed, west, south, *_inlets(spec, size))
 
 
 def most_inlets(specs: Sequence[SceneSpec]) -> int:
@@ -88,12 +92,13 @@ def most_inlets(specs: Sequence[SceneSpec]) -> int:
     return max(len(_inlets(spec, size)[0]) for spec in specs)
 
 
-def _inlets(spec: SceneSpec, size: tuple[int, int]) -> tuple[list[int], list[int], list[float]]:
-    """Cells, sides and widths [m] of the inlets of a scene on a grid of `size` (X, Y) cells."""
+def _inlets(spec: SceneSpec, size: tuple[int, int]) -> tuple[list[int], list[int], list[float], list[float]]:
+    """Cells, sides, widths and heights [m] of the inlets of a scene on a grid of `size` (X, Y) cells."""
     middles = [CELL * (np.arange(n) + 0.5) for n in size]
     cells: list[int] = []
     sides: list[int] = []
     widths: list[float] = []
+    heights: list[float] = []
     for opening in openings(spec):
         side = SIDES.index(opening.wall)
         across = side // 2  # the axis that water comes in along
@@ -105,7 +110,8 @@ def _inlets(spec: SceneSpec, size: tuple[int, int]) -> tuple[list[int], list[int
             cells.append((i + 1) * (size[1] + 2) + j + 1)
             sides.append(side)
             widths.append(opening.width / len(along))
-    return cells, sides, widths
+            heights.append(opening.height)
+    return cells, sides, widths, heights
 
 
 def openings(spec: SceneSpec) -> list[Opening]:

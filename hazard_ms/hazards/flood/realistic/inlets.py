@@ -10,6 +10,8 @@ from hazard_ms.kernels.launch import OPTIONS
 wp.set_module_options(OPTIONS)
 
 WEIR = wp.constant(0.4 * (2.0 * 9.81) ** 0.5)  # discharge per width of a free weir over head^1.5 [m^0.5/s] [L-28]
+ORIFICE = wp.constant(0.611)  # contraction by sharp edges, pi / (pi + 2) [Kirchhoff 1869]
+HALVINGS = wp.constant(16)  # of the range in which the depth inside is looked for
 DROWNING = wp.constant(0.385)  # exponent for submerged weirs [Villemonte 1947]
 
 
@@ -25,27 +27,65 @@ def weir(outside: float, inside: float) -> float:
 
 
 @wp.func
+def orifice(height: float, fall: float) -> float:
+    """Discharge per width [m^2/s] through an opening `height` [m] high under water, whose level falls by `fall` [m]."""
+    return ORIFICE * wp.max(height, 0.0) * wp.sqrt(2.0 * GRAVITY * wp.max(fall, 0.0))
+
+
+@wp.func
+def through(outside: float, inside: float, clear: float) -> float:
+    """Discharge per width [m^2/s] inwards through an opening `clear` [m] high between water of these depths [m]."""
+    q = weir(outside, inside) - weir(inside, outside)
+    if wp.max(outside, inside) > clear:
+        most = orifice(clear, wp.abs(outside - inside))
+        q = wp.clamp(q, -most, most)
+    return q
+
+
+@wp.func
 def let_in(e: int, dt: float, outside: float, pitch: int, basin: Basin) -> float:
-    """Set velocities and discharges at the inlets; returns what comes in, less what leaves, during `dt` [m^3]."""
-    volume = float(0.0)
+    """Set velocities and discharges at the inlets; returns what comes in, less what leaves, during `dt` [m^3].
+
+    The discharge is that at the depth inside after `dt`, since it changes without limit where both depths are alike.
+    """
+    volume, ratio = float(0.0), dt / SIDE
     for k in range(basin.inlet.shape[1]):
         c = int(basin.inlet[e, k])
         if c >= 0:
-            inside = basin.depth[e, c]
             head = wp.max(outside - basin.bed[e, c], 0.0)
-            q = (weir(head, inside) - weir(inside, head)) * basin.inlet_width[e, k] / SIDE
-            speed = float(0.0)
-            if q != 0.0:  # at the critical depth, or the depth inside
-                speed = q / wp.max(wp.pow(q * q / GRAVITY, 1.0 / 3.0), inside)
+            clear = wp.max(basin.inlet_height[e, k] - basin.bed[e, c], 0.0)
+            share = basin.inlet_width[e, k] / SIDE
             side = int(basin.inlet_side[e, k])
-            sign = float(1.0)
-            at = c
+            sign, at = float(1.0), c
             if side == 1 or side == 3:
                 sign = float(-1.0)
             if side == 1:
                 at = c + pitch
             if side == 3:
                 at = c + 1
+            if side < 2:
+                basin.discharge_x[e, at] = 0.0
+            else:
+                basin.discharge_y[e, at] = 0.0
+            others = basin.discharge_x[e, c] - basin.discharge_x[e, c + pitch]
+            others += basin.discharge_y[e, c] - basin.discharge_y[e, c + 1]
+            before = basin.depth[e, c] + ratio * others
+            low, high = float(0.0), wp.max(head, wp.max(before, 0.0))
+            for _k in range(HALVINGS):
+                middle = 0.5 * (low + high)
+                if before + ratio * share * through(head, middle, clear) > middle:
+                    low = middle
+                else:
+                    high = middle
+            inside = 0.5 * (low + high)
+            q = through(head, inside, clear)
+            deep = wp.max(wp.pow(q * q / GRAVITY, 1.0 / 3.0), inside)  # the critical depth, or that inside
+            if clear < head and wp.abs(q) < weir(head, inside):
+                deep = ORIFICE * clear  # of the jet
+            q *= share
+            speed = float(0.0)
+            if q != 0.0:
+                speed = q / deep
             if side < 2:
                 basin.velocity_x[e, at] = sign * speed
                 basin.discharge_x[e, at] = sign * q

@@ -59,7 +59,7 @@ class Inundation(Flood):
             plan = floor_plan.plan_of(world.specs[row], size, edges)
             for name in ("bed", "open_x", "open_y"):
                 getattr(state, name)[row] = torch.from_numpy(getattr(plan, name))
-            for name in ("inlet", "inlet_side", "inlet_width"):
+            for name in ("inlet", "inlet_side", "inlet_width", "inlet_height"):
                 given, held = getattr(plan, name), getattr(state, name)
                 held[row, : min(len(given), inlets)] = torch.tensor(given).to(held)
         state.signal[rows] = shallow_water.wave(self.outside)

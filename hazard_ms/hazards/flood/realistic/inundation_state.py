@@ -19,8 +19,8 @@ class InundationState(FloodState):
     """
 
     bed: Tensor = quantity("E N", "m", "height of the floor, or of the furniture that stands on it", low=0.0)
-    open_x: Tensor = quantity("E N", "", "1 where water can pass the side, else 0")
-    open_y: Tensor = quantity("E N", "", "1 where water can pass the side, else 0")
+    open_x: Tensor = quantity("E N", "m", "height up to which water can pass the side; 0: a wall", low=0.0)
+    open_y: Tensor = quantity("E N", "m", "height up to which water can pass the side; 0: a wall", low=0.0)
     depth: Tensor = quantity("E N", "m", "depth of the water", low=0.0)
     depth_rest: Tensor = quantity("E N", "m", "what rounding has left out of the depth")
     velocity_x: Tensor = quantity("E N", "m/s", "speed of the water through the side, eastwards")
@@ -31,6 +31,7 @@ class InundationState(FloodState):
     inlet: Tensor = quantity("E I", "", "numbers of the cells that water comes into; -1 for none", dtype="int", fill=-1)
     inlet_side: Tensor = quantity("E I", "", "from where: 0 west, 1 east, 2 south, 3 north", dtype="int", low=0, high=3)
     inlet_width: Tensor = quantity("E I", "m", "width of the opening before the cell", low=0.0)
+    inlet_height: Tensor = quantity("E I", "m", "height of the opening before the cell", low=0.0)
     inflow: Tensor = quantity("E", "m^3", "water that has come in, less what has left")
     inflow_rest: Tensor = quantity("E", "m^3", "what rounding has left out of it")
     signal: Tensor = quantity("E", "m/s", "speed of the fastest wave", low=0.0)

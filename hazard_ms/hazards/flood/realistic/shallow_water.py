@@ -6,9 +6,11 @@
 The scheme is the momentum-conserving one of Stelling and Duinmeijer, A staggered conservative scheme for every Froude
 number in rapidly varied shallow water flows, Int. J. Numer. Meth. Fluids 43, 2003: depths in cells, velocities on their
 sides, depths on sides taken from upstream, momentum carried by the mean discharge of neighbouring sides, first
-velocities and then depths. Water at rest stays at rest over any ground. Steps of ground are seen from the higher side,
-so that water only passes what it stands above. What leaves a cell is limited to what it holds. Sums of depth are
-compensated (Kahan), so that mass is conserved far below single precision.
+velocities and then depths. Where the flow speeds up along its way its energy head is carried in place of its momentum,
+as the paper has it for contractions, which keeps fronts on dry ground fast. Water at rest stays at rest over any
+ground. Steps of ground are seen from the higher side, so that water only passes what it stands above. What leaves a
+cell is limited to what it holds. Sums of depth are compensated (Kahan), so that mass is conserved far below single
+precision.
 
 A frame is cut into as many steps as its fastest wave needs. Order: 1. Limits: no turbulence, bodies do not act back.
 """
@@ -17,15 +19,13 @@ from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.hazards.flood.realistic.basin import DRY, GRAVITY, SIDE, Basin, note
-from hazard_ms.hazards.flood.realistic.inlets import let_in
+from hazard_ms.hazards.flood.realistic.basin import FASTEST, FILM, GRAVITY, SAFE, SIDE, Basin, note
+from hazard_ms.hazards.flood.realistic.inlets import let_in, orifice
 from hazard_ms.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 
 STILL = wp.constant(5e-7)  # difference of levels that is rounding [m]
-SAFE = wp.constant(1.0)  # share of a cell that the fastest wave may pass in a step [ours]
-FASTEST = wp.constant(0.45)  # share of a cell that water may pass in a step [ours]
 
 
 @wp.func
@@ -40,13 +40,15 @@ def pushed(
     other: wp.array2d(dtype=float),
     carried: wp.array2d(dtype=float),
     beside: wp.array2d(dtype=float),
+    height: wp.array2d(dtype=float),
     bed: wp.array2d(dtype=float),
     depth: wp.array2d(dtype=float),
 ) -> float:
     """New velocity [m/s] through the side of cell `c` towards the cell before it.
 
     `own` and `carried`: velocity [m/s] and discharge [m^2/s] along that axis, on which neighbours are `along` numbers
-    apart; `other` and `beside`: those of the other axis, `across`; `ratio`: time over length of the step [s/m].
+    apart; `other` and `beside`: those of the other axis, `across`; `height`: of the opening [m]; `ratio`: time over
+    length of the step [s/m].
     """
     b = c - along
     if wp.max(depth[e, b], depth[e, c]) <= 0.0:
@@ -54,24 +56,35 @@ def pushed(
     ground = wp.max(bed[e, b], bed[e, c])
     low = wp.max(bed[e, b] - ground + depth[e, b], 0.0)
     high = wp.max(bed[e, c] - ground + depth[e, c], 0.0)
-    if wp.max(low, high) < DRY:
+    if wp.max(low, high) < FILM:
         return 0.0
-    deep = wp.max(0.5 * (low + high), DRY)
+    deep = 0.5 * (low + high)
     if wp.min(low, high) <= 0.0:  # at a front, all of the mass is on one side
-        deep = wp.max(wp.max(low, high), DRY)
-    u, share = own[e, c], 0.5 * ratio / deep
+        deep = wp.max(low, high)
+    u, before, after, share = own[e, c], own[e, c - along], own[e, c + along], 0.5 * ratio / deep
     rise = high - low
     if wp.abs(rise) < STILL:
         rise = float(0.0)
     # momentum over the mass between the middles of the two cells; no more than all of it comes in a step
-    come = wp.min(share * wp.max(carried[e, b] + carried[e, c], 0.0), 1.0) * (u - own[e, b])
-    come += wp.max(share * wp.min(carried[e, c] + carried[e, c + along], 0.0), -1.0) * (own[e, c + along] - u)
+    come = wp.min(share * wp.max(carried[e, b] + carried[e, c], 0.0), 1.0) * (u - before)
+    if u > before and u + before > 0.0:  # it speeds up: half the difference of the squares, of the energy head
+        come = 0.5 * ratio * (u + before) * (u - before)
+    if u < after and u + after < 0.0:
+        come += 0.5 * ratio * (u + after) * (after - u)
+    else:
+        come += wp.max(share * wp.min(carried[e, c] + carried[e, c + along], 0.0), -1.0) * (after - u)
     come += wp.min(share * wp.max(beside[e, b] + beside[e, c], 0.0), 1.0) * (u - own[e, c - across])
     leaving = beside[e, b + across] + beside[e, c + across]
     come += wp.max(share * wp.min(leaving, 0.0), -1.0) * (own[e, c + across] - u)
     slip = 0.25 * (other[e, b] + other[e, c] + other[e, b + across] + other[e, c + across])
     slowed = 1.0 + ratio * SIDE * friction * wp.sqrt(u * u + slip * slip) / deep
-    return wp.clamp((u - come - ratio * GRAVITY * rise) / slowed, -FASTEST / ratio, FASTEST / ratio)
+    new = wp.clamp((u - come - ratio * GRAVITY * rise) / slowed, -FASTEST / ratio, FASTEST / ratio)
+    clear = height[e, c] - ground
+    if new > 0.0 and low > clear:  # the opening is under water
+        new = wp.min(new, orifice(clear, low - high) / low)
+    if new < 0.0 and high > clear:
+        new = wp.max(new, -orifice(clear, high - low) / high)
+    return new
 
 
 @wp.func
@@ -156,6 +169,7 @@ def flow(
                         basin.velocity_y,
                         basin.discharge_x,
                         basin.discharge_y,
+                        basin.open_x,
                         basin.bed,
                         basin.depth,
                     )
@@ -171,6 +185,7 @@ def flow(
                         basin.velocity_x,
                         basin.discharge_y,
                         basin.discharge_x,
+                        basin.open_y,
                         basin.bed,
                         basin.depth,
                     )

@@ -18,13 +18,15 @@ WATER = 1000.0  # density [kg/m^3]
 DEEP = 0.1  # distance of its middle below the surface from which on a thing counts as under water [m]
 MORE = 0.02  # share of its volume by which a thing that is held is deeper in the water than it floats
 NEAR = 0.03  # gap between boxes of bodies that may touch [m]
+STOPPED = 5.0  # time for which the water then stands still [s]
+RISEN = 0.05  # rise in that time from which on a thing counts as held by the push of the water alone [m]
 MOST = 0.03  # share of the light things that may be under water with nothing above them
 
 
 def test_light_things_float_unless_something_is_above_them() -> None:
     env = gym.make("HazardFlood-v1", obs_mode="none", render_backend="none", physics="realistic")
     base: Any = env.unwrapped
-    light, under, beside = 0, [], []
+    light, under, beside, pushed = 0, [], [], []
     for number in range(KITCHENS):
         scene = f"kitchen_a/{number:02d}"
         env.reset(seed=number, options={"scene": scene})
@@ -37,19 +39,41 @@ def test_light_things_float_unless_something_is_above_them() -> None:
         share = world.mass[0] / (WATER * state.volume[0] * (1.0 - state.pores[0] * state.soaked[0]))
         light += int((wet & (share < 1.0)).sum())
         lifted = wet & (state.fraction[0] > share + MORE)  # by more than its weight, so something holds it
-        level = base.task.hazards[0].image(state, world, world.position)[0]
-        for thing in (lifted & (world.position[0, :, 2] < level - DEEP)).nonzero()[:, 0].tolist():
+        depth = _depths(base)
+        held = (lifted & (depth > DEEP)).nonzero()[:, 0].tolist()
+        for thing in held:
             above, touching = _neighbours(world, thing)
             off = (world.agent_position[0, :2] - world.position[0, thing, :2]).norm()
             if off < base.agent.build.radius + float(half_spans(world.rotation, world.extent)[0, thing, :2].norm()):
                 touching.append("robot")
             assert touching, (scene, world.names[0][thing])  # water alone holds nothing down
             (under if above else beside).append((scene, world.names[0][thing], above or touching))
+        _let_the_water_stand(env, state, still)
+        risen = depth - _depths(base)
+        pushed += [(scene, world.names[0][thing]) for thing in held if risen[thing] > RISEN]
+        for thing in (thing for thing in held if risen[thing] <= RISEN):
+            assert _neighbours(world, thing)[1], (scene, world.names[0][thing])  # something solid holds it
     env.close()
     print(f"\n{light} light wet things, {len(under)} held down under something, {len(beside)} beside something")
-    print(*under, *beside, sep="\n")
+    print(f"{len(pushed)} of them came up when the water stood still")
+    print(*under, *beside, "came up:", *pushed, sep="\n")
     assert light > 10 * KITCHENS
     assert len(beside) <= MOST * light
+
+
+def _let_the_water_stand(env: Any, state: Any, action: np.ndarray) -> None:
+    """Play STOPPED seconds in which the water has no speed."""
+    for _ in range(round(STOPPED / env.unwrapped.control_timestep)):
+        for quantity in (state.velocity_x, state.velocity_y, state.discharge_x, state.discharge_y):
+            quantity.zero_()
+        env.step(action)
+    env.unwrapped.world.read()
+
+
+def _depths(base: Any) -> Any:
+    """Depths of the middles of the things below the surface [m], [B]."""
+    world, state = base.world, base.episode.states["flood"]
+    return base.task.hazards[0].image(state, world, world.position)[0] - world.position[0, :, 2]
 
 
 def _neighbours(world: Any, thing: int) -> tuple[list[str], list[str]]:

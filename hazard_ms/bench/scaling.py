@@ -18,7 +18,7 @@ import gymnasium as gym
 import mani_skill.envs  # noqa: F401 registers ManiSkill's own tasks
 import numpy as np
 
-from hazard_ms.bench.frames import FEWEST, MOST, watched
+from hazard_ms.bench.frames import FEWEST, HOOKS, MOST, watched
 from hazard_ms.bench.tables import table
 from hazard_ms.bench.turns import WARM_UP, Case, actions_of, frames_in_turn, one_thread, phases_in_turn, spent
 from hazard_ms.evaluation.report import machine_line
@@ -40,17 +40,22 @@ PICTURES_SHARE = 10  # frames of a size for one picture [ours]
 OURS, STOCK = Case("HazardFire-v1", "fetch", "paper"), Case("PickCube-v1", "panda")  # with one camera each
 
 
-def report(frames: int, seed: int, things: Iterable[int] = THINGS, sides: Iterable[int] = SIDES) -> str:
-    """Both tables, `frames` for each number of `things`. Raises ValueError for too few frames."""
+def report(
+    frames: int, seed: int, physics: str = "paper", things: Iterable[int] = THINGS, sides: Iterable[int] = SIDES
+) -> str:
+    """Both tables, `frames` for each number of `things`; hazards are of the preset `physics`.
+
+    Raises ValueError for too few frames.
+    """
     whole(frames, FEWEST, MOST, "frames")
     with one_thread():
-        by_things = things_table(time_of_things(tuple(things), frames, seed))
+        by_things = things_table(time_of_things(tuple(things), frames, seed, physics))
         by_size = pictures_table(time_of_pictures(tuple(sides), max(frames // PICTURES_SHARE, ROUNDS), seed))
     return "\n\n".join(
         [
             machine_line(),
-            "State observations, Fetch at rest, by the number of things that move: processor time of a frame [us], in "
-            "brackets that of physics:",
+            f"State observations, Fetch at rest, preset {physics}, by the number of things that move: processor time "
+            "of a frame [us], in brackets that of physics and the share of the frame that hazards take:",
             by_things,
             f"{PICTURE} of one camera by its size: wall time of a frame [ms], in brackets processor time:",
             by_size,
@@ -58,7 +63,9 @@ def report(frames: int, seed: int, things: Iterable[int] = THINGS, sides: Iterab
     )
 
 
-def time_of_things(things: tuple[int, ...], frames: int, seed: int) -> dict[tuple[str, int], dict[str, float]]:
+def time_of_things(
+    things: tuple[int, ...], frames: int, seed: int, physics: str
+) -> dict[tuple[str, int], dict[str, float]]:
     """Processor time of a frame and its phases [s], by task and number of things."""
     length = max(frames // ROUNDS, 1)
     with tempfile.TemporaryDirectory() as folder:
@@ -66,7 +73,7 @@ def time_of_things(things: tuple[int, ...], frames: int, seed: int) -> dict[tupl
         for env_id, number in itertools.product(FIRST, things):
             file = Path(folder) / f"{env_id}-{number}.json"
             file.write_text(to_json(crowded(env_id, number)), encoding="utf-8")
-            envs[env_id, number] = Case(env_id, "fetch", "paper").make(scenes=str(file), **STATE)
+            envs[env_id, number] = Case(env_id, "fetch", physics).make(scenes=str(file), **STATE)
     try:
         for env in envs.values():
             _begun(env, seed)
@@ -122,7 +129,8 @@ def things_table(found: Mapping[tuple[str, int], Mapping[str, float]]) -> str:
     """A row for each number of things, a column for each task."""
     rows: dict[int, dict[str, str]] = {}
     for (env_id, number), phases in found.items():
-        rows.setdefault(number, {})[env_id] = f"{1e6 * phases['frame']:.0f} ({1e6 * phases['physics']:.0f})"
+        frame, physics, hazards = phases["frame"], phases["physics"], sum(phases.get(hook, 0.0) for hook in HOOKS)
+        rows.setdefault(number, {})[env_id] = f"{1e6 * frame:.0f} ({1e6 * physics:.0f}; {hazards / frame:.0%})"
     tasks = [*next(iter(rows.values()))]
     return table(["things", *tasks], [[str(number), *row.values()] for number, row in rows.items()], 0)
 

@@ -67,7 +67,7 @@ def bench(
     elif scaling:
         from hazard_ms.bench.scaling import report as report_scaling
 
-        print(report_scaling(frames, seed))
+        print(report_scaling(frames, seed, physics))
     elif pickups:
         _pickups(env_id, robot, count, seed, output)
     elif vector:

@@ -33,7 +33,7 @@ def test_more_things_than_there_is_room_for_are_refused() -> None:
 
 
 def test_crowded_scenes_can_be_played() -> None:
-    found = time_of_things((20,), 20, 0)
+    found = time_of_things((20,), 20, 0, "realistic")
     assert [*found] == [(env_id, 20) for env_id in FIRST]
     for phases in found.values():
         assert 0.0 < phases["physics"] < phases["frame"]

@@ -126,9 +126,12 @@ def test_the_table_of_phases_adds_up_and_divides_the_frame_by_physics() -> None:
 
 
 def test_tables_of_scaling_have_a_row_for_each_number() -> None:
-    frame = {"frame": 2e-3, "physics": 5e-4}
+    frame = {"frame": 2e-3, "physics": 5e-4, "force": 3e-4, "advance": 1e-4}
     found = {(task, number): frame for task in ("fire", "wind") for number in (20, 60)}
-    assert cells(things_table(found)) == [["20", "2000 (500)", "2000 (500)"], ["60", "2000 (500)", "2000 (500)"]]
+    assert cells(things_table(found)) == [
+        ["20", "2000 (500; 20%)", "2000 (500; 20%)"],
+        ["60", "2000 (500; 20%)", "2000 (500; 20%)"],
+    ]
     spans = {(OURS, 64): (0.02, 0.01), (STOCK, 64): (0.01, 0.005)}
     assert cells(pictures_table(spans)) == [["64", "20.0 (10.0)", "10.0 (5.0)", "2.00"]]
 

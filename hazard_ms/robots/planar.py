@@ -18,6 +18,7 @@ from mani_skill.agents.controllers.base_controller import CombinedController
 from numpy.typing import NDArray
 from torch import Tensor
 
+from hazard_ms.robots.chain import Chain
 from hazard_ms.robots.robot import Robot
 from hazard_ms.spec.checks import one_of
 
@@ -148,9 +149,8 @@ class PlanarRobot(Robot):
 
         Returns its position [m], [3], its rotation matrix, [3, 3], and its Jacobian, [6, J], all in the world frame.
         """
-        self._model.compute_forward_kinematics(joints)
+        self._model.compute_full_jacobian(joints)  # which computes the poses of links, too
         pose = self._model.get_link_pose(number).to_transformation_matrix()
-        self._model.compute_full_jacobian(joints)
         local = self._model.get_link_jacobian(number, True)[:, moving]
         turn = pose[:3, :3].astype(np.float64)
         jacobian = np.vstack([turn @ local[:3], turn @ local[3:]])
@@ -163,13 +163,10 @@ class PlanarRobot(Robot):
 
         `arms` [..., J] and `joints`, where all others are, in [rad] or [m].
         """
-        places = np.empty((arms.size // len(moving), len(numbers), 3))
-        compute, pose, index = self._model.compute_forward_kinematics, self._model.get_link_pose, np.array(moving)
-        for place, arm in zip(places, arms.reshape(-1, len(moving)), strict=True):
-            joints[index] = arm
-            compute(joints)
-            for k, number in enumerate(numbers):
-                place[k] = pose(number).p
+        chain = self._chains.get(tuple(numbers))
+        if chain is None:
+            chain = self._chains[tuple(numbers)] = Chain(self.robot._objs[0], numbers)
+        places = chain.places(joints, moving, arms.reshape(-1, len(moving)))
         return places.reshape(*arms.shape[:-1], len(numbers), 3) + np.array([0.0, 0.0, self.ride_height])
 
     def make_action(self, parts: dict[str, Any]) -> NDArray[np.float32]:
@@ -190,7 +187,16 @@ class PlanarRobot(Robot):
 
     def all_joints(self) -> NDArray[np.float64]:
         """Positions of all joints of the first environment [rad] or [m], [Joints]."""
-        return self.robot.get_qpos()[0].cpu().numpy().astype(np.float64)
+        if self.scene.gpu_sim_enabled:
+            return self.robot.get_qpos()[0].cpu().numpy().astype(np.float64)
+        return np.asarray(
+            self.robot._objs[0].qpos, dtype=np.float64
+        )  # past ManiSkill's tensors, in a fifth of the time
+
+    @cached_property
+    def _chains(self) -> dict[tuple[int, ...], Chain]:
+        """The chains of joints to the links that were asked for, by their numbers."""
+        return {}
 
     @cached_property
     def _model(self) -> Any:

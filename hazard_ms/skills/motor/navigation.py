@@ -17,7 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage, sparse
-from scipy.sparse import csgraph
+
+from hazard_ms.skills.motor.searching import Aim, by_graph, cheapest, graph_of, tied, trace
 
 STEEPNESS = 10.0  # growth of the cost with height [1/m] (docs/benchmark.md 3: exponential in the height)
 FLOOR = 0.03  # heights below this count as floor, given the noise of a 16 bit depth image [m]
@@ -34,7 +35,6 @@ SHORT = 3.0  # cost of ending a metre short of the goal, in metres of path
 AT_MOST = 0.6  # distance from where a path should end up to which SHORT holds, unless another is given [m]
 FAR_SHORT = 1000.0  # cost of ending a metre short of the goal beyond that, in metres of path
 BORDER = 10  # number of unexplored cells around the explored ones that a path may use
-SIDES = ((0, 1), (1, 0), (1, 1), (1, -1))  # half of the eight neighbours
 
 
 @dataclass(frozen=True)
@@ -83,31 +83,48 @@ class Ways:
         self._grid = _Grid(height, explored, cell, np.asarray(origin, dtype=np.float64), start, goals)
         if not self._grid.holds:
             return
-        self._start = np.asarray(start)
+        self._start, self._single = np.asarray(start), len(goals) == 1
         self._cost = _costs(self._grid.height, self._grid.explored, cell, radius, self._grid.start)
-        first = self._grid.start[0] * self._cost.shape[1] + self._grid.start[1]
-        spent, self._before = csgraph.dijkstra(_graph(self._cost, cell), indices=first, return_predecessors=True)
-        reachable = (spent.reshape(self._cost.shape) < OBSTACLE_COST * cell / 2) & (self._cost < OBSTACLE_COST)
-        y, x = np.nonzero(reachable)
-        self._number = y * self._cost.shape[1] + x
-        self._spent = spent[self._number]
-        self._centres = self._grid.centres(np.stack([y, x], -1))
+        self._first = self._grid.start[0] * self._cost.shape[1] + self._grid.start[1]
+        if not self._single:
+            self._search(None)
+
+    def _search(self, aim: Aim | None) -> None:
+        """Search from the start: everywhere, or until the best end of a path to `aim` is known."""
+        limit = OBSTACLE_COST * self._grid.cell / 2
+        self._reached, self._before = cheapest(self._cost, self._grid.cell, self._first, limit, aim)
+        settled = (self._reached < limit) & (self._cost.ravel() < OBSTACLE_COST)
+        self._number = np.flatnonzero(settled)
+        self._spent = self._reached[self._number]
+        self._centres = self._grid.centres(np.stack(np.divmod(self._number, self._cost.shape[1]), -1))
 
     def _end(self, goal: tuple[float, float], near: float, enough: float) -> tuple[int, float] | None:
         """Number of the cell where the best path to `goal` ends, and the distance left from it [m]; None: no path."""
-        if not self._grid.holds or not len(self._number):
+        if not self._grid.holds:
+            return None
+        if self._single:
+            x, y = np.asarray(goal) - self._grid.centres(np.zeros((1, 2), np.int64))[0]
+            self._search(Aim(x, y, near, max(near, enough), SHORT, FAR_SHORT))
+        if not len(self._number):
             return None
         far = np.hypot(*(self._centres - np.asarray(goal)).T)
         missed = np.maximum(far - near, 0.0)
         best = int(np.argmin(self._spent + np.where(far <= max(near, enough), SHORT, FAR_SHORT) * missed))
         return int(self._number[best]), float(far[best])
 
+    def _cells(self, end: int) -> NDArray[np.int64]:
+        """Cells (y, x) of the cheapest path to the cell `end`, [P, 2]; scipy chooses among equally cheap ones."""
+        cells = trace(self._before, end, self._cost.shape[1])
+        if tied(cells, self._reached, self._cost, self._grid.cell):
+            cells = trace(by_graph(self._cost, self._grid.cell, self._first), end, self._cost.shape[1])
+        return cells
+
     def path(self, goal: tuple[float, float], near: float, enough: float | None = None) -> Path | None:
         """The best path to within `near` [m] of `goal` [m]; see `plan`."""
         end = self._end(goal, near, near + AT_MOST if enough is None else enough)
         if end is None:
             return None
-        cells = _trace(self._before, end[0], self._cost.shape[1])
+        cells = self._cells(end[0])
         points = self._grid.centres(_straighten(cells, self._cost))[1:]
         whole = np.vstack([self._start[None], points])
         return Path(points, float(np.hypot(*np.diff(whole, axis=0).T).sum()), end[1])
@@ -120,7 +137,7 @@ class Ways:
         end = self._end(goal, near, near + AT_MOST)
         if end is None or end[1] - near > AT_MOST:
             return float("inf")
-        cells = _trace(self._before, end[0], self._cost.shape[1])
+        cells = self._cells(end[0])
         return float(np.hypot(*np.diff(cells, axis=0).T).sum() * self._grid.cell)
 
 
@@ -166,7 +183,7 @@ def known_floor(
     `height` [Y, X] [m], `cell` [m], `radius` of the robot [m].
     """
     cost = _costs(height, np.ones(height.shape, bool), cell, radius, None)
-    return cost, _graph(cost, cell)
+    return cost, graph_of(cost, cell)
 
 
 def _costs(
@@ -193,31 +210,6 @@ def _costs(
     cost = np.where(lacking > 1.0, np.where(here & free, LEAVING_COST, OBSTACLE_COST), cost)
     cost[start] = min(cost[start], LEAVING_COST)
     return cost
-
-
-def _graph(cost: NDArray[np.float64], cell: float) -> sparse.csr_matrix:
-    """Graph of the steps to eight neighbours; a step costs its length times the mean cost of its two cells."""
-    number = np.arange(cost.size).reshape(cost.shape)
-    rows, columns, weights = [], [], []
-    for dy, dx in SIDES:
-        a = (slice(0, cost.shape[0] - dy), slice(max(0, -dx), cost.shape[1] - max(0, dx)))
-        b = (slice(dy, cost.shape[0]), slice(max(0, dx), cost.shape[1] - max(0, -dx)))
-        rows.append(number[a].ravel())
-        columns.append(number[b].ravel())
-        weights.append(((cost[a] + cost[b]) / 2 * cell * np.hypot(dy, dx)).ravel())
-    shape = (cost.size, cost.size)
-    half = sparse.coo_matrix(
-        (np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))), shape=shape
-    ).tocsr()
-    return half + half.T
-
-
-def _trace(before: NDArray[np.int32], end: int, width: int) -> NDArray[np.int64]:
-    """Cells (y, x) from the start to `end`, [P, 2]."""
-    chain = [end]
-    while before[chain[-1]] >= 0:
-        chain.append(int(before[chain[-1]]))
-    return np.stack(np.divmod(np.array(chain[::-1]), width), axis=-1)
 
 
 def _straighten(cells: NDArray[np.int64], cost: NDArray[np.float64]) -> NDArray[np.int64]:

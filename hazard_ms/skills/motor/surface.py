@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +12,11 @@ from scipy import ndimage
 
 from hazard_ms.skills.context import Stage
 from hazard_ms.skills.motor.roadmap import Paths
+from hazard_ms.skills.motor.touching import Counter, ground
 
 NEARLY = 0.5  # a posture on the way is passed when every joint is this close [rad] [ours]
 SPACING = 0.15  # greatest turn of a joint between two postures that are checked [rad] [ours]
 ARM_RADIUS = 0.06  # distance that the middle of the arm keeps above things; Fetch's upper arm is 0.12 m thick [m]
-HAND_RADIUS = 0.1  # and that the middle of the hand keeps; the G1's palm and thumb need most [m] [ours]
 BETWEEN = (0.0, 0.33, 0.67)  # points of each link that are checked, as shares of its length [-] [ours]
 OWN_HEIGHT = 0.3  # the arm keeps above this over its own base [m] [ours]
 WINDOW = 2.0  # distance from the base within which the map is looked at [m] [ours]
@@ -63,7 +64,8 @@ class Surface:
         if at is not None:
             self._x, self._y = at.tolist()
         self._ahead = np.array([np.cos(heading + turn), np.sin(heading + turn)])
-        self._origin, self._height = self._window()
+        self._origin, height = self._window()
+        self._counter = Counter(self._around(), BETWEEN, np.ascontiguousarray(height))
         self._paths: dict[tuple[float, bytes], Paths] = {}
         self._known: dict[tuple[float, bytes, float, bytes], int] = {}  # hits of legs that were checked before
 
@@ -83,29 +85,61 @@ class Surface:
             height = height[tuple(nearest)]
         return seen.origin + seen.cell * np.array([low_x, low_y]), height
 
+    def _around(self) -> Any:
+        """What arms keep above, for the kernel that counts what touches."""
+        place = self.place
+        return ground(
+            x=self._x,
+            y=self._y,
+            ahead_x=float(self._ahead[0]),
+            ahead_y=float(self._ahead[1]),
+            radius=self._stage.robot.build.radius,
+            own=OWN_HEIGHT,
+            west=float(self._origin[0]),
+            south=float(self._origin[1]),
+            cell=self._stage.seen.cell,
+            gap=ARM_RADIUS,
+            place_x=float(place.middle[0]),
+            place_y=float(place.middle[1]),
+            place_radius=place.radius,
+            bottom=place.bottom,
+            slope=SLOPE,
+            top=place.top + ARM_RADIUS,
+        )
+
     def hits(self, legs: Sequence[Leg], enough: float = np.inf) -> int:
         """The number of checked points of a route over `legs`, the first of which is its start, that lie in something.
 
         It stops counting between legs where there are `enough`.
         """
-        count, start = 0, legs[0]
+        pieces, start = [], legs[0]
         for end in legs[1:]:
-            count += self._hits(start, end)
-            if count >= enough:
-                break
+            pieces.append((start, end))
             share = max(0.0, 1.0 - end.near / max(float(np.abs(end.arm - start.arm).max()), 1e-9))
             start = Leg(start.arm + share * (end.arm - start.arm), end.ahead)  # where the next leg begins
+        count = 0
+        for found in self._hits(pieces):
+            count += found
+            if count >= enough:
+                break
         return count
 
-    def _hits(self, start: Leg, end: Leg) -> int:
-        key = (start.ahead, start.arm.tobytes(), end.ahead, end.arm.tobytes())
-        if key not in self._known:
-            steps = max(1, int(np.ceil(np.abs(end.arm - start.arm).max() / SPACING)))
-            shares = np.arange(1, steps + 1) / steps
-            arms = start.arm + shares[:, None] * (end.arm - start.arm)
-            places = self._stage.robot.arm_places(arms, resting=True)
-            self._known[key] = int(self._touching(places, start.ahead + shares * (end.ahead - start.ahead)).sum())
-        return self._known[key]
+    def _hits(self, pieces: Sequence[tuple[Leg, Leg]]) -> list[int]:
+        """The number of points that lie in something along each of the legs between a start and an end."""
+        keys = [(start.ahead, start.arm.tobytes(), end.ahead, end.arm.tobytes()) for start, end in pieces]
+        new = {key: piece for key, piece in zip(keys, pieces, strict=True) if key not in self._known}
+        if new:
+            arms, ahead, owner = [], [], []
+            for number, (start, end) in enumerate(new.values()):
+                steps = max(1, int(np.ceil(np.abs(end.arm - start.arm).max() / SPACING)))
+                shares = np.arange(1, steps + 1) / steps
+                arms.append(start.arm + shares[:, None] * (end.arm - start.arm))
+                ahead.append(start.ahead + shares * (end.ahead - start.ahead))
+                owner += [number] * steps
+            places = self._stage.robot.arm_places(np.concatenate(arms), resting=True)
+            counts = np.bincount(owner, self._counter.touched(places, np.concatenate(ahead)))
+            self._known.update(zip(new, map(int, counts), strict=True))
+        return [self._known[key] for key in keys]
 
     def paths(self, start: NDArray[np.float64], ahead: float, cost: float) -> Paths:
         """The quickest paths over the roadmap from joints `start` [rad], [Joints], with the base `ahead` [m] of here.
@@ -116,49 +150,7 @@ class Surface:
         if key not in self._paths:
 
             def touched(places: NDArray[np.float64]) -> NDArray[np.int64]:
-                return self._touching(places, np.full(len(places), ahead))
+                return self._counter.touched(places, np.full(len(places), ahead))
 
             self._paths[key] = Paths(self._stage.robot, start, touched, cost)
         return self._paths[key]
-
-    def _touching(self, places: NDArray[np.float64], ahead: NDArray[np.float64]) -> NDArray[np.int64]:
-        """How many points along each arm lie in something, [N].
-
-        Joints are at `places` [m], [N, P, 3], in the frame of the base, which is `ahead` [m], [N], of where it is.
-        """
-        points = _dense(places)
-        count, along = points.shape[:2]
-        middle = np.array([self._x, self._y]) + ahead[:, None] * self._ahead
-        points[..., :2] = points[..., :2] @ np.array([self._ahead, [-self._ahead[1], self._ahead[0]]])
-        points[..., :2] += middle[:, None]
-        inside = self._inside(points.reshape(-1, 3), np.repeat(middle, along, axis=0), np.tile(_radii(along), count))
-        return np.asarray(inside.reshape(count, along).sum(axis=1))
-
-    def _inside(
-        self, points: NDArray[np.float64], base: NDArray[np.float64], radius: NDArray[np.float64]
-    ) -> NDArray[np.bool_]:
-        """Which of the `points` [m], [N, 3], with `radius` [m], [N], lie in something.
-
-        The base's middle is at `base` [m], [N, 2].
-        """
-        x, y = np.floor((points[:, :2] - self._origin) / self._stage.seen.cell).astype(int).T
-        within = (x >= 0) & (y >= 0) & (x < self._height.shape[1]) & (y < self._height.shape[0])
-        height = np.where(within, self._height[np.where(within, y, 0), np.where(within, x, 0)], 0.0)
-        beside = np.hypot(*(points[:, :2] - self.place.middle[:2]).T) - self.place.radius
-        cone = self.place.bottom + SLOPE * np.maximum(beside, 0.0)
-        level = (height < self.place.top + ARM_RADIUS) | (beside < ARM_RADIUS)  # neither a wall nor the back of a chair
-        low = np.where(level, np.minimum(height + ARM_RADIUS, cone), height + ARM_RADIUS)
-        own = np.hypot(*(points[:, :2] - base).T) < self._stage.robot.build.radius
-        return np.asarray(points[:, 2] < np.where(own, OWN_HEIGHT, low))
-
-
-def _dense(places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The points that are checked, [N, Q, 3], along arms whose joints are at `places`, [N, P, 3]; the hand is last."""
-    along = places[:, 1:] - places[:, :-1]
-    links = [places[:, :-1] + b * along for b in BETWEEN]
-    return np.concatenate([*links, places[:, -1:]], axis=1)
-
-
-def _radii(count: int) -> NDArray[np.float64]:
-    """How far each of `count` checked points keeps from things [m], [Q]."""
-    return np.append(np.full(count - 1, ARM_RADIUS), HAND_RADIUS)

@@ -11,6 +11,7 @@ from torch import Tensor
 from hazard_ms.effects.entities import PREFIX, draws, materials
 from hazard_ms.effects.shaders import pack
 from hazard_ms.effects.shaders.pack import shader_config
+from hazard_ms.effects.streets import street
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.machine.progress import say
@@ -64,7 +65,12 @@ class Looks:
     ) -> None:
         """Effects of `mode` (full, fast, off) for `scenes` in which the things of `specs` stand."""
         shader_config(mode)
-        filled = pack.available(mode) and all(draws(s) for s in scenes) and any(h.fills for h in hazards)
+        shown = pack.available(mode) and all(draws(s) for s in scenes)
+        self._towns = [
+            street.build(scene, spec) if shown and spec.room.open_air and spec.room.patches else []
+            for scene, spec in zip(scenes, specs, strict=True)
+        ]
+        filled = shown and any(h.fills for h in hazards)
         self._around = [Surroundings(*row) for row in zip(scenes, specs, strict=True)] if filled else []
         self._parts: dict[str, Effects] = {
             name: maker.build(scenes, specs, world, mode, self._around) for name, maker in makers(hazards).items()
@@ -82,6 +88,8 @@ class Looks:
         for row, colour in zip(self._lit, air, strict=True):
             for material in row:
                 material.base_color = [*colour, 1.0]
+        for town, colour in zip(self._towns, air, strict=True):
+            street.shine(town, colour)
         for around, colour in zip(self._around, air, strict=False):
             around.light(colour)
 

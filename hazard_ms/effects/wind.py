@@ -20,6 +20,7 @@ from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, make_effect
 from hazard_ms.effects.scene_effects import Place, SceneEffects
 from hazard_ms.effects.shaders.common import LEAF, PAPER, STREAK
 from hazard_ms.effects.shaders.wind import BOX
+from hazard_ms.effects.streets.street import Breeze
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.sway import foliage
 from hazard_ms.effects.textures import noise_texture
@@ -28,7 +29,7 @@ from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec
 
 NUMBERS = {  # of each kind in a box of air, full and fast [ours]
-    LEAF: (900, 450),
+    LEAF: (1100, 550),
     PAPER: (50, 25),
     STREAK: (180, 90),
 }
@@ -51,6 +52,7 @@ class _SceneWind:
         ]
         self._parts: list[Effect] = [e for e in made if e is not None]
         self._foliage = foliage(scene, spec) if rich else None
+        self._breeze = Breeze(scene)
 
     def show(self, heading: tuple[float, float], speed: float, gust: float, time: float) -> None:
         """Show a wind of `speed` [m/s] towards `heading`, a unit vector; `gust` in standard deviations."""
@@ -60,8 +62,10 @@ class _SceneWind:
         self._around.haze(HAZE_DENSITY * strength, drift)
         for part in self._parts:
             part.show(sapien.Pose([*drift, time], [math.cos(half), 0.0, 0.0, math.sin(half)]), strength, time)
+        told = sapien.Pose([heading[0] * strength, heading[1] * strength, time])
+        self._breeze.show(told)
         if self._foliage is not None:
-            self._foliage.show(sapien.Pose([heading[0] * strength, heading[1] * strength, time]), strength, time)
+            self._foliage.show(told, strength, time)
 
 
 class WindEffects(SceneEffects):

@@ -74,6 +74,7 @@ def dress(scene: sapien.Scene, eye: sapien.Pose, time: float) -> list[sapien.Ent
     if found:
         quads = Quads(*(np.concatenate([getattr(q, name) for q in found]) for name in ("corners", "places", "lives")))
         near = np.linalg.norm(quads.corners.mean(1) - view[:3, 3], axis=-1) < NEAR_LIMIT
+        near |= quads.corners[:, 0, 2] < meshes.NOWHERE  # what does not fly
         kept = Quads(quads.corners[~near], quads.places[~near], quads.lives[~near])
         if len(kept.corners):
             added.append(_entity(scene, _mesh(kept, time, air)))

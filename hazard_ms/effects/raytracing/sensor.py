@@ -24,6 +24,7 @@ from hazard_ms.effects.raytracing.denoise import MOST_BOUNCES, denoised, develop
 from hazard_ms.effects.raytracing.geometry import dress, undress
 from hazard_ms.effects.raytracing.pack import STOCK, ray_pack
 from hazard_ms.effects.shaders.pack import colour, pack_folder
+from hazard_ms.effects.streets.street import at_rest
 
 SAMPLES, DEPTH = "ray_tracing_samples_per_pixel", "ray_tracing_path_depth"
 
@@ -77,14 +78,15 @@ class RayCamera(Camera):
         scene.update_render()
         self._twin.take_picture()
         taken = {name: self._twin.get_picture(name) for name in config.texture_names if name != "Color"}
-        added = dress(scene, eye.global_pose, self._clock())
-        try:
-            taken["Color"] = developed(
-                denoised(*exposed(scene, eye, min(settings[DEPTH], MOST_BOUNCES), settings[SAMPLES]))
-            )
-        finally:
-            undress(scene, added)
-            scene.update_render()
+        with at_rest(scene):
+            added = dress(scene, eye.global_pose, self._clock())
+            try:
+                taken["Color"] = developed(
+                    denoised(*exposed(scene, eye, min(settings[DEPTH], MOST_BOUNCES), settings[SAMPLES]))
+                )
+            finally:
+                undress(scene, added)
+        scene.update_render()
         self._textures = {name: to_tensor(image)[None].to(self.camera.scene.device) for name, image in taken.items()}
 
     def _rasterising(self) -> Any:

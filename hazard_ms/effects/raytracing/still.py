@@ -15,6 +15,7 @@ from hazard_ms.effects.raytracing.denoise import MOST_BOUNCES, Image, denoised, 
 from hazard_ms.effects.raytracing.geometry import dress, undress
 from hazard_ms.effects.raytracing.pack import ray_pack
 from hazard_ms.effects.shaders.pack import pack_folder
+from hazard_ms.effects.streets.street import at_rest
 
 BOUNCES = {"rt-fast": 1, "rt": MOST_BOUNCES}  # by shader
 NEAR_PLANE, FAR_PLANE = 0.05, 120.0  # of what is seen [m]
@@ -53,13 +54,14 @@ class Photographer:
         if shader == "default":
             yield lambda _: _raster(self._scene, view)
             return
-        added = dress(self._scene, view.pose, time)
-        try:
-            eye = self._eye(view)
-            exposed(self._scene, eye, BOUNCES[shader], 0)
-            yield lambda samples: developed(denoised(*exposed(self._scene, eye, BOUNCES[shader], samples)))
-        finally:
-            undress(self._scene, added)
+        with at_rest(self._scene):
+            added = dress(self._scene, view.pose, time)
+            try:
+                eye = self._eye(view)
+                exposed(self._scene, eye, BOUNCES[shader], 0)
+                yield lambda samples: developed(denoised(*exposed(self._scene, eye, BOUNCES[shader], samples)))
+            finally:
+                undress(self._scene, added)
 
     def _eye(self, view: Viewpoint) -> Any:
         key = view.width, view.height

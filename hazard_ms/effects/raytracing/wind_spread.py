@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from hazard_ms.effects.meshes import NOWHERE
 from hazard_ms.effects.shaders.common import STREAK
 from hazard_ms.effects.shaders.wind import BOX
 
@@ -14,7 +15,8 @@ SUN = np.array([-0.32, -0.49, 0.81])  # where light comes from, as in shaders/wi
 def carried(kind: Array, seed: Array, home: Array, pose: Array, eye: Array) -> tuple[Array, Array, Array, Array]:
     """Places [m], edges across and up, [Q, 3] each, and lightness 0..1, [Q], of the copies around `eye` [m], [3].
 
-    `kind` and `seed`, [Q]; `home`: places in the box of air [m], [Q, 3]; `pose`, [4, 4], carries drift and time.
+    `kind` and `seed`, [Q]; `home`: places in the box of air [m], [Q, 3]; `pose`, [4, 4], carries drift and time. What
+    does not fly, between two gusts, is far below.
     """
     time, one, two = pose[2, 3], seed * 17.0 % 1.0, seed * 43.0 % 1.0
     heading = pose[:2, 0] / np.linalg.norm(pose[:2, 0])
@@ -25,7 +27,10 @@ def carried(kind: Array, seed: Array, home: Array, pose: Array, eye: Array) -> t
     bob = np.where(streak, 0.05, 0.16 + 0.25 * home[:, 2] * two)
     height = home[:, 2] + bob * (1.0 + np.sin(1.37 * swing)) * 0.5
     at = eye[:2] + (at - eye[:2] + 0.5 * BOX) % BOX - 0.5 * BOX
-    anchor = np.column_stack([at, height])
+    way = (at - pose[:2, 3]) @ np.column_stack([heading, [-heading[1], heading[0]]])
+    front = 0.5 + 0.5 * np.sin(0.42 * way[:, 0] + 1.2 * np.sin(0.23 * way[:, 1]))
+    calm = seed * 97.0 % 1.0 > 0.35 + 0.9 * front  # between two gusts
+    anchor = np.column_stack([at, np.where(calm, 10.0 * NOWHERE, height)])
     ahead = np.column_stack([np.broadcast_to(heading, at.shape), 0.05 * np.sin(swing)])
     axis = _unit(np.column_stack([np.cos(swing * 0.7), np.sin(swing * 0.7), 0.6 * np.sin(swing * 0.31)]))
     side = _unit(np.cross(axis, [0.3, 0.5, 0.81]))

@@ -23,6 +23,8 @@ from torch import Tensor
 
 from hazard_ms.effects.shaders.char import CHAR, CHAR_DEFERRED, CHAR_FORWARD
 from hazard_ms.effects.shaders.common import EFFECT_FRAG, EFFECT_VERT
+from hazard_ms.effects.shaders.dressing import DRESS_FRAG, DRESS_VERT, SKY_FIRST
+from hazard_ms.effects.shaders.shadow import PCF, SOFT
 from hazard_ms.effects.shaders.shimmer import AIR_FRAG, AIR_VERT, BEND
 from hazard_ms.effects.shaders.sway import STILL, SWAY_FRAG, SWAY_VERT
 from hazard_ms.effects.shaders.water import IMMERSE, IMMERSE_DEFERRED, IMMERSE_FORWARD
@@ -30,13 +32,15 @@ from hazard_ms.machine.cache import kept_folder
 from hazard_ms.spec.checks import one_of
 
 NAMES = {"full": "hazard", "fast": "hazard-fast", "off": "default"}  # effects mode -> shader pack of the cameras
-EFFECT_PASS = 2  # shading mode of effect geometry: no stock pack has this pass, so none draws it
-SWAY_PASS = 3  # that of foliage, in the full pack alone
+DRESS_PASS = 2  # shading mode of the town around a street: no stock pack has this pass, so none draws it
+EFFECT_PASS = 3  # that of effect geometry, which may hide the town
+SWAY_PASS = 4  # that of foliage, in the full pack alone
 # that of hot air, in the full pack alone; it comes last, since its quads would hide what is drawn after them
-AIR_PASS = 4
+AIR_PASS = 5
 SETS = ("camera_set.glsl", "object_set.glsl", "material_set.glsl")
 # the fast pack's own name: ManiSkill changes the pixel format of "PositionSegmentation" for the whole process
 LABELS = "PositionLabel"
+MAIN = "void main() {"
 
 _log = logging.getLogger(__name__)
 _warm: dict[str, tuple[sapien.Scene, sapien.render.RenderCameraComponent]] = {}
@@ -120,6 +124,7 @@ def _pack(name: str) -> str | None:
     try:
         base = stock / ("default" if name == "hazard" else "minimal")
         files = texts(base) | {f"../common/{n}": t for n, t in texts(stock / "common").items()}
+        files["../common/shadow.glsl"] = insert(files, "../common/shadow.glsl", PCF, "").partition(PCF)[0] + SOFT
         if name == "hazard":
             files = _full(files)
         else:
@@ -140,13 +145,15 @@ def _full(files: dict[str, str]) -> dict[str, str]:
     """SAPIEN's deferred pack with charring, water, haze and the effect pass."""
     _known(files, "gbuffer1.frag", "gbuffer1.vert", "deferred.frag", *SETS)
     end = re.compile(r"\}\s*\Z")
-    opaque = insert(files, "gbuffer.frag", "void main() {", CHAR + IMMERSE)
+    opaque = insert(files, "gbuffer.frag", MAIN, CHAR + IMMERSE)
     files = files | {"gbuffer.frag": opaque}
     _known_words(opaque, "outAlbedo", "outSpecular", "outEmission", "objectCoord", "transmissionRoughness")
     if not end.search(opaque):
         raise UnknownSapienError("gbuffer.frag does not end with its main function")
     files["gbuffer.frag"] = end.sub(lambda _: CHAR_DEFERRED + IMMERSE_DEFERRED + "}\n", opaque)
-    files |= {"gbuffer2.vert": EFFECT_VERT, "gbuffer2.frag": EFFECT_FRAG}
+    files["deferred.frag"] = insert(files, "deferred.frag", MAIN, "").replace(MAIN, MAIN + SKY_FIRST)
+    files |= _town(files["gbuffer1.frag"])
+    files |= {f"gbuffer{EFFECT_PASS}.vert": EFFECT_VERT, f"gbuffer{EFFECT_PASS}.frag": EFFECT_FRAG}
     files |= {f"gbuffer{SWAY_PASS}.vert": SWAY_VERT, f"gbuffer{SWAY_PASS}.frag": SWAY_FRAG}
     files |= {f"gbuffer{AIR_PASS}.vert": AIR_VERT, f"gbuffer{AIR_PASS}.frag": AIR_FRAG}
     return files | {"composite0.frag": _bent(files)}
@@ -163,13 +170,13 @@ def _bent(files: dict[str, str]) -> str:
         for k, n in enumerate(("Bend", "Air", "Sway"))
     )
     _known_words(text, "samplerPositionRaw", "samplerSegmentation", name=name)
-    return insert({name: text}, name, "void main() {", air + BEND + STILL)
+    return insert({name: text}, name, MAIN, air + BEND + STILL)
 
 
 def _fast(files: dict[str, str]) -> dict[str, str]:
     """SAPIEN's single-pass pack with charring, water, haze and the effect pass, which here writes final colours."""
     _known(files, "gbuffer.vert", *SETS)
-    forward = insert(files, "gbuffer.frag", "void main() {", CHAR + "#define FAST\n" + IMMERSE)
+    forward = insert(files, "gbuffer.frag", MAIN, CHAR + "#define FAST\n" + IMMERSE)
     files = files | {"gbuffer.frag": forward}
     forward = insert(files, "gbuffer.frag", "  vec3 diffuseAlbedo", _fast_char() + IMMERSE_FORWARD)
     _known_words(forward, "outColorRaw", "outPositionSegmentation", "objectCoord", "transmissionRoughness")
@@ -185,7 +192,20 @@ def _fast(files: dict[str, str]) -> dict[str, str]:
     shown = EFFECT_FRAG.replace(
         "outLighting = colour", "outLighting = vec4(pow(min(colour.rgb, 1.0), vec3(1.0 / 2.2)), colour.a)"
     )
-    return files | {"gbuffer2.vert": EFFECT_VERT, "gbuffer2.frag": shown.replace("outLighting", "outColorRaw")}
+    files |= _town(files["gbuffer.frag"], "#define FAST\n")
+    return files | {
+        f"gbuffer{EFFECT_PASS}.vert": EFFECT_VERT,
+        f"gbuffer{EFFECT_PASS}.frag": shown.replace("outLighting", "outColorRaw"),
+    }
+
+
+def _town(forward: str, words: str = "") -> dict[str, str]:
+    """The pass of the town around a street, with the declarations of the pack's `forward` pass."""
+    head, mark, _ = forward.partition("layout(location = 0) in vec4 inPosition;")
+    if not mark:
+        raise UnknownSapienError("the forward pass has no position")
+    _known_words(head, "NUM_DIRECTIONAL_LIGHT_SHADOWS", "NUM_POINT_LIGHTS", "samplerEnvironment", name="its head")
+    return {f"gbuffer{DRESS_PASS}.vert": DRESS_VERT, f"gbuffer{DRESS_PASS}.frag": head + words + DRESS_FRAG}
 
 
 def _fast_char() -> str:

@@ -79,8 +79,9 @@ clouds near the ground
     vec3 p = mix(eye, place, (0.2 + 0.35 * float(k)) * reach / far);
     vec2 q = p.xy - drift;
     float broad = sin(0.61 * q.x + 1.4 * sin(0.47 * q.y + 0.3 * q.x)) * sin(0.53 * q.y - 1.2 * sin(0.39 * q.x));
-    float fine = sin(2.3 * q.x + 1.5 * sin(1.9 * q.y + 1.7 * p.z)) * sin(2.1 * q.y - 1.3 * sin(1.6 * q.x));
-    dust += max(broad + 0.45 * fine, 0.0) * exp(-max(p.z, 0.0) / 0.7);
+    float fine = sin(2.3 * q.x + 1.9 * q.y + 1.7 * p.z) * sin(2.1 * q.y - 1.6 * q.x);
+    float gust = 1.0 + 0.6 * sin(0.42 * q.x + 0.31 * q.y);  // gusts carry more of it
+    dust += max(broad + 0.45 * fine, 0.0) * gust * exp(-max(p.z, 0.0) / 0.7);
   }
   return dust * reach * 2.2;
 #endif

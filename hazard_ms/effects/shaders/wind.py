@@ -21,6 +21,11 @@ vec3 tumbling(float seed, float time, vec3 axis, out vec3 along) {  // an edge t
   return side;
 }
 
+float gustFront(vec2 at, vec2 drift, vec2 heading) {  // 0 to 1: gusts stand across the wind and travel with it
+  vec2 way = at - drift;
+  return 0.5 + 0.5 * sin(0.42 * dot(way, heading) + 1.2 * sin(0.23 * dot(way, vec2(-heading.y, heading.x))));
+}
+
 void carry(float kind, float seed, vec3 home, mat4 model, vec3 eye, out vec3 anchor, out vec3 across, out vec3 up, \
 out float shade) {
   float time = model[3].z, one = fract(seed * 17.0), two = fract(seed * 43.0);
@@ -33,6 +38,7 @@ out float shade) {
   float height = home.z + (kind > 6.5 ? 0.05 : 0.16 + 0.25 * home.z * two) * (1.0 + sin(1.37 * swing)) * 0.5;
   at = eye.xy + mod(at - eye.xy + 0.5 * box, box) - 0.5 * box;
   anchor = vec3(at, height);
+  if (fract(seed * 97.0) > 0.35 + 0.9 * gustFront(at, model[3].xy, heading)) anchor.z = -1e4;  // between two gusts
   vec3 toEye = normalize(eye - anchor), ahead = vec3(heading, 0.05 * sin(swing));
   shade = 1.0;
   if (kind > 6.5) {  // a streak lies along the wind

@@ -19,7 +19,7 @@ from sapien.render import RenderMaterial, RenderShapeTriangleMesh, RenderTexture
 from hazard_ms.effects.entities import Effect, make_effect
 from hazard_ms.effects.shaders.common import SOOT
 from hazard_ms.effects.textures import noise
-from hazard_ms.scenes.shell import ShellBox, shell
+from hazard_ms.simulation.building import wall_pieces
 from hazard_ms.spec import Room
 
 MAP_SIDE = 64  # of the map [texels]
@@ -104,9 +104,8 @@ def _sheets(room: Room) -> Iterator[list[Quad]]:
     """Quads before what soot settles on: each wall as one sheet, the ceiling as four."""
     if room.open_air:
         return
-    boxes = [box for box in shell(room) if box.kind == "wall"]
-    for _, wall in itertools.groupby(boxes, key=lambda box: box.name.split("_")[1:-1]):
-        quads = [quad for box in wall for quad in _faces(box, room)]
+    for _, wall in itertools.groupby(wall_pieces(room), key=lambda piece: piece[0]):
+        quads = [quad for _, centre, size in wall for quad in _faces(centre, size, room)]
         if quads:
             yield quads
     (x, y), z = room.size, room.height - APART
@@ -118,11 +117,11 @@ def _sheets(room: Room) -> Iterator[list[Quad]]:
         ]
 
 
-def _faces(box: ShellBox, room: Room) -> Iterator[Quad]:
-    """The faces of a piece of wall that look into the room, in pieces."""
-    across = int(np.argmin(box.size[:2]))  # the axis through the wall
+def _faces(centre: Array, size: Array, room: Room) -> Iterator[Quad]:
+    """The faces of a piece of wall, [3] [m] each, that look into the room, in pieces."""
+    across = int(np.argmin(size[:2]))  # the axis through the wall
     along = 1 - across
-    low, high = (np.array(box.centre) + side * np.array(box.size) / 2 for side in (-1, 1))
+    low, high = (centre + side * size / 2 for side in (-1, 1))
     for at in (low[across] - APART, high[across] + APART):
         if not 0.0 < at < room.size[across]:
             continue

@@ -38,7 +38,7 @@ class Quads:
     lives: Array
 
     def of(self, which: Array) -> Quads:
-        """Those for which `which`, [Q], holds."""
+        """The quads for which `which`, [Q], holds."""
         return Quads(self.corners[which], self.places[which], self.lives[which])
 
 

@@ -10,6 +10,7 @@ from sapien.render import RenderBodyComponent, RenderMaterial, RenderShapeTriang
 
 from hazard_ms.effects import meshes
 from hazard_ms.effects.shaders import pack
+from hazard_ms.effects.shaders.water import CUT_IOR, DRY_IOR, WET_IOR
 from hazard_ms.simulation.names import plain_name
 
 FRAMES_PER_SECOND = 30.0  # of the animation, as videos play
@@ -111,6 +112,11 @@ def materials(entity: sapien.Entity) -> list[RenderMaterial]:
         for s in shapes
         for m in ([p.material for p in s.parts] if isinstance(s, RenderShapeTriangleMesh) else [s.material])
     ]
+
+
+def dry_ior(material: RenderMaterial) -> float:
+    """The index of refraction that says that a thing of `material` is dry; how wet it is is what it has more."""
+    return CUT_IOR if material.ior > CUT_IOR - WET_IOR else DRY_IOR
 
 
 def seed(number: int) -> float:

@@ -1,4 +1,4 @@
-"""The effects of a fire: flames, scorch marks, smoke, hot air, charring and its light, all driven by its state.
+"""The effects of a fire: flames, scorch marks, smoke, soot, hot air, charring and its light, all driven by its state.
 
 Everything is made when a scene is built. A picture then only moves effect entities and writes scalars of materials,
 both functions of the world, the fire and the frame alone: the same state gives the same pixels, whatever was shown
@@ -23,6 +23,7 @@ from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, entities_of, m
 from hazard_ms.effects.scene_effects import Place, SceneEffects
 from hazard_ms.effects.shaders.common import SMOKE_PERIOD
 from hazard_ms.effects.shimmer import hot_air
+from hazard_ms.effects.soot import Soot
 from hazard_ms.effects.textures import noise_texture
 from hazard_ms.hazards.base import State
 from hazard_ms.hazards.fire.fire import FireState, body_flames, floor_flames
@@ -37,6 +38,10 @@ BROAD_EDGE = 0.7  # edge of a thing above which the air is as hot as it gets [m]
 FLOOR_HEAT = 0.7  # of the air above a burning patch, whose neighbours burn as well, as a share of that [ours]
 UNDER_CEILING = 0.15  # where smoke has faded, below the ceiling [m] [ours]
 SMOKE_STRENGTH = 0.30  # opacity of a puff [ours]
+SPECTATOR_DEPTH = 1.3  # optical depth across the room of the thickest smoke that a spectator sees [ours]
+SOOT_ON_THINGS = 0.40  # char of furniture below a ceiling that is black with soot [ours]
+FAINTEST = 0.02  # char by soot that is not shown [ours]
+FRAMES_PER_UPDATE = 5  # of heat, by which burning is counted (docs/physics.md 1.1)
 GLOW_COLOUR = np.array([1.0, 0.42, 0.10])  # linear RGB of firelight, about 1900 K
 LIGHT_PER_FLAME = 0.8  # radiant intensity in SAPIEN's units [ours]
 LIGHT_HEIGHT = 1.1  # above the middle of all that burns [m] [ours]
@@ -49,6 +54,7 @@ class _SceneFire:
     def __init__(self, place: Place, patches: int) -> None:
         scene, spec, names, rich = place.scene, place.spec, place.names, place.rich
         self.scene, self.around, self.noise = scene, place.around, noise_texture()
+        self.soot = Soot(scene, spec.room) if rich else None  # first, or smoke would hide it
         entities = entities_of(scene, names)
         self.charred = [materials(e) for e in entities]
         self.codes = [0.0] * len(names)
@@ -60,6 +66,7 @@ class _SceneFire:
         self.columns = [e for e in smoke if e is not None]
         self.air = [hot_air(scene, self.noise, k) for k in range(COLUMNS if rich else 0)]
         self.light = _lamp(scene) if rich else None
+        self.across = math.hypot(*spec.room.size)  # [m]
 
     def _effect(self, make: Callable[[RenderMaterial], RenderShapeTriangleMesh | None], number: int) -> Effect | None:
         return make_effect(self.scene, self.noise, make, number)
@@ -116,6 +123,23 @@ class _SceneFire:
         self.light.entity.set_pose(sapien.Pose(middle + [0.0, 0.0, LIGHT_HEIGHT]))
         self.light.color = GLOW_COLOUR * power
 
+    def thinned(self, density: float) -> float:
+        """The density of smoke [1/m] that a spectator sees instead of `density` [1/m]."""
+        most = SPECTATOR_DEPTH / self.across
+        return most * (1.0 - math.exp(-density / most))
+
+    def show_soot(self, place: np.ndarray, burnt: np.ndarray, frame: int) -> None:
+        """Show soot above `place` [m], [F, 3], which have burnt for the frames `burnt`, [F], at `frame`."""
+        if self.soot is not None:
+            self.soot.show(place, burnt, frame)
+
+    def sooty(self, codes: np.ndarray, place: np.ndarray, fixed: np.ndarray) -> np.ndarray:
+        """The char `codes`, [B], with the soot on things at `place` [m], [B, 3], that stay where they are (`fixed`)."""
+        if self.soot is None:
+            return codes
+        share = np.where(fixed, SOOT_ON_THINGS * self.soot.above(place), 0.0)
+        return np.where(share > FAINTEST, np.maximum(codes, 1.0 + np.floor(255.0 * share)), codes)
+
     def char(self, codes: np.ndarray) -> None:
         """Blacken and heat things by their char codes, [B]."""
         for k, parts in enumerate(self.charred):
@@ -127,7 +151,7 @@ class _SceneFire:
 
 
 class FireEffects(SceneEffects):
-    """The effects of a fire in each of E scenes. The mode `fast` leaves out smoke, hot air and firelight."""
+    """The effects of a fire in each of E scenes. The mode `fast` leaves out smoke, soot, hot air and firelight."""
 
     layer: ClassVar[int] = 0
 
@@ -146,9 +170,14 @@ class FireEffects(SceneEffects):
         heat = np.concatenate([on_things * np.minimum(broad, 1.0), on_floor * FLOOR_HEAT], -1)
         times = frame.cpu().numpy() / FRAMES_PER_SECOND
         codes = char_codes(fire, times)
+        frames, fixed = frame.cpu().numpy(), (world.exists & ~world.movable).cpu().numpy()
+        age = np.where(on_floor > 0.0, frames[:, None] - fire.flame_birth.cpu().numpy(), 0)
+        burnt = np.concatenate([fixed * FRAMES_PER_UPDATE * fire.burn_updates.cpu().numpy(), age], -1)
+        sooted = np.concatenate([centre, place], 1)
         for e, scene in enumerate(self._scenes):
             time = float(times[e])
-            scene.char(codes[e])
+            scene.show_soot(sooted[e], burnt[e], int(frames[e]))
+            scene.char(scene.sooty(codes[e], centre[e], fixed[e]))
             scene.show_things(np.concatenate([base[e], rotation[e]], -1), on_things[e], time)
             scene.show_floor(place[e], on_floor[e], time)
             sources, strength = np.concatenate([centre[e], place[e]]), np.concatenate([on_things[e], on_floor[e]])
@@ -164,7 +193,7 @@ class FireEffects(SceneEffects):
             return
         for scene, low, thick in zip(self._scenes, height.cpu().tolist(), density.cpu().tolist(), strict=True):
             if scene.around is not None:
-                scene.around.smoke(low, thick)
+                scene.around.smoke(low, scene.thinned(thick) if self.spectator else thick)
 
 
 def _lamp(scene: sapien.Scene) -> RenderPointLightComponent:

@@ -17,10 +17,10 @@ import torch
 from sapien.render import RenderMaterial, RenderShapeTriangleMesh
 from torch import Tensor
 
-from hazard_ms.effects.entities import FRAMES_PER_SECOND, entities_of, make_effect, materials
+from hazard_ms.effects.entities import FRAMES_PER_SECOND, dry_ior, entities_of, make_effect, materials
 from hazard_ms.effects.scene_effects import Place, SceneEffects
 from hazard_ms.effects.shaders.common import WATER
-from hazard_ms.effects.shaders.water import DRY_IOR, WET_IOR
+from hazard_ms.effects.shaders.water import WET_IOR
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.textures import ripple_texture
 from hazard_ms.hazards.flood import flow_paths
@@ -72,7 +72,7 @@ class _SceneFlood:
             share = round(float(shares[k]), 3)
             if share != self._wet[k]:
                 for material in parts:
-                    material.ior = DRY_IOR + WET_IOR * share
+                    material.ior = dry_ior(material) + WET_IOR * share
                 self._wet[k] = share
 
 

@@ -9,6 +9,7 @@ import sapien
 from torch import Tensor
 
 from hazard_ms.effects.entities import PREFIX, draws, materials
+from hazard_ms.effects.scene_effects import SceneEffects
 from hazard_ms.effects.shaders import pack
 from hazard_ms.effects.shaders.pack import shader_config
 from hazard_ms.effects.streets import street
@@ -93,9 +94,14 @@ class Looks:
         for around, colour in zip(self._around, air, strict=False):
             around.light(colour)
 
-    def update(self, world: World, states: dict[str, Any], frame: Tensor) -> None:
-        """Show the hazards' `states` at `frame` [E]; to be called before a picture is taken."""
+    def update(self, world: World, states: dict[str, Any], frame: Tensor, spectator: bool = False) -> None:
+        """Show the hazards' `states` at `frame` [E]; to be called before a picture is taken.
+
+        For a `spectator` smoke is thinner, so that the picture can be read.
+        """
         for name, part in self._parts.items():
+            if isinstance(part, SceneEffects):
+                part.spectator = spectator
             part.update(world, states[name], frame)
         for around in self._around:
             around.show()

@@ -35,6 +35,7 @@ class SceneEffects(abc.ABC):
 
     def __init__(self, scenes: list[Any], mode: str, device: sapien.Device | None) -> None:
         self._scenes, self._mode, self._device = scenes, mode, device
+        self.spectator = False  # the coming picture is taken in third person
 
     @classmethod
     def build(

@@ -210,7 +210,7 @@ class HazardEnv(BuiltEnv):
         """A picture of the present frame, as `render_mode` says. Raises ValueError where nothing renders."""
         if not self._draws:
             raise ValueError("render_backend must be auto, gpu or cpu for render(), got none: see `hazard-ms doctor`")
-        self.observer.show()
+        self.observer.show(spectator=self.render_mode in ("human", "rgb_array"))  # other modes show sensors, too
         return super().render()
 
     def label_table(self, env: int = 0) -> dict[int, tuple[str, str]]:

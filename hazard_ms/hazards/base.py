@@ -120,6 +120,14 @@ class Hazard(abc.ABC):
     provides: ClassVar[dict[str, str]] = {}
     uses: ClassVar[tuple[str, ...]] = ()  # fields of the world that it reads, where another hazard provides them
 
+    @property
+    def shown_level(self) -> Level:
+        """The level with the range of colours that suits these parameters, for films and pictures.
+
+        Observations and learners keep that of `level`, which is the same for all parameters.
+        """
+        return self.level
+
     def sizes(self, world: World) -> dict[str, int]:
         """Lengths of the axes of its quantities beyond E and B."""
         return {}

@@ -58,7 +58,7 @@ class DecisionPictures(Watcher):
 
     def begin(self, env: SkillEnv, decision: Decision) -> None:
         """Make the map for the hazards of the episode."""
-        self._map = MapPanel(MAP_WIDTH, EDGE, tuple(hazard.level for hazard in env.base.task.hazards))
+        self._map = MapPanel(MAP_WIDTH, EDGE, tuple(hazard.shown_level for hazard in env.base.task.hazards))
 
     def decided(self, decision: Decision, action: Action, note: str) -> None:
         """Take the pictures of a decision, as it was when the agent was asked."""

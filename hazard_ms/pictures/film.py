@@ -48,7 +48,7 @@ class Film(Watcher):
         title, subtitle = f"{base.task.name}   {base.specs[0].name}", f"{self._subtitle}, {speed:g}x speed"
         self._env = env
         self._video = self._files.enter_context(Video(self._draft, (WIDTH, HEIGHT), RATE))
-        self._compositor = Compositor(title, subtitle, tuple(h.level for h in base.task.hazards))
+        self._compositor = Compositor(title, subtitle, tuple(h.shown_level for h in base.task.hazards))
         self._head = base.observer.look()
 
     def decided(self, decision: Decision, action: Action, note: str) -> None:

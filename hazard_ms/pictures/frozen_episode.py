@@ -58,7 +58,7 @@ class FrozenEpisode:
         """The view from the corner (third), or through the robot's head camera (head), of a size in pixels."""
         if camera == "head":
             eye = self.env.observer.camera.camera._render_cameras[0]
-            return Viewpoint(eye.global_pose, float(eye.fovy), width, height)
+            return Viewpoint(eye.global_pose, float(eye.fovy), width, height, spectator=False)
         return Viewpoint(corner_view(self.env.specs[0]), THIRD_ANGLE, width, height)
 
     def around(self, share: float, width: int, height: int) -> Viewpoint:
@@ -77,7 +77,7 @@ class FrozenEpisode:
 
         Yields what takes a picture, given the samples per pixel.
         """
-        self.env.observer.show()
+        self.env.observer.show(view.spectator)
         with self._photographer.ready(view, shader, self.frame / FRAMES_PER_SECOND) as take:
             yield take
 

@@ -38,8 +38,11 @@ class Display:
         for some in cameras:
             take_over(some, lambda: int(world.frame[0]) / FRAMES_PER_SECOND)
 
-    def show(self, effects: bool = True) -> None:
-        """Show everything as it is now; call it before a picture is taken. Without `effects`, only what has labels."""
+    def show(self, effects: bool = True, spectator: bool = False) -> None:
+        """Show everything as it is now; call it before a picture is taken. Without `effects`, only what has labels.
+
+        For a `spectator` smoke is thinner than the robot sees it.
+        """
         if self.renders and effects:
             tell_of_first_picture(on_cpu=not self.scene.sub_scenes[0].render_system.device.is_cuda())
         world, agent = self._situation.world, self._situation.agent
@@ -50,4 +53,4 @@ class Display:
         if effects and self.effects is not None and self._lights is not None:
             self._lights.show(world.chance.seed, world.frame)
             self.effects.light(self._lights.air())
-            self.effects.update(world, self._situation.episode.states, world.frame)
+            self.effects.update(world, self._situation.episode.states, world.frame, spectator)

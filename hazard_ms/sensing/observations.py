@@ -51,9 +51,9 @@ class Observer:
         """Name and category of each id of a segmentation in scene `env`."""
         return label_table(self.situation.world, self.labels, env)
 
-    def show(self) -> None:
-        """Show everything as it is now; call it before a picture is taken."""
-        self.display.show()
+    def show(self, spectator: bool = False) -> None:
+        """Show everything as it is now; call it before a picture is taken, with `spectator` in third person."""
+        self.display.show(spectator=spectator)
 
     def extra(self, hidden: bool) -> dict[str, Tensor]:
         """The task's own entries of the observation, float32 [E, N] each in its term's unit [SI]; all if `hidden`."""

@@ -116,6 +116,13 @@ def partitions(spec: SceneSpec) -> Iterator[tuple[np.ndarray, np.ndarray]]:
             yield np.array(box.centre), np.array(box.size) / 2
 
 
+def wall_pieces(room: Room) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+    """The wall, the middle and the size of each piece of the walls that are seen [m], [3] each."""
+    for box in shell(room):
+        if box.kind == "wall":
+            yield box.name.rpartition("_")[0], np.array(box.centre), np.array(box.size)
+
+
 def build_thing(scene: Any, thing: Body | Fixture, env: int) -> Actor:
     """Build one body or fixture at its place in the scene."""
     builder = scene.create_actor_builder()

@@ -15,7 +15,7 @@ import sapien
 from mani_skill.render import PREBUILT_SHADER_CONFIGS
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.effects.raytracing import geometry, hits
+from hazard_ms.effects.raytracing import geometry, hits, surfaces
 from hazard_ms.effects.raytracing.cutouts import mark_cutouts
 from hazard_ms.effects.raytracing.denoise import exposed
 from hazard_ms.effects.raytracing.pack import ray_pack
@@ -128,7 +128,7 @@ def test_rays_pass_where_a_texture_shows_nothing(bench: Bench) -> None:
     places = np.array([[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]])  # rows of a texture go down
     normals = np.tile([-1.0, 0.0, 0.0], (4, 1))
     faces = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
-    card = geometry._entity(bench.scene, geometry._shape(corners, faces, normals, places, material))
+    card = geometry._entity(bench.scene, surfaces.shape(corners, faces, normals, places, material))
     card.name = "card"
     assert mark_cutouts(bench.scene) == 1
     above = bench.middle((EMBER, 2.0))

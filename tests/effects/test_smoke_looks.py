@@ -23,3 +23,26 @@ def test_smoke_dims_by_its_density_and_only_from_inside(mode: str) -> None:
     assert thick[solid].mean() < thin[solid].mean() - 5 < clear[solid].mean() - 10
     for name in {"segmentation", "depth", "position", "normal"} & set(seen[0]):
         np.testing.assert_array_equal(seen[3][name], seen[0][name], err_msg=name)
+
+
+@pytest.mark.render
+def test_a_spectator_sees_through_smoke_and_the_robot_does_not() -> None:
+    place = Place(fire("realistic"), INSIDE)
+    state, world = {"fire": place.state}, place.world
+    place.state.smoke_height[:] = 0.3
+    seen = {}
+    for density in (0.0, 1.0, 12.0):
+        place.state.smoke_density[:] = density
+        seen[density] = place.picture(10)
+    solid = seen[0.0]["segmentation"][..., 0] > 0
+    clear, _, thick = (s["rgb"][solid].astype(float).std() for s in seen.values())
+    assert thick < 0.1 * clear  # the robot sees nothing
+    shown = []
+    for density in (1.0, 12.0):
+        place.state.smoke_density[:] = density
+        place.looks.update(world, state, world.frame, spectator=True)
+        place.scene.update_render()
+        place.camera.take_picture()
+        shown.append(place.camera.get_picture("Color")[..., :3][solid].astype(float))
+    assert shown[1].std() > 0.3 * shown[0].std() and shown[1].mean() < shown[0].mean()  # more smoke is darker still
+    np.testing.assert_array_equal(place.picture(10)["rgb"], seen[12.0]["rgb"])  # and the robot's eyes come after

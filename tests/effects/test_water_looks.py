@@ -13,10 +13,11 @@ import sapien
 import torch
 
 from hazard_ms.bench.effects import costs
-from hazard_ms.effects.entities import PREFIX
+from hazard_ms.effects.entities import PREFIX, dry_ior, materials
 from hazard_ms.effects.flood import surface_corners
 from hazard_ms.effects.looks import Looks
 from hazard_ms.effects.shaders.common import WATER
+from hazard_ms.effects.shaders.water import CUT_IOR
 from hazard_ms.effects.textures import ripples
 from hazard_ms.hazards.flood.flood import Flood
 from hazard_ms.simulation.world import World
@@ -109,6 +110,21 @@ def test_what_has_been_in_the_water_looks_wet(mode: str) -> None:
     after = place.picture(30)
     assert after["rgb"][box].mean() < 0.88 * before["rgb"][box].mean()
     np.testing.assert_array_equal(after["rgb"][~box], before["rgb"][~box])
+
+
+@pytest.mark.render
+def test_cut_out_leaves_are_no_darker_than_other_dry_things_and_get_as_wet() -> None:
+    """Ray tracing marks them in the scalar that says how wet a thing is."""
+    place = flooded(0.05)
+    dry = place.picture(30)["rgb"]
+    place.state.fraction[0, BOX] = 1.0
+    wet = place.picture(30)["rgb"]
+    (material,) = (m for e in place.scene.entities if e.name == "env-0_box_0" for m in materials(e))
+    material.ior += CUT_IOR - dry_ior(material)
+    np.testing.assert_array_equal(place.picture(30)["rgb"], wet)
+    place.state.fraction[0, BOX] = 0.0
+    np.testing.assert_array_equal(place.picture(30)["rgb"], dry)
+    assert material.ior == pytest.approx(CUT_IOR)
 
 
 @pytest.mark.render

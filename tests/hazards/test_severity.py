@@ -34,6 +34,17 @@ def test_storms_blow_at_10_m_as_fast_as_they_are_named(severity: str) -> None:
     assert float(speeds.min()) >= 2 / 3 * storm * 0.999 and float(speeds.max()) <= 4 / 3 * storm * 1.001
 
 
+@EVERY
+def test_colours_of_a_storm_reach_from_calm_to_its_fastest_mean(severity: str) -> None:
+    """4/3 of the usual storm, whole metres per second; what observations and learners are scaled by stays."""
+    law = presets.wind("realistic", severity)
+    assert law.shown_level.low == 0.0
+    assert 0.0 <= law.shown_level.high - 4 / 3 * STORMS[severity] < 1.0
+    assert law.level == presets.wind("paper").level
+    assert [presets.wind(name).shown_level.high for name in ("paper", "shipped")] == [2.0, 5.0]
+    assert presets.fire("realistic").shown_level == presets.fire("paper").level
+
+
 def test_water_stands_outside_up_to_calf_knee_and_waist() -> None:
     depths = {name: presets.flood("realistic", name) for name in SEVERITIES}
     assert [law.outside for law in depths.values() if isinstance(law, Inundation)] == [0.3, 0.5, 1.0]

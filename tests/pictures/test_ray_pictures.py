@@ -14,7 +14,8 @@ from hazard_ms.effects.raytracing import denoise
 from hazard_ms.effects.raytracing import pack as ray_pack
 from hazard_ms.effects.raytracing import still as camera
 from hazard_ms.effects.raytracing.cutouts import mark_cutouts
-from hazard_ms.effects.raytracing.geometry import dress, side_by_side
+from hazard_ms.effects.raytracing.geometry import dress
+from hazard_ms.effects.raytracing.surfaces import side_by_side
 from hazard_ms.effects.shaders.pack import UnknownSapienError
 from hazard_ms.machine.render_backend import DEVICES, backend
 

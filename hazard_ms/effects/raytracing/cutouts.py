@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sapien
 
-from hazard_ms.effects.entities import solid_materials
-from hazard_ms.effects.raytracing.hits import CUT
+from hazard_ms.effects.entities import dry_ior, solid_materials
 from hazard_ms.effects.raytracing.pack import shows_effects
+from hazard_ms.effects.shaders.water import CUT_IOR
 
 
 def mark_cutouts(scene: sapien.Scene) -> int:
@@ -25,6 +25,6 @@ def mark_cutouts(scene: sapien.Scene) -> int:
             and material.transmission == 0.0
             and texture.download()[..., 3].min() == 0
         ):
-            material.ior = CUT
+            material.ior += CUT_IOR - dry_ior(material)  # as wet as it was
             count += 1
     return count

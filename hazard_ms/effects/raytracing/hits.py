@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from hazard_ms.effects.shaders.char import CHAR
 from hazard_ms.effects.shaders.common import FIRE_FRAG, SHOWN
-from hazard_ms.effects.shaders.water import IMMERSE
+from hazard_ms.effects.shaders.soot import SOOT_FRAG
+from hazard_ms.effects.shaders.water import CUT_IOR, IMMERSE
 from hazard_ms.effects.shaders.wind import WIND_FRAG
 
 # transmission_roughness: from here on quads of effects, water; charred things have up to 257
 EFFECT, WATER = 1000.0, 3000.0
 
-CUT = 9.0  # index of refraction, which nothing else reads: textures show where there is nothing (cut out leaves) [ours]
+CUT = CUT_IOR - 0.1  # index of refraction from which textures show where there is nothing, whatever rounding does
 GLOW = "1.6"  # brightness of flames in linear light, before tones are mapped [ours]
 PIXEL = 0.0015  # angle that a pixel sees, for the sharpness of textures [rad] [ours]
 CAREFUL = 2  # bounces from which on effects are seen in mirrors, too
@@ -26,6 +27,7 @@ int hazardTexture;
 #define transmissionTexture textures[nonuniformEXT(hazardTexture)]
 """
     + CHAR
+    + "#define RAYS\n"
     + IMMERSE
 )
 
@@ -48,12 +50,14 @@ hitAttributeEXT vec3 attribs;
 #undef SET_NUM
 
 int hazardTexture;
+#define colorTexture textures[nonuniformEXT(hazardTexture)]
 
 float noise(vec2 p) { return texture(textures[nonuniformEXT(hazardTexture)], p).r; }
 vec4 water(vec3 place, vec2 flow, float way, float time, float strength) { return vec4(0); }  // here it is glass
 """
     + FIRE_FRAG
     + WIND_FRAG
+    + SOOT_FRAG
     + SHOWN
     + f"""
 #define MOST_VEILS {MOST_VEILS}
@@ -190,6 +194,8 @@ VEIL = f"""  if (mat.ior >= {CUT}) {{  // leaves are squares with two sides
     if (mat.transmissionRoughness >= {EFFECT}) ignoreIntersectionEXT;
     return;
   }}
+  // scattered light passes water as shadow rays do: glass would keep 44 % of it, which water under a whole sky does not
+  if (ray.dull && mat.transmissionRoughness >= {WATER}) ignoreIntersectionEXT;
   if (mat.transmissionRoughness >= {EFFECT} && mat.transmissionRoughness < {WATER}) {{
     if (!ray.dull && (maxDepth >= {CAREFUL} || ray.depth == 0)) {{  // else the fire's own lamp lights things
       vec2 uv;

@@ -23,6 +23,7 @@ from hazard_ms.effects.raytracing.cutouts import mark_cutouts
 from hazard_ms.effects.raytracing.denoise import MOST_BOUNCES, denoised, developed, exposed
 from hazard_ms.effects.raytracing.geometry import dress, undress
 from hazard_ms.effects.raytracing.pack import STOCK, ray_pack
+from hazard_ms.effects.raytracing.sparks import lit_by, sparks
 from hazard_ms.effects.shaders.pack import colour, pack_folder
 from hazard_ms.effects.streets.street import at_rest
 
@@ -79,11 +80,11 @@ class RayCamera(Camera):
         self._twin.take_picture()
         taken = {name: self._twin.get_picture(name) for name in config.texture_names if name != "Color"}
         with at_rest(scene):
+            embers = sparks(scene, eye.global_pose)
             added = dress(scene, eye.global_pose, self._clock())
             try:
-                taken["Color"] = developed(
-                    denoised(*exposed(scene, eye, min(settings[DEPTH], MOST_BOUNCES), settings[SAMPLES]))
-                )
+                light = denoised(*exposed(scene, eye, min(settings[DEPTH], MOST_BOUNCES), settings[SAMPLES]))
+                taken["Color"] = developed(lit_by(light, embers, eye))
             finally:
                 undress(scene, added)
         scene.update_render()

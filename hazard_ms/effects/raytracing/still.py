@@ -14,6 +14,7 @@ from hazard_ms.effects.raytracing.cutouts import mark_cutouts
 from hazard_ms.effects.raytracing.denoise import MOST_BOUNCES, Image, denoised, developed, exposed
 from hazard_ms.effects.raytracing.geometry import dress, undress
 from hazard_ms.effects.raytracing.pack import ray_pack
+from hazard_ms.effects.raytracing.sparks import lit_by, sparks
 from hazard_ms.effects.shaders.pack import pack_folder
 from hazard_ms.effects.streets.street import at_rest
 
@@ -29,6 +30,7 @@ class Viewpoint:
     angle: float
     width: int
     height: int
+    spectator: bool = True  # not the robot's own eyes
 
 
 class Photographer:
@@ -55,11 +57,14 @@ class Photographer:
             yield lambda _: _raster(self._scene, view)
             return
         with at_rest(self._scene):
+            embers = sparks(self._scene, view.pose)
             added = dress(self._scene, view.pose, time)
             try:
                 eye = self._eye(view)
                 exposed(self._scene, eye, BOUNCES[shader], 0)
-                yield lambda samples: developed(denoised(*exposed(self._scene, eye, BOUNCES[shader], samples)))
+                yield lambda samples: developed(
+                    lit_by(denoised(*exposed(self._scene, eye, BOUNCES[shader], samples)), embers, eye)
+                )
             finally:
                 undress(self._scene, added)
 

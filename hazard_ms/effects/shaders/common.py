@@ -9,15 +9,16 @@ Effect geometry is a set of quads whose four corners coincide; only EFFECT_VERT 
 
 and the material's otherwise unused scalars carry transmission = strength 0..1 and transmission_roughness = time [s]. Of
 water, uv is the place in the room [m], and normal (path length of the water [m], its direction [rad], kind); see
-shaders/water.py and shaders/wind.py.
+shaders/water.py, shaders/wind.py and shaders/soot.py.
 """
 
 from __future__ import annotations
 
+from hazard_ms.effects.shaders.soot import SOOT_FRAG
 from hazard_ms.effects.shaders.water import WATER as WATER_FRAG
 from hazard_ms.effects.shaders.wind import WIND_FRAG, WIND_VERT
 
-FLAME, SCORCH, SMOKE, EMBER, WATER, LEAF, PAPER, STREAK = range(8)  # kinds of quads
+FLAME, SCORCH, SMOKE, EMBER, WATER, LEAF, PAPER, STREAK, SOOT = range(9)  # kinds of quads
 # from floor to ceiling [s]; an entity's turn about z tells the phase, since only poses reach the vertex shader
 SMOKE_PERIOD = 4.0
 
@@ -55,7 +56,7 @@ EFFECT_VERT = (
     QUAD_VERT
     + """
 layout(location = 0) out vec2 outCorner;
-layout(location = 1) out vec4 outLife;  // kind; seed; age 0..1, light 0..1 or way [m]; visible near the camera 0..1
+layout(location = 1) out vec4 outLife;  // kind; seed; age, light, way or extent [m]; seen near the camera 0..1
 layout(location = 2) out vec3 outPlace;  // world frame [m]
 """
     + WIND_VERT
@@ -74,6 +75,10 @@ void main() {
   float kind = floor(normal.z), seed = fract(normal.z), age = 0.0;
   vec3 across, up;
   vec2 size = normal.xy;
+  if (kind > 7.5) {  // soot before a wall or the ceiling
+    show(vec3(normal.xy, uv.x) + model[3].xyz, vec2(0), vec4(kind, seed, uv.y, 1.0));
+    return;
+  }
   if (kind > 4.5) {  // what the wind carries
     float shade;
     carry(kind, seed, position, model, camera[3].xyz, anchor, across, up, shade);
@@ -156,6 +161,7 @@ vec4 smoke(vec2 p, float seed, float age, float strength) {
 SHOWN = """
 vec4 shown(vec2 corner, vec4 life, vec3 place, float time, float strength, vec3 air) {
   vec4 colour;
+  if (life.x > 7.5) return soot(place, life.z, strength) * vec4(air, 1.0);
   if (life.x < 0.5) colour = flame(corner, life.y, time, strength);
   else if (life.x < 1.5) colour = scorch(corner, life.y, time, strength);
   else if (life.x < 2.5) colour = smoke(corner, life.y, life.z, strength);
@@ -185,6 +191,7 @@ float noise(vec2 p) { return texture(colorTexture, p).r; }
     + FIRE_FRAG
     + WATER_FRAG
     + WIND_FRAG
+    + SOOT_FRAG
     + SHOWN
     + """
 void main() {

@@ -13,6 +13,7 @@ from __future__ import annotations
 # index of refraction of SAPIEN's materials, which only ray tracing reads; ours say by their excess how wet they are
 DRY_IOR = 1.45
 WET_IOR = 0.2  # excess of a thing that is wet all over
+CUT_IOR = 9.0  # instead of DRY_IOR where textures show where there is nothing: cut out leaves [ours]
 
 FACTS = """
 vec4 hazardFact(int k) { return texelFetch(transmissionTexture, ivec2(k, 0), 0); }
@@ -45,18 +46,27 @@ float hazardCaustics(vec2 p, float time) {  // light through waves: bright lines
 #endif
 }
 
+float hazardSlant(float depth, float far, float above) {  // way through water of what is seen from above it [m]
+#ifdef RAYS
+  return far * min(depth / max(above, 1e-3), 1.0);
+#else
+  float across = max(1.0 - above * above / (far * far), 0.0);  // light is refracted, which rays do by themselves
+  return depth * inversesqrt(1.0 - 0.5653 * across);  // 1 / 1.33^2
+#endif
+}
+
 void hazardDrown(inout vec3 albedo, inout vec3 emission, inout float specular, inout float roughness, vec3 place, \
 vec3 eye, float up) {
   float level = hazardMap(place.xy).y, depth = level - place.z, far = distance(place, eye);
   float time = hazardFact(0).w, sunk = hazardMap(eye.xy).y - eye.z, path = 0.0;
-  float wet = clamp((materialBuffer.ior - 1.45) * 5.0, 0.0, 1.0);
+  float wet = clamp((materialBuffer.ior - (materialBuffer.ior > 8.5 ? 9.0 : 1.45)) * 5.0, 0.0, 1.0);
   float splashed = 0.035 + 0.015 * sin(place.x * 9.0 + 2.0 * sin(place.y * 7.0)) + 0.010 * sin(place.y * 23.0 + \
 place.x * 19.0);
   if (level > 0.0) wet = max(wet, 1.0 - smoothstep(0.6 * splashed, splashed, -depth));
   albedo *= mix(1.0, 0.55, wet);
   specular = max(specular, 0.045 * wet);
   roughness = mix(roughness, min(roughness, 0.22), wet);
-  if (depth > 0.0) path = sunk > 0.0 ? far : far * min(depth / max(eye.z - place.z, 1e-3), 1.0);
+  if (depth > 0.0) path = sunk > 0.0 ? far : hazardSlant(depth, far, eye.z - place.z);
   else if (sunk > 0.0) path = far * min(sunk / max(place.z - eye.z, 1e-3), 1.0);
   float lit = smoothstep(0.0, 0.12, depth) * (0.35 + 0.65 * max(up, 0.0));
   if (depth > 0.0) albedo *= 1.0 + lit * hazardCaustics(place.xy + 0.3 * place.z, time);
@@ -171,7 +181,7 @@ mix(0.5, 1.0, calm);
   vec3 toward = reflect(-toEye, normal);
   toward.z = abs(toward.z);
   vec3 colour = mirrored(place, toward);
-  float body = 0.10 + 0.10 * calm * (broad.b + fine.b - 0.6);  // scattered light in the crests
+  float body = 0.04 + 0.10 * calm * (broad.b + fine.b - 0.6);  // scattered light in the crests
   float alpha = mix(body, 1.0, fresnel);
   colour = mix(vec3(0.20, 0.30, 0.30), colour, fresnel / max(alpha, 1e-3));
   float cells = texture(colorTexture, place.xy * 0.9 + flow * 0.12 * sin(time * 0.7) + 0.05 * tilt).b;

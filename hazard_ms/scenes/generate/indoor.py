@@ -48,7 +48,7 @@ def generate(layout: Layout, name: str, split: str) -> SceneSpec:
 
 def _attempt(layout: Layout, name: str, split: str, draw: Draw) -> SceneSpec:
     made = furnish(layout, draw)
-    scatter = Scatter(made, layout)
+    scatter = Scatter(made, layout, anywhere=layout.anywhere)
     chosen = fill(scatter, layout)
     room, standing = made.room, (made.boxes, scatter.boxes)
     agent = start(free_for(room, *standing, START_RADIUS) & scatter.free, draw)

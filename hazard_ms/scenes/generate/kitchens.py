@@ -60,6 +60,7 @@ KITCHEN_A = Layout(
     walls=("plaster", "paint_white", "paint_green", "paint_blue"),
     pool=FIRE_POOL,
     things=TRAIN_THINGS,
+    anywhere=True,
 )
 
 KITCHEN_B = Layout(  # long and narrow, with worktops on both sides
@@ -105,6 +106,7 @@ KITCHEN_B = Layout(  # long and narrow, with worktops on both sides
     walls=("paint_white", "wallpaper_stripes", "plaster"),
     pool=FIRE_POOL,
     things=TEST_THINGS,
+    anywhere=True,
 )
 
 KITCHEN_B_NEW = replace(KITCHEN_B, name="kitchen_b_new", pool=NEW_OBJECTS)

@@ -156,3 +156,4 @@ class Layout:
     aisle: float = 0.8  # width of the passages [m]
     doorway: Span = (0.3, 0.7)  # where in a partition, as fractions of its length
     mirror: bool = True  # draw left and right, front and back
+    anywhere: bool = False  # things may stand on all furniture, whatever it is for, as in the published scenes

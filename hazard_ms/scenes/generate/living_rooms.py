@@ -56,6 +56,7 @@ LIVING_ROOM_A = Layout(
     walls=("wallpaper_stripes", "wallpaper_flowers", "paint_blue", "plaster"),
     pool=FIRE_POOL,
     things=TRAIN_THINGS,
+    anywhere=True,
 )
 
 CRAFT_ROOM_A = Layout(  # work tables in the middle, stores along the walls
@@ -94,6 +95,7 @@ CRAFT_ROOM_A = Layout(  # work tables in the middle, stores along the walls
     walls=("paint_white", "paint_green", "wallpaper_flowers"),
     pool=FIRE_POOL,
     things=TRAIN_THINGS,
+    anywhere=True,
 )
 
 FLAT_A = Layout(  # a kitchen and a living room, of more than twice the floor of any single room together
@@ -165,4 +167,5 @@ FLAT_A = Layout(  # a kitchen and a living room, of more than twice the floor of
     walls=("plaster", "paint_white", "wallpaper_flowers", "paint_blue"),
     pool=FIRE_POOL,
     things=TEST_THINGS,
+    anywhere=True,
 )

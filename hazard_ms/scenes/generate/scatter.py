@@ -25,6 +25,7 @@ from hazard_ms.scenes.floor import (
 from hazard_ms.scenes.generate.arrangement import MIN_GAP, RESTING_HEIGHT, Arrangement, NoPlaceError, models_of
 from hazard_ms.scenes.generate.draw import Draw
 from hazard_ms.scenes.generate.layout import Layout
+from hazard_ms.scenes.generate.room_things import stands_on
 from hazard_ms.scenes.generate.support_surfaces import Surface, surfaces_of
 from hazard_ms.spec import Body, Vec3
 from hazard_ms.spec.catalogue import CATEGORIES, HIGH_VALUE
@@ -60,14 +61,21 @@ class Scatter:
     """The objects of a furnished room so far, and the floor that they leave free for the robot."""
 
     def __init__(
-        self, made: Arrangement, kind: Kind, hollow: tuple[str, ...] = (), in_the_open: float = IN_THE_OPEN
+        self,
+        made: Arrangement,
+        kind: Kind,
+        hollow: tuple[str, ...] = (),
+        in_the_open: float = IN_THE_OPEN,
+        anywhere: bool = True,
     ) -> None:
         """Begin with no objects; none will be put into furniture of the categories `hollow`.
 
-        `in_the_open`: share of things on the floor that may stand anywhere. Raises NoPlaceError if the floor is not
+        `in_the_open`: share of things on the floor that may stand anywhere; `anywhere`: things may stand on furniture
+        that is not meant for them. Raises NoPlaceError if the floor is not
         connected or passages are too narrow.
         """
         self.made, self.draw, self.size, self.in_the_open = made, made.draw, made.room.size, in_the_open
+        self._anywhere = anywhere
         self.bodies: list[Body] = []
         self.boxes: list[Box] = []  # of the bodies
         for radius in (kind.aisle / 2, ROBOT_RADIUS):
@@ -95,7 +103,7 @@ class Scatter:
         name = f"{category}_{1 + sum(b.category == category for b in self.bodies)}"
         for attempt in range(TRIES):
             floor = on_floor == (attempt < TRIES // 2)
-            owner, surface = (-1, None) if floor else self._surface(extent)
+            owner, surface = (-1, None) if floor else self._surface(category, extent)
             if surface is None and not floor:
                 continue
             yaw = self.draw.uniform(-math.pi, math.pi)
@@ -117,13 +125,16 @@ class Scatter:
                 break
         return x, y, 0.0
 
-    def _surface(self, extent: Vec3) -> tuple[int, Surface | None]:
+    def _surface(self, category: str, extent: Vec3) -> tuple[int, Surface | None]:
         """A surface that can hold a thing, larger ones more often, and the number of the fixture that has it."""
         need = min(extent[:2]) / 2 + EDGE_MARGIN
         able = [
             (k, s)
             for k, s in self._surfaces
-            if min(s.half) >= need and s.headroom >= extent[2] + MIN_GAP and s.z + extent[2] / 2 <= MAX_TOP_HEIGHT
+            if min(s.half) >= need
+            and s.headroom >= extent[2] + MIN_GAP
+            and s.z + extent[2] / 2 <= MAX_TOP_HEIGHT
+            and (self._anywhere or stands_on(category, self.made.fixtures[k].category))
         ]
         return self.draw.weighted(able, [math.sqrt(s.half[0] * s.half[1]) for _, s in able]) if able else (-1, None)
 

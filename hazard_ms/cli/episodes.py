@@ -1,4 +1,4 @@
-"""The commands `hazard-ms play`, `evaluate` and `replay`; each imports what it needs when it is called."""
+"""The commands `hazard-ms play`, `evaluate`, `replay` and `serve`; each imports what it needs when it is called."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from hazard_ms.evaluation.options import EpisodeOptions, PlayOptions, ReplayOptions, SweepOptions
+from hazard_ms.web.options import ServeOptions
 
 if TYPE_CHECKING:
     from hazard_ms.evaluation.result import EpisodeResult
@@ -81,6 +82,18 @@ def replay(options: Annotated[tyro.conf.OmitArgPrefixes[ReplayOptions], tyro.con
     """
     from hazard_ms.agents.base import user_path
     from hazard_ms.evaluation.replay import replay as run
+
+    user_path()
+    return run(options)
+
+
+def serve(options: Annotated[tyro.conf.OmitArgPrefixes[ServeOptions], tyro.conf.arg(name="")]) -> int:
+    """Serve a page to play, watch and compare rescues in a browser on this machine, and print its address.
+
+    It needs `pip install hazard_ms[web]`. Only this machine can reach it, and only with the address as it is printed.
+    """
+    from hazard_ms.agents.base import user_path
+    from hazard_ms.web.serving import serve as run
 
     user_path()
     return run(options)

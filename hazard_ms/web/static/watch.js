@@ -1,0 +1,4 @@
+export function mount(element, api) {
+  void api
+  element.textContent = ""
+}

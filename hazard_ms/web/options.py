@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
-
-from hazard_ms.evaluation.choices import flag
 
 MOST_SESSIONS = 4  # rescues at once, each a process of 1 to 2 GB [ours]
 IDLE_MINUTES = 10.0  # time after which a rescue that nobody looks at gives its process back [min] [ours]
@@ -25,7 +22,7 @@ class ServeOptions:
     """Rescues at once, at most: each is a process of 1 to 2 GB."""
     idle: float = IDLE_MINUTES
     """Time after which a rescue that no page shows gives its process back; it can be gone on with later [min]."""
-    load: Annotated[tuple[str, ...], flag("--load")] = ()
+    load: tuple[str, ...] = ()
     """Modules, or files NAME.py, that register tasks, hazards, robots and agents of your own."""
 
     @property

@@ -40,8 +40,9 @@ MOST_ROOMS = 33
 # detectors, which are registered, and which episodes name; 2 more than before reinforcement learning, for environments
 # of the sketch, whose episodes are as long as the registry says, and for trainings, which write files; 1 more for
 # examples, of which two play episodes for other people's tools; 7 more for many environments at once, which are
-# started, checked, wrapped, learned from, and measured; 1 more for the sketch, whose ways are straightened by kernels
-MOST_ARROWS = 150
+# started, checked, wrapped, learned from, and measured; 1 more for the sketch, whose ways are straightened by kernels;
+# 14 more for the page, which plays, shows, keeps and compares episodes, and is begun by the command
+MOST_ARROWS = 164
 MOST_FILES = 16  # of a folder
 MOST_LINES = 250  # of a file
 HEAVY = ("torch", "warp", "sapien", "mani_skill", "scipy", "numpy", "gymnasium")  # that take seconds to import

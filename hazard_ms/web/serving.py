@@ -13,7 +13,7 @@ from hazard_ms.machine.files import make_folder
 from hazard_ms.web.options import ServeOptions
 
 HOST = "127.0.0.1"
-KEY = ".serve.json"  # in the first folder, for its owner alone: the token and the port, so that pages survive a restart
+KEY = ".serve.key"  # in the first folder, for its owner alone: the token and the port, so that pages survive a restart
 TOKEN_BYTES = 24  # of chance in a token [bytes] [ours]
 
 

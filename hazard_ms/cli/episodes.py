@@ -13,11 +13,14 @@ from hazard_ms.web.options import ServeOptions
 if TYPE_CHECKING:
     from hazard_ms.evaluation.result import EpisodeResult
 
+HUMAN = "human"  # not an agent that could be asked: a person, on the page
 SUFFIXES = {".mp4": "video", ".json": "result", ".html": "page"}  # of the files of an episode
 
 
 def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.arg(name="")]) -> int:
     """Play one episode of one agent; with --output, write its film, its result as JSON and its page.
+
+    With --agent human it leads to the page of `hazard-ms serve`, on which you play.
 
     Ends with 1 if the simulation broke.
     """
@@ -28,6 +31,9 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
     from hazard_ms.evaluation.watchers import Progress
 
     user_path()
+    if options.episode.agent == HUMAN:
+        print("A person plays on the page of `hazard-ms serve`, which begins here; choose the task and the seed there.")
+        return serve(ServeOptions(load=options.episode.load))
     options.check()
     if options.output is None:
         result = run(options.episode, [Progress(options.episode.agent)])

@@ -14,7 +14,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from hazard_ms.evaluation.choices import LIGHTINGS, PRESETS, SEVERITIES
 from hazard_ms.registry import AGENTS, ROBOTS, TASKS, load
-from hazard_ms.web.link import LONGEST
+from hazard_ms.web.playing.link import LONGEST
 from hazard_ms.web.rescue import PACES, asked_for
 from hazard_ms.web.session import Page, Session
 from hazard_ms.web.sessions import Sessions

@@ -15,9 +15,9 @@ from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.web import rescue as rescues
-from hazard_ms.web.link import PICTURES, Link
-from hazard_ms.web.menu import Choice, Choices
-from hazard_ms.web.pictures import Pictures
+from hazard_ms.web.playing.link import PICTURES, Link
+from hazard_ms.web.playing.menu import Choice, Choices
+from hazard_ms.web.playing.pictures import Pictures
 from hazard_ms.web.rescue import ALL, PACES, PLAY, Rescue, Taken
 
 ROW = ("frame", "verb", "target", "ok", "reason", "frames", "waited", "note", "value")  # of a decision, that pages show

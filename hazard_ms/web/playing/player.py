@@ -11,7 +11,7 @@ from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.options.macros import Macro
-from hazard_ms.web.desk import Desk
+from hazard_ms.web.playing.desk import Desk
 from hazard_ms.web.rescue import ALL, WATCH, Rescue
 
 PATIENCE = 0.5  # time between two looks at whether a page still listens [s] [ours]

@@ -10,7 +10,7 @@ from typing import Any
 from urllib.parse import quote
 
 from hazard_ms.machine.processes import end_with_parent
-from hazard_ms.web.link import Link
+from hazard_ms.web.playing.link import Link
 from hazard_ms.web.rescue import PLAY, Rescue, journal
 
 POLITE = 5  # niceness of making a film: rescues that are being played come first [ours]
@@ -37,9 +37,9 @@ def _play(link: Link, rescue: Rescue, folder: Path) -> None:
 
     torch.set_num_threads(1)
     from hazard_ms.evaluation.runner import Runner, environment, result_of
-    from hazard_ms.web.desk import Desk, EndedError
-    from hazard_ms.web.pictures import SIZE
-    from hazard_ms.web.player import Player
+    from hazard_ms.web.playing.desk import Desk, EndedError
+    from hazard_ms.web.playing.pictures import SIZE
+    from hazard_ms.web.playing.player import Player
 
     rescue.check()
     desk = Desk(link, rescue, folder)
@@ -64,7 +64,7 @@ def _play(link: Link, rescue: Rescue, folder: Path) -> None:
 def _keep(link: Link, rescue: Rescue, folder: Path, result: Any) -> None:
     """Write what remains of a rescue: that of a person as every episode is kept, that of an agent not at all."""
     from hazard_ms.evaluation.runner import summary
-    from hazard_ms.web import keeping
+    from hazard_ms.web.playing import keeping
 
     path = keeping.place(folder, result, rescue.name)
     kept = rescue.kind == PLAY

@@ -13,7 +13,7 @@ from hazard_ms.pictures.panels import MapPanel, hazard_panel, strongest
 from hazard_ms.sensing.camera import relabel
 from hazard_ms.simulation.viewpoint import corner_view, following_view
 from hazard_ms.skills.executor import SkillEnv
-from hazard_ms.web.link import HAZARD, HEAD, MAP, ROOM
+from hazard_ms.web.playing.link import HAZARD, HEAD, MAP, ROOM
 
 SIZE = (448, 336)  # of the third person [pixels]: larger ones are too few a second on two cores [measured]
 PLAN = (480, 320)  # of the map [pixels]

@@ -14,8 +14,8 @@ from typing import Any
 
 from hazard_ms.machine.processes import few_threads
 from hazard_ms.web.playing.link import PICTURES
-from hazard_ms.web.rescue import Rescue, Taken
 from hazard_ms.web.playing.process import main
+from hazard_ms.web.rescue import Rescue, Taken
 
 PASSING = ("pointed", "refused")  # answers that a page which comes later does not need
 LAST = ("closed", "failed", "kept")  # words after which a process ends as it should

@@ -22,7 +22,7 @@ def main(connection: Connection, rescue: Rescue, folder: Path) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends its workers
     link = Link(connection)
     try:
-        _play(link, rescue, folder)
+        play(link, rescue, folder)
     except (EOFError, BrokenPipeError, ConnectionResetError):  # the server has gone; the journal stays
         return
     except Exception as error:
@@ -31,7 +31,8 @@ def main(connection: Connection, rescue: Rescue, folder: Path) -> None:
         link.say("failed", why=told(error))
 
 
-def _play(link: Link, rescue: Rescue, folder: Path) -> None:
+def play(link: Link, rescue: Rescue, folder: Path) -> None:
+    """Play the rescue to its end, and keep it in `folder`. Raises ValueError for one that cannot be played."""
     link.say("building")
     import torch
 

@@ -29,7 +29,7 @@ SILENCE = 600.0  # longest time without a word of a rescue [s] [ours]
 
 @dataclass
 class Course:
-    """What was measured so far."""
+    """The measurements so far."""
 
     latencies: list[float] = field(default_factory=list)  # from a choice to the first picture after it [s]
     pictures: int = 0  # of the third person while the robot was at it

@@ -147,7 +147,7 @@ def _recorded(job: RecordJob, say: Say) -> EpisodeResult:
 
 
 class Verdict(NamedTuple):
-    """What is known of a recorded episode besides its result."""
+    """The verdict on a recorded episode, and how it was come to."""
 
     reason: str  # why it goes into the failures; empty if it does not
     verified: bool  # whether it was simulated again, with equal hashes

@@ -112,19 +112,23 @@ def press(browser: Any, *keys: str) -> None:
 
 def asked(browser: Any) -> list[str]:
     """The choices, once it is the person's turn."""
-    buttons = "#play .ask:not([hidden]) .choices button"
+    buttons = "#play .ask:not([hidden]) .choices button:enabled"
     until(lambda: browser.find_elements("css selector", buttons))
     return [str(b.text) for b in browser.find_elements("css selector", buttons)]
 
 
 def choose(browser: Any, words: str) -> None:
-    """Choose the first choice whose words begin so, after those of its number key."""
-    asked(browser)
-    for button in browser.find_elements("css selector", "#play .choices button"):
-        if words in str(button.text):
-            button.click()
-            return
-    raise AssertionError(f"one of the choices must be {words}")
+    """Choose the first choice that has these words, once it is the person's turn."""
+
+    def click() -> bool:
+        for button in browser.find_elements("css selector", "#play .ask:not([hidden]) .choices button:enabled"):
+            if words in str(button.text):
+                browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", button)
+                button.click()
+                return True
+        return False
+
+    until(click)
 
 
 def decisions(browser: Any) -> int:

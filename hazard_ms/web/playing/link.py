@@ -21,7 +21,7 @@ class Link:
         self._connection = connection
 
     def say(self, kind: str, **content: Any) -> None:
-        """Send JSON."""
+        """Send a message of this kind to the server, as JSON."""
         self._connection.send_bytes(json.dumps({"type": kind, **content}, allow_nan=False).encode())
 
     def show(self, picture: str, jpeg: bytes) -> None:

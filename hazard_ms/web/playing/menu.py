@@ -1,4 +1,4 @@
-"""What a person can choose at a decision: the options and actions that agents have, in words."""
+"""The choices of a person at a decision: the options and actions that agents have, in words."""
 
 from __future__ import annotations
 

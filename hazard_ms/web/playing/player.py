@@ -28,7 +28,7 @@ class Player(PrivilegedAgent):
 
     @property
     def counters(self) -> Mapping[str, float]:  # type: ignore[override]
-        """What is worth knowing of a person's rescue: the pictures that they had, and how it began."""
+        """The pictures that a person had, and how many decisions an agent took first; an agent's own counts."""
         if self._source is not None:
             return self._source.counters
         first = {"decisions_of_agent": float(len(self._rescue.taken))} if self._rescue.after else {}
@@ -36,7 +36,7 @@ class Player(PrivilegedAgent):
 
     @property
     def ending(self) -> str:  # type: ignore[override]
-        """How an episode ends that is stopped."""
+        """The reason that the result gives when the episode is stopped."""
         return "stopped" if self._source is None else self._source.ending
 
     @property

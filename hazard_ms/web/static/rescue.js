@@ -162,8 +162,12 @@ export class Rescue {
   }
 
   choose(key) {
-    if (this.state && this.state.phase === "asking") this.ask({ do: "choose", number: this.state.number, key })
+    if (!this.state || this.state.phase !== "asking") return
+    this.ask({ do: "choose", number: this.state.number, key })
+    this.able(false)
   }
+
+  able(yes) { for (const button of this.asking.querySelectorAll("button")) button.disabled = !yes }
 
   number(digit) { // the choice of a number key: of the menu of a thing if that is open, else of all
     const open = this.menu.querySelectorAll("button")
@@ -188,7 +192,10 @@ export class Rescue {
     if (message.choices.length) this.menu.querySelector("button").focus()
   }
 
-  on_refused(message) { this.now.textContent = message.why }
+  on_refused(message) {
+    this.now.textContent = message.why
+    this.able(true)
+  }
 
   on_row(message) {
     const { number } = message

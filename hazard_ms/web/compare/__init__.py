@@ -2,12 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
+from hazard_ms.web.compare.answers import routes
 
-from starlette.routing import Route
-
-
-def routes(folders: Sequence[Path]) -> list[Route]:
-    """The routes below /api/compare about the results in `folders`."""
-    return []
+__all__ = ["routes"]

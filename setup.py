@@ -66,6 +66,7 @@ setup(
         "perception": ["pycocotools>=2.0.11"],  # COCO labels and average precision
         "demos": ["pyarrow>=25", "av>=17", "minari>=0.5.3"],  # demonstrations as LeRobot and Minari data sets
         "cluster": ["ray>=2.60"],  # episodes on many machines: hazard-ms evaluate --backend ray
+        "web": ["starlette>=1.0", "uvicorn>=0.50", "websockets>=16"],  # the page of hazard-ms serve
         "pictures": ["pyoidn>=2.5", "cffi>=1.0"],  # takes the grain out of ray-traced pictures
         "docs": ["sphinx>=8.1", "myst-parser>=4.0", "furo>=2025.12"],
         "test": [
@@ -73,6 +74,7 @@ setup(
             "pytest-timeout>=2.3",
             "pytest-xdist>=3.6",
             "hypothesis>=6.100",
+            "selenium>=4.40",  # drives a browser, where there is one
             "ruff>=0.8",
             "mypy>=1.13",
         ],

@@ -4,8 +4,9 @@ With `tables` alone it plays nothing.
 
 Every agent plays the 25 scenes of each task's split `test` once, and the agents that are compared with `planner` play
 them three times with Fetch; raw results go to build/results, from where `hazard-ms report` and `hazard-ms regret` can
-read them. README.md and scores.csv beside this file are written anew; sweeps of which this machine has no raw results
-stay in them as they are.
+read them. Rescues of people, played with `hazard-ms serve --folder build/results/SWEEP/people`, become a row `human`.
+README.md and scores.csv beside this file are written anew; sweeps of which this machine has no raw results stay in
+them as they are.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ import subprocess
 import sys
 from typing import Any
 
-from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.evaluation.comparison.summary import interval
+from hazard_ms.evaluation.result import HUMAN, EpisodeResult
 from hazard_ms.robots import robot_class
 from hazard_ms.sketch.bound import bound
 from hazard_ms.sketch.recording import recorded
@@ -31,6 +33,7 @@ COLUMNS = ("task", "robot", "agent", "scene", "seed", "value", "bound", "frames"
 COMPARED = ("greedy", "mcts", "planner")
 SCENES, SEEDS = 25, 75  # episodes of an agent, and of those that are compared
 SWEEPS = {f"{task}-{robot}": ALL if robot == "fetch" else MAIN for robot in ("fetch", "g1") for task in TASKS}
+PEOPLE = "people"  # folder beside raw results: those of people
 PLAYED = "played.txt"  # beside raw results: the commits and machines that they were played on, one a line
 
 
@@ -76,7 +79,7 @@ def kept(sweep: str) -> tuple[str, list[dict[str, Any]]]:
 def table(sweep: str) -> tuple[str, list[dict[str, Any]]]:
     """The section of a sweep in the README, and its rows in scores.csv."""
     task, robot = sweep.split("-")
-    results = results_in(RAW / sweep)
+    results = [*results_in(RAW / sweep), *results_in(RAW / sweep / PEOPLE)]
     if not results:
         return kept(sweep)
     best, rows = bounds(TASKS[task], robot, results), []
@@ -101,22 +104,27 @@ def table(sweep: str) -> tuple[str, list[dict[str, Any]]]:
     told = subprocess.run([*COMMAND, "report", str(RAW / sweep), "--json"], check=True, capture_output=True, text=True)
     played = "; ".join((RAW / sweep / PLAYED).read_text(encoding="utf-8").splitlines())
     lines = [f"\n{title(sweep)}", f"Played at {played}.\n"]
-    lines += ["| agent | Value | Step | Damage | regret | rescued | episodes |", "|---|---|---|---|---|---|---|"]
     for group in json.loads(told.stdout)["groups"]:
-        for name, agent in sorted(group["agents"].items(), key=lambda item: -item[1]["value"]["mean"]):
-            cells = [_interval(agent["value"], 100), _interval(agent["step"], 1), _interval(agent["damage"], 100)]
-            regret = _interval(agent["regret"], 100) if agent["regret"] else "-"
-            saved = f"{agent['rescued']} of {agent['targets']}"
-            lines.append(f"| {name} | {' | '.join(cells)} | {regret} | {saved} | {agent['episodes']} |")
-        lines.append(f"\nNo agent can exceed {100 * sum(best.values()) / len(best):.1f} on average (the bound).\n")
-        for pair in group["differences"]:
-            if pair["agent"] == "planner" and pair["other"] != "random":
-                lines.append(f"- planner less {pair['other']}: {_interval(pair['value'], 100)}")
+        lines += section(group)
+    lines.append(f"\nNo agent can exceed {100 * sum(best.values()) / len(best):.1f} on average (the bound).")
     return "\n".join(lines) + "\n", rows
 
 
-def _interval(told: dict[str, Any], scale: float) -> str:
-    return f"{scale * told['mean']:.1f} [{scale * told['low']:.1f}, {scale * told['high']:.1f}]"
+def section(group: dict[str, Any]) -> list[str]:
+    """The table of a group as `hazard-ms report` tells it, and the differences from `planner`; people are one row."""
+    lines = [f"{group['settings']}.\n", "| agent | Value | Step | Damage | regret | rescued | episodes |"]
+    lines.append("|---|---|---|---|---|---|---|")
+    for name, agent in sorted(group["agents"].items(), key=lambda item: -item[1]["value"]["mean"]):
+        cells = [interval(agent["value"]), interval(agent["step"], 1), interval(agent["damage"])]
+        regret = interval(agent["regret"]) if "regret" in agent else "-"
+        saved, shown = f"{agent['rescued']} of {agent['targets']}", f"{name} (people)" if name == HUMAN else name
+        lines.append(f"| {shown} | {' | '.join(cells)} | {regret} | {saved} | {agent['episodes']} |")
+    lines.append("")
+    for pair in group["differences"]:
+        if pair["agent"] == "planner" and pair["other"] != "random":
+            common = f" on {pair['episodes']} episodes" if pair["other"] == HUMAN else ""
+            lines.append(f"- planner less {pair['other']}: {interval(pair['value'])}{common}")
+    return lines
 
 
 def main(wanted: list[str]) -> None:

@@ -19,7 +19,7 @@ from hazard_ms.cli.assets import AssetCommand
 from hazard_ms.cli.bench import bench, danger
 from hazard_ms.cli.demos import DemosCommand
 from hazard_ms.cli.describe import describe
-from hazard_ms.cli.episodes import evaluate, play, replay
+from hazard_ms.cli.episodes import evaluate, play, replay, serve
 from hazard_ms.cli.llm import LlmCommand
 from hazard_ms.cli.perception import PerceptionCommand
 from hazard_ms.cli.pictures import gallery, render
@@ -105,6 +105,7 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "gallery": gallery,
     "evaluate": evaluate,
     "replay": replay,
+    "serve": serve,
     "regret": regret,
     "report": report,
     "describe": describe,

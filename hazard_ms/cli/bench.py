@@ -27,6 +27,8 @@ def bench(
     resets: bool = False,
     scaling: bool = False,
     vector: bool = False,
+    serve: bool = False,
+    minutes: float = 1.0,
     robot: Annotated[str, offer(registry.ROBOTS), flag("-r")] = "fetch",
     count: Annotated[int, flag("-n")] = 500,
     output: Annotated[Path | None, flag("-o", "--output", old="out")] = None,
@@ -47,6 +49,8 @@ def bench(
         resets: Only print what 200 resets over 20 scenes cost, and whether their episodes start as freshly built ones.
         scaling: Only print how frames grow with the number of things, and with the size of pictures.
         vector: Only print how many frames a second environments in processes play, one and several at once.
+        serve: Only print what the page of `hazard-ms serve` takes: time to the first picture, pictures, memory.
+        minutes: Time for which that is played [min].
         robot: Robot that picks up, or whose scenes are reset.
         count: Number of targets that it picks up.
         output: File for what each pick-up and drop cost, one JSON object a line.
@@ -74,6 +78,10 @@ def bench(
         from hazard_ms.bench.vector import report as report_vector
 
         print(report_vector(env_id, frames, seed))
+    elif serve:
+        from hazard_ms.bench.serving import report as report_serving
+
+        print(report_serving(env_id, seed, minutes))
     elif effects:
         from hazard_ms.bench.effects import report as report_effects
 

@@ -1,4 +1,4 @@
-"""The commands `hazard-ms play`, `evaluate` and `replay`; each imports what it needs when it is called."""
+"""The commands `hazard-ms play`, `evaluate`, `replay` and `serve`; each imports what it needs when it is called."""
 
 from __future__ import annotations
 
@@ -8,15 +8,19 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from hazard_ms.evaluation.options import EpisodeOptions, PlayOptions, ReplayOptions, SweepOptions
+from hazard_ms.web.options import ServeOptions
 
 if TYPE_CHECKING:
     from hazard_ms.evaluation.result import EpisodeResult
 
+HUMAN = "human"  # not an agent that could be asked: a person, on the page
 SUFFIXES = {".mp4": "video", ".json": "result", ".html": "page"}  # of the files of an episode
 
 
 def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.arg(name="")]) -> int:
     """Play one episode of one agent; with --output, write its film, its result as JSON and its page.
+
+    With --agent human it leads to the page of `hazard-ms serve`, on which you play.
 
     Ends with 1 if the simulation broke.
     """
@@ -27,6 +31,9 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
     from hazard_ms.evaluation.watchers import Progress
 
     user_path()
+    if options.episode.agent == HUMAN:
+        print("A person plays on the page of `hazard-ms serve`, which begins here; choose the task and the seed there.")
+        return serve(ServeOptions(load=options.episode.load))
     options.check()
     if options.output is None:
         result = run(options.episode, [Progress(options.episode.agent)])
@@ -81,6 +88,18 @@ def replay(options: Annotated[tyro.conf.OmitArgPrefixes[ReplayOptions], tyro.con
     """
     from hazard_ms.agents.base import user_path
     from hazard_ms.evaluation.replay import replay as run
+
+    user_path()
+    return run(options)
+
+
+def serve(options: Annotated[tyro.conf.OmitArgPrefixes[ServeOptions], tyro.conf.arg(name="")]) -> int:
+    """Serve a page to play, watch and compare rescues in a browser on this machine, and print its address.
+
+    It needs `pip install hazard_ms[web]`. Only this machine can reach it, and only with the address as it is printed.
+    """
+    from hazard_ms.agents.base import user_path
+    from hazard_ms.web.serving import serve as run
 
     user_path()
     return run(options)

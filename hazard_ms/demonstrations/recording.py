@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import torch
 from tqdm import tqdm
@@ -142,16 +142,36 @@ def _recorded(job: RecordJob, say: Say) -> EpisodeResult:
         verdict, why = compare(result, again.result, again.error)
         verified, seconds["verify"] = verdict == EXACT, time.perf_counter() - start
         reason = reason if verified else f"simulated again, it is {verdict}{why}"
+    put(part, options, result, (recorder, foresight), Verdict(reason, verified, seconds, teacher.privileged))
+    return result
+
+
+class Verdict(NamedTuple):
+    """The verdict on a recorded episode, and how it was come to."""
+
+    reason: str  # why it goes into the failures; empty if it does not
+    verified: bool  # whether it was simulated again, with equal hashes
+    seconds: dict[str, float]  # wall times by phase [s]
+    privileged: bool  # whether its teacher sees what is hidden
+
+
+def put(
+    part: Path, options: RecordOptions, result: EpisodeResult, watched: tuple[Recorder, Foresight], verdict: Verdict
+) -> Path:
+    """Store the episode of `result`, which the recorder and the foresight have `watched`, from its folder `part` on.
+
+    Returns its folder. Raises OSError where it cannot be written, and where there is an episode of its name.
+    """
+    recorder, foresight = watched
     store.put_arrays(part / DECISIONS, recorder.decisions())
     store.put_arrays(part / FRAMES, recorder.frames())
     store.put_arrays(part / PRIVILEGED / TRUTH, foresight.arrays())
-    teaching = {"teacher": job.options.agent, "privileged": teacher.privileged, "reason": reason}
+    teaching = {"teacher": result.agent, "privileged": verdict.privileged, "reason": verdict.reason}
     reach = {"reach": foresight.bests[0], "recipe": options.recipe, "obs": options.recipe["obs"]}
     store.describe(part, result, {**recorder.meta(), **teaching, **reach, "every": options.recipe["every"]})
-    known = store.entry_of(part)
-    entry = replace(known, verified=verified, seconds=seconds, versions=result.versions, machine=result.machine)
-    store.publish(part, options.dataset, entry)
-    return result
+    known = replace(store.entry_of(part), verified=verdict.verified, seconds=verdict.seconds)
+    entry = replace(known, versions=result.versions, machine=result.machine)
+    return store.publish(part, options.dataset, entry)
 
 
 @contextlib.contextmanager

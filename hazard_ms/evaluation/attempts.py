@@ -33,8 +33,8 @@ def attempt(job: Job, say: Say) -> Outcome:
     except KeyboardInterrupt:
         raise
     except BaseException as error:
-        told, so_far = _told(error), teller.so_far
-        return Outcome(so_far and replace(so_far, ended=ERROR, error=told), told)
+        shown, so_far = told(error), teller.so_far
+        return Outcome(so_far and replace(so_far, ended=ERROR, error=shown), shown)
 
 
 class Teller(Watcher):
@@ -94,7 +94,7 @@ class Recorded(PrivilegedAgent):
         return self._left.pop() if len(self._left) > 1 else self._left[0]
 
 
-def _told(error: BaseException) -> str:
+def told(error: BaseException) -> str:
     """An error in one line, with the place in the code where it was raised."""
     calls = traceback.extract_tb((error.__cause__ or error).__traceback__)
     where = f" ({Path(calls[-1].filename).name}, line {calls[-1].lineno})" if calls else ""

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import hashlib
 import importlib.metadata
 import json
@@ -26,6 +27,7 @@ from hazard_ms.registry.version import __version__
 FORMAT = 2  # goes up when a field changes its meaning
 BROKEN = "simulation error"  # how an episode ends if its simulation breaks
 ERROR, TOO_SLOW, DIED = "error", "too slow", "worker died"
+HUMAN = "human"  # the agent of episodes that people played
 FAILED = (ERROR, TOO_SLOW, DIED)  # how an episode ends that its agent, or the process playing it, did not finish
 PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "warp-lang", "numpy")  # whose versions can change an episode
 
@@ -184,11 +186,14 @@ class EpisodeResult:
 
 def _made(kind: Any, row: dict[str, Any]) -> Any:
     """A dataclass from its fields. Raises TypeError or ValueError for fields and types that it does not have."""
-    for name, hint in get_type_hints(kind).items():
+    for name, hint in _hints(kind).items():
         plain = (dict, tuple) if name in PLAIN else None
         if name in row and not isinstance(row[name], plain or (int | float if hint is float else hint)):
             raise ValueError(f"{name} = {row[name]!r:.100}")
     return kind(**row)
+
+
+_hints = functools.cache(get_type_hints)  # which takes longer than all else about reading a result
 
 
 def versions() -> dict[str, str]:

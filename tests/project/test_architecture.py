@@ -29,10 +29,11 @@ LAYERS = (  # a room may import only from rooms to its left, or from those besid
     ("evaluation",),
     ("pictures", "demonstrations", "learning", "perception"),
     ("validation",),
+    ("web",),
     ("bench",),
     ("cli",),
 )
-MOST_ROOMS = 32
+MOST_ROOMS = 33
 # 4 more than before demonstrations, which play, look, store, and are read by the command; and 3 more than before
 # learning, which plays in the sketch, makes the policies that agents ask, and is begun by the command; 9 more than
 # before perception, which plays episodes, looks, names licences, and is begun by the command; 2 more than before
@@ -41,8 +42,9 @@ MOST_ROOMS = 32
 # examples, of which two play episodes for other people's tools; 7 more for many environments at once, which are
 # started, checked, wrapped, learned from, and measured; 1 more for the sketch, whose ways are straightened by
 # kernels; 2 more for robots and skills, whose arms are followed, and whose ways are searched, by kernels; 2 more for
-# the town around streets, which effects draw by lot as scenes are, and which the bench hides
-MOST_ARROWS = 154
+# the town around streets, which effects draw by lot as scenes are, and which the bench hides; 14 more for the page,
+# which plays, shows, keeps and compares episodes, and is begun by the command
+MOST_ARROWS = 168
 MOST_FILES = 16  # of a folder
 MOST_LINES = 250  # of a file
 HEAVY = ("torch", "warp", "sapien", "mani_skill", "scipy", "numpy", "gymnasium")  # that take seconds to import

@@ -25,7 +25,7 @@ def prompt(brief: Brief, decision: Decision, menu: Menu) -> dict[str, Any]:
         "Things to rescue:",
         *(f"- {_target(brief, decision, index)}" for index in range(len(decision.targets))),
         "Options:",
-        *(f"{letter}) {_option(decision, menu, number)}" for letter, number in letters.items()),
+        *(f"{letter}) {option_words(decision, menu, number)}" for letter, number in letters.items()),
         "Answer with the letter of the best option.",
     ]
     return {"text": "\n".join(lines), "options": letters}
@@ -65,7 +65,8 @@ def _place(decision: Decision, index: int) -> str:
     return f"{float(np.hypot(x, y)):.1f} m away, {side}"
 
 
-def _option(decision: Decision, menu: Menu, number: int) -> str:
+def option_words(decision: Decision, menu: Menu, number: int) -> str:
+    """The option with this number in words. Raises ValueError for a number that no option has."""
     option = menu.option(number)
     assert option is not None  # the mask allows it
     words = {

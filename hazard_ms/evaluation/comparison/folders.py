@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from hazard_ms.agents.thinking import OFF
 from hazard_ms.evaluation.comparison.pairing import Episode
 from hazard_ms.evaluation.metrics import value
+from hazard_ms.evaluation.regret.causes import EpisodeRegret, beside
 from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult, result_files
 from hazard_ms.registry.detectors import TRUTH
 
 
 @dataclass(frozen=True)
 class Kept:
-    """A result and the file that holds it."""
+    """A result, the file that holds it, and its regret where `hazard-ms regret` has judged it as it is."""
 
     result: EpisodeResult
     path: Path
+    regret: EpisodeRegret | None = None
 
     @property
     def episode(self) -> Episode:
@@ -56,27 +58,33 @@ class Group:
 def groups(folders: Sequence[Path]) -> tuple[list[Group], list[str]]:
     """The results in `folders` and the folders in them, and a line for each file that holds no whole result.
 
-    Raises ValueError for a folder that does not exist, for results of another format, for an agent's episode that is
-    there twice, and where there is no result at all.
+    Raises ValueError for a folder that does not exist, for results of another format, for damaged regrets, for an
+    agent's episode that is there twice, and where there is no result at all.
     """
-    found: dict[str, dict[str, dict[Episode, Kept]]] = {}
+    found: list[Kept] = []
     left_out: list[str] = []
     for path in result_files(folders):
         try:
-            kept = Kept(EpisodeResult.read(path), path)
+            found.append(Kept(EpisodeResult.read(path), path, beside(path)))
         except DamagedResultError as damaged:
             left_out.append(str(damaged))
-            continue
-        own = found.setdefault(_title(kept.result), {}).setdefault(kept.result.agent, {})
-        if kept.episode in own:
-            raise ValueError(
-                f"results must hold each episode of an agent once, got {own[kept.episode].path} and {path}"
-            )
-        own[kept.episode] = kept
     if not found:
         names = ", ".join(map(str, folders))
         raise ValueError(f"folders must hold results of `hazard-ms evaluate -o FOLDER`, got none in {names}")
-    return [Group(title, _best_first(found[title])) for title in sorted(found)], left_out
+    return grouped(found), left_out
+
+
+def grouped(results: Iterable[Kept]) -> list[Group]:
+    """Results in groups, by their titles. Raises ValueError for an agent's episode that is there twice."""
+    found: dict[str, dict[str, dict[Episode, Kept]]] = {}
+    for kept in results:
+        own = found.setdefault(title(kept.result), {}).setdefault(kept.result.agent, {})
+        if kept.episode in own:
+            raise ValueError(
+                f"results must hold each episode of an agent once, got {own[kept.episode].path} and {kept.path}"
+            )
+        own[kept.episode] = kept
+    return [Group(name, _best_first(found[name])) for name in sorted(found)]
 
 
 def _best_first(agents: dict[str, dict[Episode, Kept]]) -> dict[str, dict[Episode, Kept]]:
@@ -85,7 +93,7 @@ def _best_first(agents: dict[str, dict[Episode, Kept]]) -> dict[str, dict[Episod
     return {agent: dict(sorted(agents[agent].items())) for agent in sorted(agents, key=lambda a: (-means[a], a))}
 
 
-def _title(result: EpisodeResult) -> str:
+def title(result: EpisodeResult) -> str:
     """Task and settings in words: "HazardFire-v1, split test, physics paper, robot fetch"."""
     words = [result.env_id]
     for name, setting in result.settings.items():

@@ -19,7 +19,6 @@ from hazard_ms.evaluation.regret.causes import (
     SMALL,
     UNSEEN,
     EpisodeRegret,
-    beside,
 )
 from hazard_ms.evaluation.regret.table import shares
 
@@ -48,9 +47,9 @@ Piece = tuple[str, float, str, float]  # words, length, colour, opacity
 def losses(episodes: Iterable[Kept]) -> dict[str, Any] | None:
     """The loss of an agent: "episodes" that were judged, "shares" of all value by part, and its "worst" decisions.
 
-    None where no episode was judged since its result was written. Raises ValueError for a damaged file.
+    None where no episode was judged since its result was written.
     """
-    found = [(kept, regret) for kept in episodes if (regret := beside(kept.path)) is not None]
+    found = [(kept, kept.regret) for kept in episodes if kept.regret is not None]
     if not found:
         return None
     return {

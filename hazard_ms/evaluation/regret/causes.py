@@ -95,7 +95,7 @@ class EpisodeRegret:
                 raise ValueError(f"format {row['format']!r:.100} instead of {FORMAT}")
             decisions = tuple(DecisionRegret(**decision) for decision in row.pop("decisions"))
             return cls(**row, decisions=decisions)
-        except (OSError, ValueError, LookupError, TypeError, RecursionError) as error:
+        except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
             raise ValueError(f"{path} must hold what `hazard-ms regret` wrote, got {error}; delete it") from None
 
 

@@ -15,7 +15,7 @@ from hazard_ms.simulation.viewpoint import corner_view, following_view
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.web.playing.link import HAZARD, HEAD, MAP, ROOM
 
-SIZE = (448, 336)  # of the third person [pixels]: larger ones are too few a second on two cores [measured]
+SIZE = (400, 300)  # of the third person [pixels]: larger ones are too few a second on two cores [measured]
 PLAN = (480, 320)  # of the map [pixels]
 QUALITY = 80  # of JPEGs, of 100 [ours]
 HEAD_EVERY = 12  # pictures of the third person for one of the head camera, which takes as long as two of them [ours]

@@ -14,6 +14,7 @@ from hazard_ms.web.options import ServeOptions
 
 HOST = "127.0.0.1"
 KEY = ".serve.key"  # in the first folder, for its owner alone: the token and the port, so that pages survive a restart
+BACKLOG = 128  # connections that wait to be taken [ours]
 TOKEN_BYTES = 24  # of chance in a token [bytes] [ours]
 
 
@@ -46,6 +47,7 @@ def _listening(asked: int, last: int) -> socket.socket:
         made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             made.bind((HOST, port))
+            made.listen(BACKLOG)  # whoever reads the address early waits, and is not refused
             return made
         except OSError as error:
             made.close()

@@ -31,7 +31,7 @@ def started_by_run() -> Path:
 def test_run_refuses_what_it_does_not_know_before_any_set_up(tmp_path: Path) -> None:
     done = run("dance", HAZARD_MS_HOME=str(tmp_path / "home"))
     assert done.returncode == 1
-    assert "must be demo, demos, test, docs, python, hazard-ms or pip, got 'dance'" in done.stderr
+    assert "must be demo, demos, serve, test, docs, python, hazard-ms or pip, got 'dance'" in done.stderr
     assert not (tmp_path / "home").exists()
 
 

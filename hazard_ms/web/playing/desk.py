@@ -32,8 +32,6 @@ class EndedError(Exception):
 class Desk(Watcher):
     """Stands between one episode and its page; a watcher of the episode, and the ear of its player."""
 
-    colours = True
-
     def __init__(self, link: Link, rescue: Rescue, folder: Path) -> None:
         self.link, self.rescue, self._folder = link, rescue, folder
         self.choices = Choices()

@@ -15,10 +15,10 @@ from hazard_ms.simulation.viewpoint import corner_view, following_view
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.web.playing.link import HAZARD, HEAD, MAP, ROOM
 
-SIZE = (448, 336)  # of the third person [pixels]: larger ones are too few a second on two cores [measured]
+SIZE = (400, 300)  # of the third person [pixels]: larger ones are too few a second on two cores [measured]
 PLAN = (480, 320)  # of the map [pixels]
 QUALITY = 80  # of JPEGs, of 100 [ours]
-HEAD_EVERY = 12  # pictures of the third person for one of the head camera, which takes as long as two of them [ours]
+HEAD_EVERY = 16  # pictures of the third person for one of the head camera, which takes as long as two of them [ours]
 MAP_EVERY = 4  # pictures for one of the map [ours]
 NEAR = 14.0  # distance on the map within which a click means a thing [pixels] [ours]
 PATH_STEP = 0.05  # shortest piece of the drawn path [m]

@@ -35,6 +35,11 @@ class Player(PrivilegedAgent):
         return {"third_person": float(self._rescue.view == ALL), **first}
 
     @property
+    def colours(self) -> bool:  # type: ignore[override]
+        """Whether decisions must have pictures with colours: the page has its own."""
+        return self._source is not None and self._source.colours
+
+    @property
     def ending(self) -> str:  # type: ignore[override]
         """The reason that the result gives when the episode is stopped."""
         return "stopped" if self._source is None else self._source.ending

@@ -59,7 +59,7 @@ export class Rescue {
     const scheme = location.protocol === "https:" ? "wss" : "ws"
     this.socket = new WebSocket(`${scheme}://${location.host}/api/rescues/${this.name}/live`)
     this.socket.binaryType = "blob"
-    this.socket.addEventListener("open", () => this.say("", false))
+    this.socket.addEventListener("open", () => this.on_again()) // the server tells everything from the beginning
     this.socket.addEventListener("message", event => {
       if (typeof event.data === "string") this.heard(JSON.parse(event.data))
       else this.show(event.data)
@@ -110,6 +110,8 @@ export class Rescue {
 
   on_again() {
     this.rows = []
+    this.state = null
+    this.asking.hidden = true
     this.log.replaceChildren()
     this.files.replaceChildren()
     this.say("", false)

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from hazard_ms.evaluation.options import EpisodeOptions, PlayOptions, ReplayOptions, SweepOptions
+from hazard_ms.evaluation.options import HUMAN, EpisodeOptions, PlayOptions, ReplayOptions, SweepOptions
 from hazard_ms.web.options import ServeOptions
 
 if TYPE_CHECKING:
     from hazard_ms.evaluation.result import EpisodeResult
 
-HUMAN = "human"  # not an agent that could be asked: a person, on the page
 SUFFIXES = {".mp4": "video", ".json": "result", ".html": "page"}  # of the files of an episode
 
 

@@ -27,7 +27,6 @@ from hazard_ms.registry.version import __version__
 FORMAT = 2  # goes up when a field changes its meaning
 BROKEN = "simulation error"  # how an episode ends if its simulation breaks
 ERROR, TOO_SLOW, DIED = "error", "too slow", "worker died"
-HUMAN = "human"  # the agent of episodes that people played
 FAILED = (ERROR, TOO_SLOW, DIED)  # how an episode ends that its agent, or the process playing it, did not finish
 PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "warp-lang", "numpy")  # whose versions can change an episode
 

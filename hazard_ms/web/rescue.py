@@ -9,12 +9,11 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.evaluation.options import EpisodeOptions
+from hazard_ms.evaluation.options import HUMAN, EpisodeOptions
 from hazard_ms.machine.files import make_folder, write
 from hazard_ms.registry import AGENTS, TASKS
 from hazard_ms.spec.checks import one_of, whole
 
-HUMAN = "human"  # agent of the results of a person's rescues
 PLAY, WATCH = "play", "watch"
 KINDS = (PLAY, WATCH)
 ALL, ROBOT = "all", "robot"  # pictures: with the third person's, or only those of the robot

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.scenes.boxes import yaw_of
 from hazard_ms.scenes.solids import parts_of
-from hazard_ms.spec import Opening, Room, SceneSpec
+from hazard_ms.spec import Opening, Room, SceneSpec, Vec2
 
 CELL = 0.1  # side of a cell [m]
 DOOR = 0.9  # width of an opening where a scene has no door [m] [ours: that of a front door]
@@ -53,8 +54,13 @@ class FloorPlan(NamedTuple):
 
 def size_of(rooms: Sequence[Room]) -> tuple[int, int]:
     """Cells along x and y that cover the largest of `rooms`."""
-    longest = (max(room.size[k] for room in rooms) for k in (0, 1))
-    x, y = (math.ceil(length / CELL - 1e-6) for length in longest)
+    return cells_over(tuple(room.size for room in rooms))
+
+
+@lru_cache
+def cells_over(sizes: tuple[Vec2, ...]) -> tuple[int, int]:
+    """Cells along x and y that cover the largest of rooms of these `sizes` [m]; asked for several times a frame."""
+    x, y = (math.ceil(max(lengths) / CELL - 1e-6) for lengths in zip(*sizes, strict=True))
     return x, y
 
 

@@ -113,4 +113,4 @@ class Inundation(Flood):
 
 def _cells(world: World) -> tuple[int, int]:
     """Cells along x and y that cover every scene of the batch."""
-    return floor_plan.size_of([spec.room for spec in world.specs])
+    return floor_plan.cells_over(tuple(spec.room.size for spec in world.specs))

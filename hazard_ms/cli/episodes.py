@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from hazard_ms.evaluation.options import HUMAN, EpisodeOptions, PlayOptions, ReplayOptions, SweepOptions
+from hazard_ms.evaluation.choices import HUMAN
+from hazard_ms.evaluation.options import EpisodeOptions, PlayOptions, ReplayOptions, SweepOptions
 from hazard_ms.web.options import ServeOptions
 
 if TYPE_CHECKING:

@@ -19,7 +19,6 @@ from hazard_ms.spec.order import natural
 SCENE_FILE = ".json"  # how names of scene files end
 EPISODES = 25  # of every agent, unless another number is asked for: a split of the original has as many scenes
 MOST = 10**6  # episodes, seeds and frames between pictures: any larger number must be a mistake [-] [ours]
-HUMAN = "human"  # the agent of episodes that people played
 MOST_WORKERS = 1024  # processes [ours]
 LONGEST_DECISION = 86_400.0  # [s] [ours]
 

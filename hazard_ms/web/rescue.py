@@ -9,7 +9,8 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.evaluation.options import HUMAN, EpisodeOptions
+from hazard_ms.evaluation.choices import HUMAN
+from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.machine.files import make_folder, write
 from hazard_ms.registry import AGENTS, TASKS
 from hazard_ms.spec.checks import one_of, whole

@@ -17,8 +17,8 @@ import subprocess
 import sys
 from typing import Any
 
-from hazard_ms.evaluation.comparison.summary import interval
 from hazard_ms.evaluation.choices import HUMAN
+from hazard_ms.evaluation.comparison.summary import interval
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.robots import robot_class
 from hazard_ms.sketch.bound import bound

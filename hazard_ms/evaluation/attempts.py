@@ -8,7 +8,7 @@ from pathlib import Path
 
 import torch
 
-from hazard_ms.agents.base import PrivilegedAgent, agent
+from hazard_ms.agents.base import Agent, PrivilegedAgent, agent
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import ERROR, EpisodeResult, Played
 from hazard_ms.evaluation.runner import play, result_of
@@ -58,7 +58,25 @@ class Teller(Watcher):
         self._say(Word(None))
 
 
-class Recorded(PrivilegedAgent):
+class Accompanied(PrivilegedAgent):
+    """Decides beside another agent, which learns all that it would learn if it decided itself; None for nobody."""
+
+    _env: SkillEnv
+    _source: Agent | None
+
+    def attach(self, env: SkillEnv) -> None:
+        """Take the environment, and show it to the other agent if that is privileged."""
+        self._env = env
+        if isinstance(self._source, PrivilegedAgent):
+            self._source.attach(env)
+
+    def reset(self, brief: Brief) -> None:
+        """Begin an episode."""
+        if self._source is not None:
+            self._source.reset(brief)
+
+
+class Recorded(Accompanied):
     """Takes the actions that an agent took earlier, after waiting as long as it did, and stops after the last one.
 
     Where that agent is privileged, it is asked, too, since it tells the map what it knows. Its answers do not matter.
@@ -73,17 +91,6 @@ class Recorded(PrivilegedAgent):
         entry = AGENTS.get(name.partition(":")[0])
         asked = entry is not None and issubclass(load(entry.agent), PrivilegedAgent)
         self._source = agent(name) if asked else None
-
-    def attach(self, env: SkillEnv) -> None:
-        """Let the agent of the record see what is hidden, if it is privileged."""
-        self._env = env
-        if isinstance(self._source, PrivilegedAgent):
-            self._source.attach(env)
-
-    def reset(self, brief: Brief) -> None:
-        """Begin an episode."""
-        if self._source is not None:
-            self._source.reset(brief)
 
     def act(self, decision: Decision) -> Action:
         """The next action of the record."""

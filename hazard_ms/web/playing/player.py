@@ -5,11 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 
-from hazard_ms.agents.base import Agent, PrivilegedAgent, agent, note_of
+from hazard_ms.agents.base import Agent, agent, note_of
+from hazard_ms.evaluation.attempts import Accompanied
 from hazard_ms.skills.actions import wait
-from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, Action, Decision
-from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.options.macros import Macro
 from hazard_ms.web.playing.desk import Desk
 from hazard_ms.web.rescue import ALL, WATCH, Rescue
@@ -17,7 +16,7 @@ from hazard_ms.web.rescue import ALL, WATCH, Rescue
 PATIENCE = 0.5  # time between two looks at whether a page still listens [s] [ours]
 
 
-class Player(PrivilegedAgent):
+class Player(Accompanied):
     """Chooses as the agent of the rescue does, or as the page says."""
 
     def __init__(self, rescue: Rescue, desk: Desk) -> None:
@@ -48,17 +47,6 @@ class Player(PrivilegedAgent):
     def fallback(self) -> bool:  # type: ignore[override]
         """Whether the last action stands in for an answer that could not be read."""
         return self._source is not None and bool(self._source.fallback)
-
-    def attach(self, env: SkillEnv) -> None:
-        """Take the environment, and show it to the agent if that is privileged."""
-        self._env = env
-        if isinstance(self._source, PrivilegedAgent):
-            self._source.attach(env)
-
-    def reset(self, brief: Brief) -> None:
-        """Begin an episode."""
-        if self._source is not None:
-            self._source.reset(brief)
 
     def act(self, decision: Decision) -> Action:
         """The next action: the recorded one, else the agent's when the page lets it go on, or the person's."""

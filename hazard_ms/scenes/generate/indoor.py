@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hazard_ms.scenes.floor import doorways, free_for, take
 from hazard_ms.scenes.generate.arrangement import NoPlaceError
-from hazard_ms.scenes.generate.draw import GENERATOR, Draw
+from hazard_ms.scenes.generate.draw import STREAM, Draw
 from hazard_ms.scenes.generate.furnishing import furnish
 from hazard_ms.scenes.generate.hazard_placement import (
     FLAME_RADIUS,
@@ -38,15 +38,15 @@ def generate(layout: Layout, name: str, split: str) -> SceneSpec:
     Raises ValueError if the layout asks for more than fits into it.
     """
     for attempt in range(ATTEMPTS):
-        draw = Draw(GENERATOR, name, attempt)
         try:
-            return _attempt(layout, name, split, draw)
+            return _attempt(layout, name, split, attempt)
         except NoPlaceError as problem:
             last = problem
     raise ValueError(f"{name} must fit into its room, got no arrangement in {ATTEMPTS} attempts; the last: {last}")
 
 
-def _attempt(layout: Layout, name: str, split: str, draw: Draw) -> SceneSpec:
+def _attempt(layout: Layout, name: str, split: str, attempt: int) -> SceneSpec:
+    draw = Draw(STREAM, name, attempt)
     made = furnish(layout, draw)
     scatter = Scatter(made, layout, anywhere=layout.anywhere)
     chosen = fill(scatter, layout)
@@ -55,7 +55,9 @@ def _attempt(layout: Layout, name: str, split: str, draw: Draw) -> SceneSpec:
     targets = [box for body, box in zip(scatter.bodies, standing[1], strict=True) if body.category in chosen]
     bare = take(free_for(room, *standing, FLAME_RADIUS), room.size, doorways(room), MIN_DOORWAY_DISTANCE)
     burning = fires(draw.one(layout.fires), scatter.free, bare, agent, targets, room.size, draw)
-    bodies = tuple(sorted(scatter.bodies, key=lambda b: b.name))
     side = flood_side(room, draw)
     second = flood_side(room, draw, dry=(side,)) if layout.inflows > 1 else None
+    clear = ((agent.position, START_RADIUS), *((fire, FLAME_RADIUS) for fire in burning))
+    scatter.put_down("vacuum_cleaner", clear, Draw(STREAM, f"{name}/floor", attempt))
+    bodies = tuple(sorted(scatter.bodies, key=lambda b: b.name))
     return SceneSpec(name, room, tuple(made.fixtures), bodies, chosen, burning, agent, split, side, second)

@@ -8,7 +8,7 @@ from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes
 from hazard_ms.scenes.floor import centre_of, free_for
 from hazard_ms.scenes.generate.arrangement import Arrangement, NoPlaceError, models_of
-from hazard_ms.scenes.generate.draw import GENERATOR, Draw
+from hazard_ms.scenes.generate.draw import STREAM, Draw
 from hazard_ms.scenes.generate.hazard_placement import FLAME_RADIUS, START_RADIUS, fires, start
 from hazard_ms.scenes.generate.region_layout import lay_out
 from hazard_ms.scenes.generate.regions import REGION_SIZE, REGIONS, Region
@@ -28,7 +28,7 @@ def make(place: str, name: str, split: str) -> SceneSpec:
     """The scene `name` of the region `place`, a key of REGIONS. Raises ValueError if nothing fits."""
     for attempt in range(ATTEMPTS):
         try:
-            return _compose(REGIONS[place], name, split, Draw(GENERATOR, name, attempt))
+            return _compose(REGIONS[place], name, split, Draw(STREAM, name, attempt))
         except NoPlaceError as problem:
             last = problem
     raise ValueError(f"{name} must fit into its region, got no arrangement in {ATTEMPTS} attempts; the last: {last}")

@@ -1,6 +1,7 @@
 """Categories of the objects that stand in rooms, and where they do not stand because of what things are for.
 
-The published scenes were made without these rules and stay as they are (`Layout.anywhere`).
+The published scenes were made without these rules (`Layout.anywhere`) and keep their things where they were, but for
+vacuum cleaners, which were put down to the floor.
 """
 
 from __future__ import annotations

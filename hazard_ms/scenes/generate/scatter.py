@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -107,19 +109,42 @@ class Scatter:
             if surface is None and not floor:
                 continue
             yaw = self.draw.uniform(-math.pi, math.pi)
-            x, y, z = self._floor_point() if surface is None else self._point_on(surface, extent)
+            x, y, z = self._floor_point(self.draw) if surface is None else self._point_on(surface, extent)
             position = (round(x, 4), round(y, 4), round(z + RESTING_HEIGHT, 4))
             body = Body(name, category, model, position, boxes.turned(yaw))
             if self._add(body, boxes.box_of(body, extent), owner, surface):
                 return True
         return False
 
-    def _floor_point(self) -> Vec3:
+    def put_down(self, category: str, clear: Sequence[tuple[tuple[float, ...], float]], draw: Draw) -> None:
+        """Put what is of a category and stands on furniture on the floor, outside the circles `clear`.
+
+        A circle: its middle [m], of which x and y count, and its radius [m]. Raises NoPlaceError if there is no place.
+        """
+        first = len(self._rows) - len(self.bodies)
+        for k in [k for k, b in enumerate(self.bodies) if b.category == category and b.position[2] > OBSTACLE_HEIGHT]:
+            body, extent = self.bodies[k], asset(self.bodies[k].asset).extent
+            kept = self.bodies[:], self.boxes[:], self._rows
+            del self.bodies[k], self.boxes[k]
+            self._rows = np.delete(self._rows, first + k, axis=0)
+            for _ in range(10 * TRIES):
+                x, y, z = self._floor_point(draw)
+                position = (round(x, 4), round(y, 4), round(z + RESTING_HEIGHT, 4))
+                there = replace(body, position=position, rotation=boxes.turned(draw.uniform(-math.pi, math.pi)))
+                box = boxes.box_of(there, extent)
+                near = any(float(box.distance(*np.array(middle[:2]))) < radius for middle, radius in clear)
+                if not near and self._add(there, box, -1, None):
+                    break
+            else:
+                self.bodies, self.boxes, self._rows = kept
+                raise NoPlaceError(f"a {category} must have a place on the floor, got none")
+
+    def _floor_point(self, draw: Draw) -> Vec3:
         w, d = self.size
         for _ in range(TRIES):
-            x, y = self.draw.uniform(0.0, w), self.draw.uniform(0.0, d)
+            x, y = draw.uniform(0.0, w), draw.uniform(0.0, d)
             if (
-                self.draw.uniform() < self.in_the_open
+                draw.uniform() < self.in_the_open
                 or min(self._openness[cell_of((x, y))], x, y, w - x, d - y) < MAX_OPENNESS
             ):
                 break

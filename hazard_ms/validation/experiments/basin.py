@@ -65,6 +65,11 @@ class Basin:
             self.law.advance(self.state, self.world, dt)
 
     @property
+    def now(self) -> float:
+        """The time that the water is at [s]: it may be ahead of its frame."""
+        return float(self.state.time + self.state.ahead)
+
+    @property
     def volume(self) -> float:
         """All of the water [m^3]."""
         return float((self.get("depth") + self.get("depth_rest")).sum()) * floor_plan.CELL**2
@@ -86,16 +91,16 @@ def dam_break(behind: float, before: float, seconds: float = 2.0) -> tuple[float
     return float(depths[dam - 1 : dam + 1].mean()), flow, float(depths[ahead]), float(speeds[ahead])
 
 
-def front(behind: float, before: float, level: float, seconds: float = 2.0) -> float:
-    """Speed at which the depth `level` [m] runs downstream after a dam break [m/s]."""
+def front(behind: float, before: float, level: float, seconds: float = 2.0, dt: float = 1 / 120) -> float:
+    """Speed at which the depth `level` [m] runs downstream after a dam break, in frames of `dt` [s] [m/s]."""
     cells = 240
     depth = np.where(np.arange(cells) < cells // 2, behind, before)[:, None]
     basin = Basin((24.0, 0.1), depth=depth)
-    basin.run(seconds, 1 / 120)
+    basin.run(seconds, dt)
     depths = basin.get("depth")[:, 0]
     last = int(np.nonzero(depths > level)[0].max())
     beyond = (depths[last] - level) / (depths[last] - depths[last + 1])  # share of a cell
-    return (last + 0.5 + beyond - cells // 2) * floor_plan.CELL / seconds
+    return (last + 0.5 + beyond - cells // 2) * floor_plan.CELL / basin.now
 
 
 def refined() -> float:

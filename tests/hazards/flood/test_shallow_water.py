@@ -183,3 +183,14 @@ def test_inside_furniture_water_stands_as_high_as_around_it() -> None:
 def test_impossible_parameters_are_refused(name: str, value: float) -> None:
     with pytest.raises(ValueError, match=name):
         dataclasses.replace(LAW, **{name: value})
+
+
+def test_the_shortest_waves_do_not_grow_in_the_longest_steps() -> None:
+    """Waves of two cells, in frames that are longer than a step; in steps a tenth longer they grow twelvefold."""
+    i, j = np.indices((60, 60))
+    basin = Basin((6.0, 6.0), depth=0.5 + 0.002 * (-1.0) ** (i + j))
+    highest = 0.0
+    for _ in range(60):
+        basin.run(0.5, 1 / 30)
+        highest = max(highest, float(np.sqrt(np.mean((basin.get("depth") - 0.5) ** 2))))
+    assert highest < 2.0 * 0.002

@@ -13,8 +13,9 @@ GRAVITY = wp.constant(9.81)  # [m/s^2]
 SIDE = wp.constant(CELL)
 DRY = wp.constant(1e-4)  # depth below which water is not seen [m] [ours]
 FILM = wp.constant(1e-5)  # depth below which water does not flow [m] [ours]
-SAFE = wp.constant(1.0)  # share of a cell that the fastest wave may pass in a step [ours]
-FASTEST = wp.constant(0.45)  # share of a cell that water may pass in a step [ours]
+SAFE = wp.constant(0.8)  # share of a cell that the fastest wave may pass in a step; short waves grow from 0.9 on [ours]
+FASTEST = wp.constant(0.6)  # share of a cell that water may pass in a step [ours]
+GROWTH = wp.constant(1.25)  # by which it may be faster in the next frame without being held back [ours]
 NOWHERE = wp.constant(-1.0)  # surface where there is no water [m]
 FENCE = wp.constant(0.5 * BEYOND)  # ground that is higher is not floor [m]
 WAVES = wp.constant(2.0**0.5)  # waves of both axes add up
@@ -42,6 +43,7 @@ class Basin:
     inflow: wp.array(dtype=float)
     inflow_rest: wp.array(dtype=float)
     signal: wp.array(dtype=float)
+    ahead: wp.array(dtype=float)
     level: wp.array(dtype=float)
 
 
@@ -123,7 +125,8 @@ def note(e: int, rows: int, columns: int, outside: float, basin: Basin):
                 total += basin.surface[e, c]
                 wet += 1.0
                 speed = wp.max(wp.abs(basin.velocity_x[e, c]), wp.abs(basin.velocity_y[e, c]))
-                fastest = wp.max(fastest, wp.max(speed * (SAFE / FASTEST), speed + WAVES * wp.sqrt(GRAVITY * deep)))
+                wave = speed + WAVES * wp.sqrt(GRAVITY * deep)
+                fastest = wp.max(fastest, wp.max(speed * (GROWTH * SAFE / FASTEST), wave))
             elif basin.bed[e, c] > 0.0 and basin.bed[e, c] < FENCE:
                 around, count = float(0.0), float(0.0)
                 for k in range(4):

@@ -23,7 +23,8 @@ def weir(outside: float, inside: float) -> float:
     free = WEIR * outside * wp.sqrt(outside)
     if inside <= 0.0:
         return free
-    return free * wp.pow(1.0 - wp.pow(inside / outside, 1.5), DROWNING)
+    part = inside / outside
+    return free * wp.pow(1.0 - part * wp.sqrt(part), DROWNING)
 
 
 @wp.func

@@ -35,3 +35,4 @@ class InundationState(FloodState):
     inflow: Tensor = quantity("E", "m^3", "water that has come in, less what has left")
     inflow_rest: Tensor = quantity("E", "m^3", "what rounding has left out of it")
     signal: Tensor = quantity("E", "m/s", "speed of the fastest wave", low=0.0)
+    ahead: Tensor = quantity("E", "s", "time by which the water is ahead: less than a step of its own", low=0.0)

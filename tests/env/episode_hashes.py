@@ -39,9 +39,10 @@ def machine() -> dict[str, str]:
 
 
 def processor() -> str:
-    """The name of the processor: others with the same instructions may round differently."""
+    """Name, family and model of the processor: others with the same instructions may round differently."""
     lines = Path("/proc/cpuinfo").read_text().splitlines()
-    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "unknown")
+    told = {name.strip(): value.strip() for name, _, value in (line.partition(":") for line in reversed(lines))}
+    return " ".join(told.get(name, "unknown") for name in ("model name", "cpu family", "model"))
 
 
 def feed(digest: Any, value: Any) -> None:

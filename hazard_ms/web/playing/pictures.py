@@ -30,7 +30,7 @@ class Pictures:
     def __init__(self, env: SkillEnv, room: bool) -> None:
         """Begin with the episode that has begun in `env`; `room`: whether the third person is shown."""
         self._env, self._room = env, room
-        self._levels = tuple(hazard.level for hazard in env.base.task.hazards)
+        self._levels = tuple(hazard.shown_level for hazard in env.base.task.hazards)
         self._map = MapPanel(*PLAN, self._levels)
         self._path: list[tuple[float, float]] = []
         self._count = 0

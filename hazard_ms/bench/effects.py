@@ -23,10 +23,11 @@ SIDE = 256  # of the picture [pixels]
 ADVANCED = 450  # the frame of the episode at which the hazard is looked at
 
 
-def costs(env_id: str, rounds: int, seed: int) -> dict[str, float]:
-    """Median time of a picture with rgb, depth and segmentation in each mode, in the open also without the town [s].
+def costs(env_id: str, rounds: int, seed: int) -> dict[str, list[float]]:
+    """Times of pictures with rgb, depth and segmentation in each mode, in the open also without the town [s].
 
-    The modes are taken in turn `rounds` times. Raises ValueError for an unknown task and for too few rounds.
+    The modes are taken in turn `rounds` times, so that those of one turn can be compared in pairs. Raises ValueError
+    for an unknown task and for too few rounds.
     """
     EnvOptions(env_id).check()
     whole(rounds, 3, 10**5, "rounds")
@@ -42,16 +43,20 @@ def costs(env_id: str, rounds: int, seed: int) -> dict[str, float]:
             spans[mode].append(_picture(env.unwrapped))
     for env in made.values():
         env.close()
-    return {mode: float(np.median(times)) for mode, times in spans.items()}
+    return spans
 
 
 def report(env_id: str, rounds: int, seed: int) -> str:
     """The table of `costs`."""
-    found = costs(env_id, rounds, seed)
+    spans = costs(env_id, rounds, seed)
+    found = {mode: float(np.median(times)) for mode, times in spans.items()}
     lines = [f"{env_id}, {SIDE} pixels, rgb+depth+segmentation, frame {ADVANCED}, median of {rounds} pictures in turn"]
     lines += [
         f"  {mode:7s} {1000 * span:8.2f} ms  {span / found[MODES[0]]:5.2f} x {MODES[0]}" for mode, span in found.items()
     ]
+    if BARE in spans:
+        low, middle, high = np.percentile(np.divide(spans["full"], spans[BARE]), (25, 50, 75))
+        lines.append(f"  full beside {BARE}, in pairs: {middle:.2f} x, the middle half {low:.2f} to {high:.2f} x")
     return "\n".join(lines)
 
 

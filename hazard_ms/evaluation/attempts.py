@@ -80,14 +80,20 @@ class Recorded(Accompanied):
     """Takes the actions that an agent took earlier, after waiting as long as it did, and stops after the last one.
 
     Where that agent is privileged, it is asked, too, since it tells the map what it knows. Its answers do not matter.
-    Nobody's code is loaded because a file names it: only registered agents are asked.
+    Nobody's code is loaded because a file names it: only registered agents are asked. `notes`: its reasons, for films.
     """
 
     colours = False
 
-    def __init__(self, actions: tuple[tuple[str, str | None], ...], name: str, waits: tuple[int, ...] = ()) -> None:
+    def __init__(
+        self,
+        actions: tuple[tuple[str, str | None], ...],
+        name: str,
+        waits: tuple[int, ...] = (),
+        notes: tuple[str, ...] = (),
+    ) -> None:
         self._left = [Action(STOP), *(Action(verb, target) for verb, target in reversed(actions))]
-        self._waits = list(reversed(waits))
+        self._waits, self._notes = list(reversed(waits)), list(reversed(notes))
         entry = AGENTS.get(name.partition(":")[0])
         asked = entry is not None and issubclass(load(entry.agent), PrivilegedAgent)
         self._source = agent(name) if asked else None
@@ -96,6 +102,7 @@ class Recorded(Accompanied):
         """The next action of the record."""
         if self._source is not None:
             self._source.act(decision)
+        self.note = self._notes.pop() if self._notes else ""
         if self._waits and (frames := self._waits.pop()):
             self._env.run(wait(self._env.stage, frames))
         return self._left.pop() if len(self._left) > 1 else self._left[0]

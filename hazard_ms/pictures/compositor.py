@@ -48,6 +48,7 @@ class Shot:
     third_person: Pixels
     head: Pixels
     level: NDArray[np.floating] | None  # [K, 16, 16], of the task's K hazards in their units
+    told: tuple[float, ...]  # the highest number of each of them, as `hazard_ms.pictures.told` finds it
     map: SemanticMap
     names: tuple[str, ...]  # of the things that the map refers to by index
     targets: tuple[Target, ...]
@@ -85,20 +86,21 @@ class Compositor:
         place(sheet, main, (GAP, TOP))
         left = GAP * 2 + MAIN[0]
         head = cover(shot.head, SIDE, SIDE)
-        place(sheet, self._hazard(head, shot.level), (left + SIDE + GAP, TOP))
+        place(sheet, self._hazard(head, shot), (left + SIDE + GAP, TOP))
         place(sheet, self._labelled(head, "head camera"), (left, TOP))
         plan = self._map.draw(shot.map, shot.targets, shot.names, shot.agent, shot.path, shot.target)
         place(sheet, self._labelled(plan, "what the robot has seen"), (left, TOP + SIDE + GAP))
         self._caption(sheet, shot)
         return sheet
 
-    def _hazard(self, head: Pixels, images: NDArray[np.floating] | None) -> Pixels:
+    def _hazard(self, head: Pixels, shot: Shot) -> Pixels:
         """The panel of the hazard that is strongest in view."""
+        images = shot.level
         if images is None or not np.isfinite(images).any(axis=(1, 2)).all():
             return self._labelled(head.copy(), "no hazard image")
-        which = strongest(images, self._levels)
+        which = strongest(shot.told, self._levels)
         level = self._levels[which]
-        return self._labelled(hazard_panel(head, images[which], level), level.title)
+        return self._labelled(hazard_panel(head, images[which], level, shot.told[which]), level.title)
 
     def _labelled(self, panel: Pixels, text: str) -> Pixels:
         chip(panel, text, (10, 10), 13, TEXT, PANEL)

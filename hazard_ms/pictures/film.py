@@ -14,6 +14,7 @@ from hazard_ms.machine.files import Draft
 from hazard_ms.machine.video import Video
 from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import Pixels
+from hazard_ms.pictures.told import told
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.simulation.viewpoint import corner_view, following_view
 from hazard_ms.skills.context import LowLevel
@@ -49,7 +50,7 @@ class Film(Watcher):
         self._env = env
         self._video = self._files.enter_context(Video(self._draft, (WIDTH, HEIGHT), RATE))
         self._compositor = Compositor(title, subtitle, tuple(h.shown_level for h in base.task.hazards))
-        self._head = base.observer.look()
+        self._look()
 
     def decided(self, decision: Decision, action: Action, note: str) -> None:
         """Show `action` and its reason from now on."""
@@ -87,7 +88,7 @@ class Film(Watcher):
         """Take a picture now, and add it to the film."""
         env, base = self._env, self._env.base
         if self._shots % LOOK_EVERY == 0:
-            self._head = base.observer.look()
+            self._look()
         self._shots += 1
         rgb, view = self._head
         self._follow()
@@ -101,6 +102,7 @@ class Film(Watcher):
                 third_person=room,
                 head=rgb.cpu().numpy(),
                 level=view.level,
+                told=self._told,
                 map=env.seen,
                 names=env.labeller.names,
                 targets=self._targets(now),
@@ -119,6 +121,11 @@ class Film(Watcher):
         )
         self._video.add(picture)
         return picture
+
+    def _look(self) -> None:
+        """Look through the head camera."""
+        self._head = self._env.base.observer.look()
+        self._told = told(self._env.base, self._head[1])
 
     def _follow(self) -> None:
         """In the open, where the robot would be a dot, move the camera along with it."""

@@ -34,6 +34,9 @@ from hazard_ms.spec import Level
 
 FLOOR = np.array((62, 69, 80), np.float32)  # colour of a height of 0
 WALL = np.array((208, 213, 221), np.float32)  # of 2 m and more
+LOW = 0.05  # share of the way from floor to wall up to which a cell is floor: 0.1 m [ours]
+AROUND = (5, 5)  # cells around one of the floor that tell whether it was seen as a point or in an area [ours]
+POINTS, AREA = 0.2, 0.5  # shares of these cells that were seen, of a row of points and of an area [ours]
 TINTED = 0.9  # share of a hazard's tint on the map, at most
 
 
@@ -66,15 +69,15 @@ def coloured(shares: NDArray[np.floating], level: Level) -> Pixels:
     return cv2.cvtColor(cv2.applyColorMap(index, colours), cv2.COLOR_BGR2RGB)
 
 
-def strongest(images: NDArray[np.floating], levels: Sequence[Level]) -> int:
-    """Index of the hazard that reaches furthest up its scale in `images`, [K, 16, 16], in the units of `levels`."""
-    return int(np.argmax([np.nanmax(share(image, level)) for image, level in zip(images, levels, strict=True)]))
+def strongest(most: Sequence[float], levels: Sequence[Level]) -> int:
+    """Index of the hazard that reaches furthest up its scale; `most`: the highest number of each, in its unit."""
+    return int(np.argmax([share(np.array(number), level) for number, level in zip(most, levels, strict=True)]))
 
 
-def hazard_panel(head: Pixels, image: NDArray[np.floating], level: Level) -> Pixels:
+def hazard_panel(head: Pixels, image: NDArray[np.floating], level: Level, most: float) -> Pixels:
     """The hazard `image` over the greyed image of the `head` camera, with a colour scale: [S, S, 3], RGB.
 
-    `image`: [16, 16], in the unit of `level`; `head`: [S, S, 3], RGB.
+    `image`: [16, 16], in the unit of `level`; `head`: [S, S, 3], RGB; `most`: the highest number, which is told.
     """
     side = len(head)
     grey = cv2.cvtColor(head, cv2.COLOR_RGB2GRAY)
@@ -88,11 +91,17 @@ def hazard_panel(head: Pixels, image: NDArray[np.floating], level: Level) -> Pix
     panel[-18:-10, 20:-20] = coloured(bar, level)
     write(panel, f"{level.low:g}", (20, side - 38), 13)
     write(panel, f"{level.high:g}", (side - 20, side - 38), 13, align="right")
-    highest = float(np.nanmax(image))
-    shown = f"{highest:.0f}" if level.high > 10 else f"{highest:.2f}"
-    text = shorten(f"highest {shown} {level.unit}", 13, side - 120)
+    shown = f"{most:.0f}" if level.high > 10 else f"{most:.2f}"
+    text = shorten(f"highest {shown} {level.unit}", 13, side - 120) if np.isfinite(most) else "nothing near"
     write(panel, text, (side // 2, side - 38), 13, TEXT, "middle")
     return panel
+
+
+def _spread(values: NDArray[np.floating]) -> NDArray[np.floating]:
+    """`values`, [H, W], with the mean of those around it in place of each NaN; 0 where there is none."""
+    known = np.isfinite(values).astype(np.float32)
+    total = cv2.blur(np.nan_to_num(values).astype(np.float32), AROUND)
+    return np.where(known > 0.0, values, total / np.maximum(cv2.blur(known, AROUND), 1e-6))
 
 
 @dataclass
@@ -161,7 +170,8 @@ class MapPanel:
     def _ground(self, seen: SemanticMap) -> Pixels:
         """Floor, furniture and walls as greys, tinted by the hazard that is strongest there.
 
-        Unexplored cells have the colour of the panel.
+        Unexplored cells have the colour of the panel. Floor far away, of which a look finds single points in rows,
+        fades into it, and what was seen without its hazard has the mean tint around it: both would be stripes.
         """
         west, south, east, north = self.window
         x0, y0 = np.maximum(np.floor((np.array([west, south]) - seen.origin) / seen.cell).astype(int), 0)
@@ -169,10 +179,13 @@ class MapPanel:
         part = np.s_[y0:y1, x0:x1]
         tall = np.clip(seen.height[part] / 2.0, 0.0, 1.0)[..., None]
         cells = FLOOR * (1 - tall) + WALL * tall
-        shares = [np.nan_to_num(share(of[part], level)) for of, level in zip(seen.levels, self.levels, strict=True)]
+        shares = [_spread(share(of[part], level)) for of, level in zip(seen.levels, self.levels, strict=True)]
         tints = np.array([level.tint for level in self.levels], np.float32)[np.argmax(shares, axis=0)]
         cells += np.clip(np.max(shares, axis=0), 0.0, TINTED)[..., None] * (tints - cells)
-        cells[~seen.explored[part]] = PANEL
+        known = seen.explored[part]
+        area = np.clip((cv2.blur(known.astype(np.float32), AROUND) - POINTS) / (AREA - POINTS), 0.0, 1.0)
+        shown = known * np.where(tall[..., 0] > LOW, 1.0, area)
+        cells = PANEL + shown[..., None] * (cells - PANEL)
         corner = seen.origin + seen.cell * np.array([x0, y0])
         edge, zoom = self.zoom * seen.cell, self.zoom
         across, down = (corner[0] - west) * zoom, (north - corner[1]) * zoom

@@ -45,6 +45,20 @@ class View:
             None if level is None else level[env].reshape(-1, *level.shape[-2:]).cpu().numpy(),
         )
 
+    @property
+    def sampled(self) -> NDArray[np.float32]:
+        """The points at the samples of the hazard images at which something is seen [m], world frame, [P, 3].
+
+        At the other samples, those of the sky, the images hold the levels of a place far away. Empty without images.
+        """
+        if self.level is None:
+            return np.zeros((0, 3), np.float32)
+        sizes = zip(self.level.shape[1:], self.depth.shape, strict=True)
+        firsts = [(np.arange(count) * size + count - 1) // count for count, size in sizes]
+        row, column = (part.ravel() for part in np.meshgrid(*firsts, indexing="ij"))
+        seen = self.depth[row, column] > 0.0
+        return self.points(row[seen], column[seen])
+
     def points(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> NDArray[np.float32]:
         """Points [m], world frame, [P, 3], that are seen at the pixels `row` [P], `column` [P]."""
         far = self.depth[row, column]

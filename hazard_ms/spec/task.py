@@ -93,6 +93,7 @@ class Level:
     colours: str = "viridis"  # name of the colour map, as OpenCV and matplotlib call it
     tint: tuple[int, int, int] = (200, 120, 220)  # on maps: red, green, blue, 0 to 255
     least: float = -math.inf  # lowest that there can be: a bound of observations
+    told_up_to: float = math.inf  # height at which pictures tell its highest number [m]; infinite: at what is seen
 
 
 @dataclass(frozen=True)

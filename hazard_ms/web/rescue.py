@@ -49,6 +49,8 @@ class Rescue:
     runs_on: bool = False  # whether the world goes on while a person chooses
     every: int = 4  # frames from one picture to the next
     taken: tuple[Taken, ...] = ()
+    over: bool = False  # whether the episode has ended, and only its result or its film may be missing
+    gone_back: int = 0  # how often an agent that is watched was taken back to an earlier decision
     name: str = field(default_factory=lambda: secrets.token_hex(8))
 
     def check(self) -> None:
@@ -57,8 +59,10 @@ class Rescue:
         one_of(self.view, VIEWS, "view")
         if self.every not in PACES:
             raise ValueError(f"every must be one of {PACES}, got {self.every!r:.100}")
-        if not isinstance(self.runs_on, bool):
-            raise ValueError(f"runs_on must be true or false, got {self.runs_on!r:.100}")
+        for what in ("runs_on", "over"):
+            if not isinstance(getattr(self, what), bool):
+                raise ValueError(f"{what} must be true or false, got {getattr(self, what)!r:.100}")
+        whole(self.gone_back, 0, 2**32 - 1, "gone_back")
         e = self.episode
         whole(e.seed, 0, 2**32 - 1, "seed")
         one_of(e.env_id, TASKS, "env_id")

@@ -52,6 +52,7 @@ class Session:
         self.rescue, self._folder = rescue, folder
         self.pages: set[Page] = set()
         self.alive = False
+        self.finishing = False  # whether its episode is over, and its process makes the film: that ends by itself
         self.looked_at = time.monotonic()
         self.taken: list[Taken] = []  # decisions that have ended
         self._latest: dict[str, Payload] = {}
@@ -68,7 +69,7 @@ class Session:
         with few_threads(drawing=os.cpu_count() or 1):
             self._process.start()
         theirs.close()
-        self.alive, self._said_last = True, False
+        self.alive, self.finishing, self._said_last = True, False, False
         self.taken, self._latest, self._waiting = [], {}, []
         process = self._process
         threading.Thread(target=self._read, args=(ours, process), daemon=True).start()
@@ -119,7 +120,8 @@ class Session:
         text = message.decode()
         row = json.loads(text)
         kind = row["type"]
-        self._said_last |= kind in LAST or (kind == "over" and "summary" in row and not row["files"])
+        self._said_last |= kind in LAST
+        self.finishing |= kind == "over" and "summary" in row
         if kind == "row":
             self.taken.append(Taken(row["verb"], row["target"], row["waited"], row["note"]))
         self._spread(f"row {row['number']}" if kind == "row" else kind, text)

@@ -64,7 +64,8 @@ class Sessions:
         whole(decisions, 0, len(session.taken), "decisions")
         known = self._known(session)
         session.end()
-        session.rescue = replace(session.rescue, taken=known.taken[:decisions])
+        back = session.rescue.gone_back + 1
+        session.rescue = replace(session.rescue, taken=known.taken[:decisions], over=False, gone_back=back)
         rescues.keep(self._folder, session.rescue)
         session.start()
         session.post("again")
@@ -111,6 +112,7 @@ class Sessions:
                     "scene": rescue.episode.scene,
                     "decisions": len(rescue.taken),
                     "alive": session is not None and session.alive,
+                    "over": rescue.over,
                 }
             )
         return sorted(found, key=lambda row: not row["alive"])
@@ -137,7 +139,8 @@ class Sessions:
         while True:
             await asyncio.sleep(LOOK_ROUND)
             for session in list(self._all.values()):
-                if not session.pages and time.monotonic() - session.looked_at > 60.0 * self._options.idle:
+                unseen = not session.pages and time.monotonic() - session.looked_at > 60.0 * self._options.idle
+                if unseen and not session.finishing:
                     self._drop(session)
 
     def end(self) -> None:

@@ -117,13 +117,18 @@ def test_solid_things_hide_quads_and_get_light_through_them(bench: Bench) -> Non
     np.testing.assert_allclose(bench.middle((PAPER, -0.5), walls=(1.5,)), bare, rtol=0.02)
 
 
-def test_rays_pass_where_a_texture_shows_nothing(bench: Bench) -> None:
-    """A card whose upper half is cut out: embers and a lit wall are seen through it as if it were not there."""
+@pytest.mark.parametrize("ior", [1.45, 1.01])
+def test_rays_pass_where_a_texture_shows_nothing(bench: Bench, ior: float) -> None:
+    """A card whose upper half is cut out: embers and a lit wall are seen through it as if it were not there.
+
+    SAPIEN gives materials that are made an index of refraction of 1.45, and those of files 1.01.
+    """
     picture = np.full((8, 8, 4), 255, np.uint8)
     picture[:4, :, 3] = 0
     material = sapien.render.RenderMaterial(roughness=1.0, specular=0.0)
     material.base_color_texture = sapien.render.RenderTexture2D(picture, "r8g8b8a8unorm", filter_mode="nearest")
     material.base_color = [1.0, 1.0, 1.0, 1.0]
+    material.ior = ior
     corners = np.array([[1.0, 0.2, -0.2], [1.0, -0.2, -0.2], [1.0, -0.2, 0.2], [1.0, 0.2, 0.2]])
     places = np.array([[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]])  # rows of a texture go down
     normals = np.tile([-1.0, 0.0, 0.0], (4, 1))

@@ -39,6 +39,7 @@ def shot(**changes: object) -> Shot:
         third_person=np.full((MAIN[1], MAIN[0], 3), 90, np.uint8),
         head=np.full((256, 256, 3), 60, np.uint8),
         level=np.full((1, 16, 16), 20.0, np.float32),
+        told=(20.0,),
         map=seen_map(),
         names=("bag_1", "pen_1"),
         targets=targets,
@@ -108,7 +109,7 @@ def test_map_window_never_shrinks() -> None:
 def test_hazard_panel_is_brightest_where_it_is_hot() -> None:
     level = np.full((16, 16), 20.0, np.float32)
     level[4, 12] = 600.0
-    image = hazard_panel(np.full((236, 236, 3), 50, np.uint8), level, TEMPERATURE)
+    image = hazard_panel(np.full((236, 236, 3), 50, np.uint8), level, TEMPERATURE, 600.0)
     y, x = np.unravel_index(image[:180].sum(-1).argmax(), (180, 236))
     assert (y, x) == (pytest.approx(4.5 * 236 / 16, abs=5), pytest.approx(12.5 * 236 / 16, abs=5))
 
@@ -117,13 +118,45 @@ def test_the_film_shows_the_hazard_that_is_strongest_in_view() -> None:
     """200 of 20 to 600 degrees is less of the scale than 1.5 of 2 g, though more in number."""
     images = np.stack([np.full((16, 16), 200.0), np.full((16, 16), 0.1)]).astype(np.float32)
     levels = (TEMPERATURE, SHAKING)
-    assert strongest(images, levels) == 0
+    assert strongest((200.0, 0.1), levels) == 0
     images[1, 3, 3] = 1.5
-    assert strongest(images, levels) == 1
+    assert strongest((200.0, 1.5), levels) == 1
     compositor, head = Compositor("title", "subtitle", levels), np.full((236, 236, 3), 60, np.uint8)
-    shown = compositor.compose(shot(level=images, map=seen_map(2)))[52:288, -248:-12]
-    alone = hazard_panel(head, images[1], SHAKING)
+    shown = compositor.compose(shot(level=images, told=(200.0, 1.5), map=seen_map(2)))[52:288, -248:-12]
+    alone = hazard_panel(head, images[1], SHAKING, 1.5)
     assert np.abs(shown[60:180].astype(int) - alone[60:180]).max() == 0
+
+
+def test_what_is_told_of_the_hazard_is_written_whatever_else_its_image_holds() -> None:
+    """The sky of a storm has 70 m/s; 12 m/s are told."""
+    head, calm = np.full((236, 236, 3), 60, np.uint8), np.full((16, 16), 5.0, np.float32)
+    stormy = calm.copy()
+    stormy[:6] = 70.0
+    wind = Level("wind", "m/s", 0.0, 38.0)
+    assert (hazard_panel(head, stormy, wind, 12.0)[-46:] == hazard_panel(head, calm, wind, 12.0)[-46:]).all()
+    assert (hazard_panel(head, calm, wind, 12.0)[-46:] != hazard_panel(head, calm, wind, 70.0)[-46:]).any()
+
+
+def test_the_map_shows_floor_far_away_as_an_area_and_not_as_rays() -> None:
+    """A row of single cells of floor, as a look finds them far away, is not shown; one of a wall is."""
+    panel, what = MapPanel(484, 316, (TEMPERATURE,)), shot()
+    seen = what.map
+    first, last = seen.cell_of((1.0, 4.0)), seen.cell_of((3.0, 4.6))
+    seen.explored[first[0], first[1] : last[1]] = seen.explored[last[0], first[1] : last[1]] = True
+    seen._firm[last[0], first[1] : last[1]] = 2.4
+    image = panel.draw(seen, (), (), what.agent, (), None)
+    ray, wall = (image[p[1], p[0]] for p in map(panel.pixel, ((2.0, 4.05), (2.0, 4.65))))
+    assert tuple(ray) == PANEL and wall.mean() > 190
+
+
+def test_floor_seen_without_its_hazard_has_no_stripes() -> None:
+    """Every second row of the floor has a level, 310 degrees, as where pixels are farther apart than cells."""
+    panel, what = MapPanel(484, 316, (TEMPERATURE,)), shot()
+    low, high = what.map.cell_of((0.05, 0.05)), what.map.cell_of((3.95, 2.95))
+    what.map.levels[0, low[0] : high[0] + 1 : 2, low[1] : high[1] + 1] = 310.0
+    image = panel.draw(what.map, (), (), what.agent, (), None)
+    column = np.array([image[p[1], p[0]] for p in (panel.pixel((2.5, y)) for y in np.arange(0.45, 1.0, 0.1))], int)
+    assert np.ptp(column, axis=0).max() <= 1 and column.mean() > 80
 
 
 def test_the_map_is_tinted_by_the_hazard_that_is_strongest_there() -> None:

@@ -152,6 +152,19 @@ def test_the_page_is_as_wide_as_the_screen_and_readable(server: Server, width: i
                 assert contrast(browser, name, "--panel") >= 4.5, name
 
 
+@pytest.mark.parametrize("width", [1280, 400])
+def test_a_rescue_in_the_dark_fits_the_screen_and_its_pictures_can_be_read(server: Server, width: int) -> None:
+    """Writing in the map, 12 pixels of 320, is shown at 8 pixels and more; nothing is wider than the screen."""
+    with browsing(width) as browser:
+        begin(browser, server)
+        asked(browser)
+        until(lambda: browser.execute_script("return document.querySelector('.picture-m img').naturalWidth") == 480)
+        assert browser.execute_script("return document.documentElement.scrollWidth") <= width
+        sizes = "return ['r', 'm', 'h'].map(k => document.querySelector(`.picture-${k} img`).clientWidth)"
+        room, plan, head = browser.execute_script(sizes)
+        assert min(room, plan) >= 350 and head >= 170
+
+
 def contrast(browser: Any, first: str, second: str) -> float:
     """The contrast of two colours of the page, as WCAG 2.2 defines it [-]."""
     script = "return getComputedStyle(document.documentElement).getPropertyValue(arguments[0])"

@@ -5,16 +5,20 @@ from __future__ import annotations
 import json
 import multiprocessing
 import threading
+from collections.abc import Iterator
+from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from hazard_ms import registry
 from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.web.compare.shelf import Librarian, film_of
 from hazard_ms.web.playing.link import PICTURES, Link
-from hazard_ms.web.playing.process import play
-from hazard_ms.web.rescue import asked_for, journal
+from hazard_ms.web.playing.process import main, play
+from hazard_ms.web.rescue import Rescue, Taken, asked_for, journal, keep, read
 
 
 class Page(threading.Thread):
@@ -23,7 +27,13 @@ class Page(threading.Thread):
     def __init__(self, connection: Connection) -> None:
         super().__init__(daemon=True)
         self.connection, self.heard, self.pictures = connection, dict[str, list[Any]](), set[str]()
+        self.told = threading.Condition()
         self.start()
+
+    def until(self, kind: str, seconds: float = 120.0) -> None:
+        """Wait until a message of this kind has come."""
+        with self.told:
+            assert self.told.wait_for(lambda: kind in self.heard, seconds), f"{kind} must come, got {[*self.heard]}"
 
     def run(self) -> None:
         while True:
@@ -37,7 +47,9 @@ class Page(threading.Thread):
                 self.pictures.add(letter)
                 continue
             row = json.loads(message)
-            self.heard.setdefault(row["type"], []).append(row)
+            with self.told:
+                self.heard.setdefault(row["type"], []).append(row)
+                self.told.notify_all()
             if row["type"] == "state" and row["phase"] == "asking":
                 self.answer(row)
 
@@ -77,3 +89,78 @@ def test_a_rescue_is_played_and_kept_and_its_replay_is_equal(tmp_path: Path) -> 
     episode = json.loads((Path(kept["demonstration"]) / "episode.json").read_text())
     assert episode["teacher"] == "human" and not episode["privileged"]
     assert not journal(folder, rescue.name).exists()
+
+
+def played(rescue: Rescue, folder: Path) -> Page:
+    """The page of a rescue that was played in this process."""
+    ours, theirs = multiprocessing.Pipe()
+    page = Page(ours)
+    play(Link(theirs), rescue, folder)
+    theirs.close()
+    page.join(10)
+    return page
+
+
+@pytest.mark.render
+@pytest.mark.timeout(300)
+def test_a_process_that_dies_before_the_film_is_there_costs_nothing(tmp_path: Path) -> None:
+    """The next process makes the film alone: nobody plays the rescue again, and its result stays as it was."""
+    folder = tmp_path / "rescues"
+    rescue = asked_for({"seed": 0, "every": 16}, ())
+    keep(folder, rescue)
+    context = multiprocessing.get_context("spawn")
+    ours, theirs = context.Pipe()
+    process = context.Process(target=main, args=(theirs, rescue, folder), daemon=True)
+    process.start()
+    theirs.close()
+    page = Page(ours)
+    page.until("over")
+    process.kill()
+    process.join()
+    assert "kept" not in page.heard
+    result = next(folder.glob("*.json"))
+    before = result.read_bytes()
+    assert not result.with_suffix(".mp4").exists()
+    left = read(folder, rescue.name, ())
+    assert left.over and [t.verb for t in left.taken] == ["explore", "stop"]
+    again = played(left, folder)
+    assert "state" not in again.heard and [row["verb"] for row in again.heard["row"]] == ["explore", "stop"]
+    assert again.heard["kept"][0]["replay"] == "exact" and result.read_bytes() == before
+    assert result.with_suffix(".mp4").stat().st_size > 0 and not journal(folder, rescue.name).exists()
+    assert [path for path in folder.iterdir() if ".part" in path.name] == []
+
+
+@pytest.mark.render
+@pytest.mark.long
+@pytest.mark.timeout(300)
+def test_a_process_that_dies_before_the_result_is_there_costs_nothing(tmp_path: Path) -> None:
+    taken = (Taken("explore", None), Taken("stop", None))
+    page = played(replace(asked_for({"seed": 0, "every": 16}, ()), taken=taken, over=True), tmp_path)
+    assert [row["phase"] for row in page.heard["state"]] == ["over"]
+    assert page.heard["kept"][0]["replay"] == "exact" and next(tmp_path.glob("*.json"))
+
+
+@pytest.fixture
+def stopping() -> Iterator[str]:
+    """The name of an agent that looks around once and stops, registered as long as the test lasts."""
+    registry.register_agent("stopping", "tests.examples.stopping:Stopping")
+    yield "stopping"
+    registry.unregister(registry.AGENTS["stopping"])
+
+
+@pytest.mark.render
+@pytest.mark.timeout(300)
+def test_what_an_agent_did_in_watch_is_kept_and_compared(tmp_path: Path, stopping: str) -> None:
+    """After it was taken back once: that is counted, since an agent may decide otherwise the second time."""
+    folder = tmp_path / "rescues"
+    rescue = asked_for({"kind": "watch", "agent": stopping, "seed": 0, "every": 16}, ())
+    keep(folder, rescue)
+    page = played(replace(rescue, gone_back=1), folder)
+    assert page.heard["kept"][0]["replay"] == "exact" and page.heard["kept"][0]["demonstration"] is None
+    assert not journal(folder, rescue.name).exists() and not (tmp_path / "rescues_demos").exists()
+    (book,) = Librarian([folder]).look().books.values()
+    result = book.kept.result
+    assert (result.agent, result.seed, result.ended) == (stopping, 0, "stopped")
+    assert [d.verb for d in result.decisions] == ["explore", "stop"] and result.counters == {"gone_back": 1.0}
+    assert film_of(book.kept) == book.kept.path.with_suffix(".mp4") and result.wall_seconds > 1.0
+    assert "<video" in book.kept.path.with_suffix(".html").read_text()

@@ -25,6 +25,7 @@ def mark_cutouts(scene: sapien.Scene) -> int:
             and material.transmission == 0.0
             and texture.download()[..., 3].min() == 0
         ):
-            material.ior += CUT_IOR - dry_ior(material)  # as wet as it was
+            wetness = max(material.ior - dry_ior(material), 0.0)  # those of files have 1.01, less than ours
+            material.ior = CUT_IOR + wetness
             count += 1
     return count

@@ -24,6 +24,7 @@ from torch import Tensor
 from hazard_ms.effects.shaders.char import CHAR, CHAR_DEFERRED, CHAR_FORWARD
 from hazard_ms.effects.shaders.common import EFFECT_FRAG, EFFECT_VERT
 from hazard_ms.effects.shaders.dressing import DRESS_FRAG, DRESS_VERT, SKY_FIRST
+from hazard_ms.effects.shaders.facing import facing
 from hazard_ms.effects.shaders.shadow import PCF, SOFT
 from hazard_ms.effects.shaders.shimmer import AIR_FRAG, AIR_VERT, BEND
 from hazard_ms.effects.shaders.sway import STILL, SWAY_FRAG, SWAY_VERT
@@ -67,10 +68,9 @@ def register() -> None:
     """Register `shader_pack="hazard"` and `"hazard-fast"` with ManiSkill."""
     full, fast = _pack("hazard"), _pack("hazard-fast")
     stock = PREBUILT_SHADER_CONFIGS["default"]
-    bytes_or_float = {**stock.texture_transforms, "Color": colour}
-    PREBUILT_SHADER_CONFIGS["hazard"] = (
-        replace(stock, shader_pack=full, texture_transforms=bytes_or_float) if full else stock
-    )
+    formats = {**stock.texture_transforms, "Color": colour}  # bytes or float
+    ours = replace(stock, shader_pack=full, texture_transforms=formats) if full else stock
+    PREBUILT_SHADER_CONFIGS["hazard"] = ours
     PREBUILT_SHADER_CONFIGS["hazard-fast"] = _fast_config(fast) if fast else PREBUILT_SHADER_CONFIGS["minimal"]
 
 
@@ -125,13 +125,14 @@ def _pack(name: str) -> str | None:
         base = stock / ("default" if name == "hazard" else "minimal")
         files = texts(base) | {f"../common/{n}": t for n, t in texts(stock / "common").items()}
         files["../common/shadow.glsl"] = insert(files, "../common/shadow.glsl", PCF, "").partition(PCF)[0] + SOFT
+        files |= facing(files)
         if name == "hazard":
             files = _full(files)
         else:
             files |= {n: t for n, t in texts(stock / "default").items() if n in SETS}
             files = _fast(files)
         return str(write(name, files))
-    except (UnknownSapienError, OSError) as fault:
+    except (UnknownSapienError, KeyError, ValueError, OSError) as fault:
         _log.warning(
             "no effects in pictures: cannot derive the shader pack %s from SAPIEN %s (%s)",
             name,

@@ -42,6 +42,7 @@ from hazard_ms.spec.catalogue import IMMOVABLE
 
 # Range of a wind that the scene leaves open [m/s] [the original's shipped scenes, docs/physics.md 1.3]
 SLOWEST, FASTEST = 2.5, 5.0
+TALL = 2.0  # height that neither a robot nor a thing to rescue exceeds [m] [ours]
 CHEST = 1.0  # height at which the wind acts on the agent [m] [ours]
 
 
@@ -69,7 +70,7 @@ class Wind(Hazard):
 
     name: ClassVar[str] = "wind"
     state_type: ClassVar[type[State]] = WindState
-    level: ClassVar[Level] = Level("wind", "m/s", 0.0, 6.0, "bone", (148, 157, 171), least=0.0)
+    level: ClassVar[Level] = Level("wind", "m/s", 0.0, 6.0, "bone", (148, 157, 171), least=0.0, told_up_to=TALL)
     tells: ClassVar[dict[str, Quantity]] = {"agent_wind": Quantity("speed of the air at the agent's chest", "m/s", 0.0)}
     fills: ClassVar[bool] = True  # with haze
     open_air: ClassVar[bool] = True

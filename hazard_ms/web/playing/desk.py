@@ -7,13 +7,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from hazard_ms.demonstrations.watching.sentences import sentence
 from hazard_ms.evaluation.metrics import Tally
-from hazard_ms.evaluation.result import Played
+from hazard_ms.evaluation.result import DecisionRecord, Played
 from hazard_ms.evaluation.runner import fates
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.web import rescue as rescues
 from hazard_ms.web.playing.link import PICTURES, Link
 from hazard_ms.web.playing.menu import Choice, Choices
@@ -23,6 +25,12 @@ from hazard_ms.web.rescue import ALL, PACES, PLAY, Rescue, Taken
 ROW = ("frame", "verb", "target", "ok", "reason", "frames", "waited", "note", "value")  # of a decision, that pages show
 ASKED = ("choose", "point", "thing", "pace", "pause", "go", "step", "world", "end")
 FASTEST = 12.0  # pictures per second, at most: fast machines do not fly [ours]
+
+
+def tell_row(link: Link, number: int, record: DecisionRecord) -> None:
+    """Tell the page of a decision that has ended."""
+    row = {name: getattr(record, name) for name in ROW}
+    link.say("row", number=number, unfinished=record.reason in UNFINISHED, **row)
 
 
 class EndedError(Exception):
@@ -78,16 +86,16 @@ class Desk(Watcher):
         """Keep the journal; `so_far` holds every decision."""
         self.tell_rows(so_far)
         if len(self._taken) >= self._replaying:
-            rescues.keep(self._folder, self._rescue())
+            rescues.keep(self._folder, self.so_far())
 
-    def _rescue(self) -> Rescue:
+    def so_far(self) -> Rescue:
+        """The rescue with all decisions that have been taken."""
         return replace(self.rescue, taken=tuple(self._taken), runs_on=self.runs_on, every=self.every)
 
     def tell_rows(self, so_far: Played) -> None:
         """Tell of the decisions that have ended and were not told of."""
         for number in range(self._told, len(so_far.decisions)):
-            record = so_far.decisions[number]
-            self.link.say("row", number=number, **{name: getattr(record, name) for name in ROW})
+            tell_row(self.link, number, so_far.decisions[number])
         self._told = len(so_far.decisions)
         if self.replaying and self._taken:
             self.link.say("replaying", done=len(self._taken), of=self._replaying)
@@ -97,7 +105,7 @@ class Desk(Watcher):
         self._action = action
         self._taken.append(Taken(action.verb, action.target, self._env.frame - decision.frame, note))
         if not self.replaying and len(self._taken) > self._replaying:
-            self.tell("doing", intent=str(action).replace("_", " "), note=note)
+            self.tell("doing", intent=sentence(action, decision), note=note)
 
     def frame(self, action: LowLevel) -> None:
         """Show the frame if it is due, and hear what the page asks for."""

@@ -1,10 +1,11 @@
-"""Keeps a person's rescue as every other episode is kept: result, page, film, and a demonstration.
+"""Keeps a rescue as every other episode is kept: result, page and film; of a person also a demonstration.
 
 The film is made afterwards: the episode is simulated again by its decisions, which also shows that it can be.
 """
 
 from __future__ import annotations
 
+import contextlib
 import re
 import time
 from collections.abc import Callable
@@ -64,29 +65,41 @@ def keep(path: Path, result: EpisodeResult) -> None:
     write_together({path: result.to_json(), path.with_suffix(".html"): page(result)})
 
 
-def film(
-    path: Path, options: EpisodeOptions, result: EpisodeResult, say: Callable[[int], None]
-) -> tuple[str, Path | None]:
-    """Simulate the episode of `result` again: film it, and keep it as a demonstration if that is the same episode.
+def kept(folder: Path, name: str) -> tuple[Path, EpisodeResult] | None:
+    """The file and the result that `keep` has written for the rescue called `name`; None if there is none."""
+    for path in folder.glob(f"*-{name}.json"):
+        with contextlib.suppress(ValueError):
+            return path, EpisodeResult.read(path)
+    return None
 
-    Returns how the replay compares, and the folder of the demonstration; None if there is one of this scene and seed
-    already. Raises ValueError where something cannot be written.
+
+def film(
+    path: Path, options: EpisodeOptions, result: EpisodeResult, say: Callable[[int], None], teaches: bool
+) -> tuple[str, Path | None]:
+    """Simulate the episode of `result` again and film it; where it `teaches`, keep it as a demonstration, too.
+
+    Only what is the same episode again becomes a demonstration. Returns how the replay compares, and the folder of the
+    demonstration; None if there is none, or one of this scene and seed already. Raises ValueError where something
+    cannot be written.
     """
     start = time.perf_counter()
     actions = tuple((d.verb, d.target) for d in result.decisions)
-    player = Recorded(actions, result.agent, tuple(d.waited for d in result.decisions))
+    waits, notes = tuple(d.waited for d in result.decisions), tuple(d.note for d in result.decisions)
+    player = Recorded(actions, result.agent, waits, notes)
     recorder = Recorder(privileged=False)
     foresight = Foresight(recorder)
     camera = {"width": RENDERED[0], "height": RENDERED[1]}
     shown = path.with_suffix(".html")
     with drafts(path.with_suffix(".mp4"), shown) as (shot, told):
         with Film(shot, f"{result.agent}, seed {result.seed}", EVERY) as movie:
-            watchers = [Teller(say), recorder, foresight, movie]
             drawn = {"render_mode": "rgb_array", "human_render_camera_configs": camera}
-            again = play(options, watchers, player, reward_mode=REWARD, **drawn)
+            if teaches:
+                drawn["reward_mode"] = REWARD
+            watchers = [Teller(say), *((recorder, foresight) if teaches else ()), movie]
+            again = play(options, watchers, player, **drawn)
         told.write(page(result, address(shot.path, path.with_suffix(".mp4").name)))
     verdict, why = compare(result, again)
-    if verdict != EXACT:
+    if verdict != EXACT or not teaches:
         return f"{verdict}{why}", None
     seconds = {**result.phase_seconds, "verify": time.perf_counter() - start}
     output = path.parent.with_name(path.parent.name + DEMOS)

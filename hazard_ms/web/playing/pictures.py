@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.panels import MapPanel, hazard_panel, strongest
+from hazard_ms.pictures.told import told
 from hazard_ms.sensing.camera import relabel
 from hazard_ms.simulation.viewpoint import corner_view, following_view
 from hazard_ms.skills.executor import SkillEnv
@@ -30,7 +31,7 @@ class Pictures:
     def __init__(self, env: SkillEnv, room: bool) -> None:
         """Begin with the episode that has begun in `env`; `room`: whether the third person is shown."""
         self._env, self._room = env, room
-        self._levels = tuple(hazard.level for hazard in env.base.task.hazards)
+        self._levels = tuple(hazard.shown_level for hazard in env.base.task.hazards)
         self._map = MapPanel(*PLAN, self._levels)
         self._path: list[tuple[float, float]] = []
         self._count = 0
@@ -54,8 +55,9 @@ class Pictures:
                 self._look()
             yield HEAD, _jpeg(self._head)
             if self._level is not None and np.isfinite(self._level).any(axis=(1, 2)).all():
-                which = strongest(self._level, self._levels)
-                yield HAZARD, _jpeg(hazard_panel(self._head, self._level[which], self._levels[which]))
+                which = strongest(self._told, self._levels)
+                panel = hazard_panel(self._head, self._level[which], self._levels[which], self._told[which])
+                yield HAZARD, _jpeg(panel)
         if everything or self._count % MAP_EVERY == 0:
             yield MAP, _jpeg(self._plan(goal))
 
@@ -73,6 +75,7 @@ class Pictures:
     def _look(self) -> None:
         rgb, view = self._env.base.observer.look()
         self._head, self._level, self._seen = np.ascontiguousarray(rgb.cpu().numpy()), view.level, view.labels
+        self._told = told(self._env.base, view)
         self._stale = False
 
     def _plan(self, goal: str | None) -> Pixels:

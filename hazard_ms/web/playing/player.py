@@ -6,6 +6,7 @@ import time
 from collections.abc import Mapping
 
 from hazard_ms.agents.base import Agent, agent, note_of
+from hazard_ms.demonstrations.watching.sentences import sentence
 from hazard_ms.evaluation.attempts import Accompanied
 from hazard_ms.skills.actions import wait
 from hazard_ms.skills.decision import EXPLORE, Action, Decision
@@ -27,9 +28,13 @@ class Player(Accompanied):
 
     @property
     def counters(self) -> Mapping[str, float]:  # type: ignore[override]
-        """The pictures that a person had, and how many decisions an agent took first; an agent's own counts."""
+        """The pictures that a person had, and how many decisions an agent took first.
+
+        Of an agent: its own counts, and how often it was taken back to an earlier decision, if it was.
+        """
         if self._source is not None:
-            return self._source.counters
+            back = {"gone_back": float(self._rescue.gone_back)} if self._rescue.gone_back else {}
+            return {**self._source.counters, **back}
         first = {"decisions_of_agent": float(len(self._rescue.taken))} if self._rescue.after else {}
         return {"third_person": float(self._rescue.view == ALL), **first}
 
@@ -63,16 +68,16 @@ class Player(Accompanied):
             self.note = taken.note
             return Action(taken.verb, taken.target)
         if wanted is not None:
-            self._hold(wanted)
+            self._hold(wanted, decision)
             return wanted
         return self._next(decision)
 
-    def _hold(self, wanted: Action) -> None:
-        """Wait while the page has paused the agent, which wants to do `wanted`."""
+    def _hold(self, wanted: Action, decision: Decision) -> None:
+        """Wait while the page has paused the agent, which wants to do `wanted` at `decision`."""
         desk = self._desk
         desk.hear(0.0)
         if desk.paused and not desk.steps:
-            desk.tell("paused", intent=str(wanted).replace("_", " "), note=self.note)
+            desk.tell("paused", intent=sentence(wanted, decision), note=self.note)
             desk.show(everything=True)
             while desk.paused and not desk.steps:
                 desk.hear(PATIENCE)
@@ -90,7 +95,8 @@ class Player(Accompanied):
         desk.choices.begin(decision)
         desk.chosen = None
         last, result = decision.last_action, decision.last_result
-        how = None if result is None else {"action": str(last), "ok": result.ok, "reason": result.reason}
+        words = "" if last is None else " ".join([last.verb.replace("_", " "), last.target or ""]).strip()
+        how = None if result is None else {"action": words, "ok": result.ok, "reason": result.reason}
         desk.tell("asking", last=how)
         desk.show(everything=True)
         while desk.chosen is None:

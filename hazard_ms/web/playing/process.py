@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 import signal
+import time
+from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
 from urllib.parse import quote
 
+from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.machine.processes import end_with_parent
 from hazard_ms.web.playing.link import Link
-from hazard_ms.web.rescue import PLAY, Rescue, journal
+from hazard_ms.web.rescue import ALL, PLAY, Rescue, journal, keep
 
 POLITE = 5  # niceness of making a film: rescues that are being played come first [ours]
 
@@ -32,53 +34,85 @@ def main(connection: Connection, rescue: Rescue, folder: Path) -> None:
 
 
 def play(link: Link, rescue: Rescue, folder: Path) -> None:
-    """Play the rescue to its end, and keep it in `folder`. Raises ValueError for one that cannot be played."""
+    """Play the rescue to its end, and keep it in `folder`. Raises ValueError for one that cannot be played.
+
+    Its journal stays until all is kept, so that a process that dies meanwhile costs nothing: the next one goes on.
+    """
+    from hazard_ms.web.playing import keeping
+
     link.say("building")
     import torch
 
     torch.set_num_threads(1)
+    rescue.check()
+    found = keeping.kept(folder, rescue.name) if rescue.over else None
+    if found is not None:
+        _tell_again(link, rescue, found[1])
+    else:
+        result = _play(link, rescue, folder)
+        if result is None:
+            link.say("closed")
+            return
+        found = keeping.place(folder, result, rescue.name), result
+        keeping.keep(*found)
+    _finish(link, rescue, folder, *found)
+
+
+def _play(link: Link, rescue: Rescue, folder: Path) -> EpisodeResult | None:
+    """Play the rescue. Returns its result, None if the page has ended it."""
     from hazard_ms.evaluation.runner import Runner, environment, result_of
     from hazard_ms.web.playing.desk import Desk, EndedError
     from hazard_ms.web.playing.pictures import SIZE
     from hazard_ms.web.playing.player import Player
 
-    rescue.check()
+    start, options = time.perf_counter(), rescue.episode
     desk = Desk(link, rescue, folder)
-    player = Player(rescue, desk)
-    options = rescue.episode
     camera = {"width": SIZE[0], "height": SIZE[1]}
     env = environment(options, render_mode="rgb_array", human_render_camera_configs=camera)
     try:
-        played = Runner(env, player, [desk]).run(options.seed, options.reset_options)
+        played = Runner(env, Player(rescue, desk), [desk]).run(options.seed, options.reset_options)
+        keep(folder, replace(desk.so_far(), over=True))
         desk.tell_rows(played)
         desk.tell("over", ended=played.ended)
         desk.show(everything=True)
-        result = result_of(options, env, played)
+        return replace(result_of(options, env, played), wall_seconds=time.perf_counter() - start)
     except EndedError:
-        link.say("closed")
-        return
+        return None
     finally:
         env.close()
-    _keep(link, rescue, folder, result)
 
 
-def _keep(link: Link, rescue: Rescue, folder: Path, result: Any) -> None:
-    """Write what remains of a rescue: that of a person as every episode is kept, that of an agent not at all."""
+def _tell_again(link: Link, rescue: Rescue, result: EpisodeResult) -> None:
+    """Tell the page of a rescue that ended in an earlier process, which did not come to make its film."""
+    from hazard_ms.web.playing.desk import tell_row
+
+    link.say(
+        "begun",
+        scene=result.scene,
+        text="",
+        frame_seconds=0.0,
+        max_frames=result.max_frames,
+        agent=result.agent,
+        task=result.env_id,
+        seed=result.seed,
+        room=rescue.view == ALL,
+        drawn=False,
+    )
+    link.say("tick", frame=result.frames, value=result.tally.value, held=None)
+    for number, record in enumerate(result.decisions):
+        tell_row(link, number, record)
+
+
+def _finish(link: Link, rescue: Rescue, folder: Path, path: Path, result: EpisodeResult) -> None:
+    """Make the film of a rescue whose result is in the file `path`, and delete its journal."""
     from hazard_ms.evaluation.runner import summary
     from hazard_ms.web.playing import keeping
 
-    path = keeping.place(folder, result, rescue.name)
-    kept = rescue.kind == PLAY
-    if kept:
-        keeping.keep(path, result)
-    journal(folder, rescue.name).unlink(missing_ok=True)
-    suffixes = (".html", ".json") if kept else ()
-    link.say("over", ended=result.ended, summary=summary(result), files=_links(path, suffixes))
-    if not kept:
-        return
+    link.say("over", ended=result.ended, summary=summary(result), files=_links(path, (".html", ".json")))
     os.nice(POLITE)
     told = lambda frame: link.say("filming", frame=frame, of=result.frames)  # noqa: E731
-    verdict, demonstration = keeping.film(path, rescue.episode, result, told)
+    verdict, demonstration = keeping.film(path, rescue.episode, result, told, teaches=rescue.kind == PLAY)
+    journal(folder, rescue.name).unlink(missing_ok=True)
     where = None if demonstration is None else str(demonstration)
     link.say("kept", replay=verdict, demonstration=where, files=_links(path, (".html", ".mp4", ".json")))
 

@@ -20,9 +20,9 @@ export async function mount(part, api) {
     sessionStorage.setItem(KEPT, name)
     start.hidden = true
     rescue = new Rescue(name, api, message => { if (message.type === "state") world.textContent = message.runs_on ? "Let the world wait" : "Let the world run on" })
-    const world = element("button", { onclick: () => rescue.ask({ do: "world", runs_on: !(rescue.state && rescue.state.runs_on) }) }, "Let the world run on")
+    const world = element("button", { class: "live", onclick: () => rescue.ask({ do: "world", runs_on: !(rescue.state && rescue.state.runs_on) }) }, "Let the world run on")
     rescue.buttons.append(world,
-      element("button", { onclick: () => pace(-1) }, "Slower"), element("button", { onclick: () => pace(1) }, "Faster"),
+      element("button", { class: "live", onclick: () => pace(-1) }, "Slower"), element("button", { class: "live", onclick: () => pace(1) }, "Faster"),
       element("button", { onclick: leave }, "Another rescue"))
     rescue.root.append(keys())
     stage.replaceChildren(rescue.root)

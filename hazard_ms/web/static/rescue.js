@@ -3,6 +3,7 @@
 import { element } from "./api.js"
 
 const PICTURES = { r: "third person", h: "head camera", z: "hazard", m: "map of what the robot has seen" }
+const NOTHING = "data:image/gif;base64,R0lGODlhAQABAIAAAAAAAP///yH5BAEAAAAALAAAAAABAAEAAAIBRAA7" // one clear pixel
 const RETRY = 1500 // time between two tries to reach the server [ms]
 
 export class Rescue {
@@ -16,7 +17,7 @@ export class Rescue {
   build() {
     this.pictures = {}
     const figures = Object.entries(PICTURES).map(([key, title]) => {
-      const image = element("img", { alt: `Picture: ${title}`, draggable: false })
+      const image = element("img", { alt: `Picture: ${title}`, src: NOTHING, draggable: false })
       this.pictures[key] = image
       if (key !== "z") image.addEventListener("click", event => this.point(key, event))
       return element("figure", { class: `picture picture-${key}` }, image, element("figcaption", {}, title))
@@ -39,7 +40,7 @@ export class Rescue {
     this.buttons = element("div", { class: "row" })
     this.asking = element("div", { class: "card ask" }, element("h3", {}, "What shall the robot do?"), this.choices,
       element("h3", {}, "Or with a thing, chosen here or clicked in a picture"), this.things, this.menu)
-    const head = ["#", "frame", "action", "how it went", "reason"].map(text => element("th", { scope: "col" }, text))
+    const head = ["#", "frame", "action", "how it went", "reason"].map((text, at) => element("th", { scope: "col", class: at < 2 ? "n" : "" }, text))
     this.root = element("section", { class: "rescue", "aria-label": "A rescue" },
       this.banner, this.title, this.text,
       element("div", { class: "stage" },
@@ -122,6 +123,8 @@ export class Rescue {
     this.title.textContent = `${message.task}, ${message.scene}, seed ${message.seed}: ${message.agent}`
     this.text.textContent = message.text
     this.root.classList.toggle("narrow", !message.room)
+    this.root.classList.remove("over")
+    for (const key of message.drawn === false ? "" : message.room ? "rhm" : "hm") this.pictures[key].closest("figure").classList.add("seen") // a place for what comes
   }
 
   on_replaying(message) {
@@ -131,7 +134,7 @@ export class Rescue {
   on_tick(message) {
     const { max_frames: most, frame_seconds: seconds } = this.begun || { max_frames: 1, frame_seconds: 0 }
     this.clock.textContent = `${message.frame} of ${most}`
-    this.clock.title = `${(message.frame * seconds).toFixed(1)} s`
+    this.clock.title = seconds ? `${(message.frame * seconds).toFixed(1)} s` : ""
     this.meter.value = message.frame / most
     this.value.textContent = `${Math.round(100 * message.value)} %`
     this.held.textContent = message.held ? `In the hand: ${message.held}` : "The hand is empty."
@@ -147,7 +150,7 @@ export class Rescue {
     }))
     const words = { asking: "It is your turn.", doing: `The robot is at it: ${message.intent}.`, thinking: "The agent is thinking.",
       paused: `Paused. The agent would: ${message.intent}.`, over: `The rescue is over: ${message.ended}.` }
-    const last = message.last && !message.last.ok ? `${message.last.action.replace("_", " ")} was not done: ${message.last.reason.replaceAll("_", " ")}. ` : ""
+    const last = message.last && !message.last.ok ? `${message.last.action} was not done: ${message.last.reason.replaceAll("_", " ")}. ` : ""
     this.now.textContent = last + (words[message.phase] || "")
     this.note.textContent = message.note || ""
     this.asking.hidden = message.phase !== "asking"
@@ -203,10 +206,10 @@ export class Rescue {
     const { number } = message
     this.rows[number] = message
     const what = message.target ? `${message.verb.replaceAll("_", " ")} ${message.target}` : message.verb.replaceAll("_", " ")
-    const how = message.ok ? "done" : message.reason.replaceAll("_", " ")
+    const how = message.ok ? "done" : message.unfinished ? "unfinished" : message.reason.replaceAll("_", " ")
     const made = element("tr", { "data-number": number }, element("td", { class: "n" }, this.jump ? this.jump(number) : String(number)),
       element("td", { class: "n" }, String(message.frame)), element("td", {}, what),
-      element("td", { class: message.ok ? "good" : "bad" }, how), element("td", { class: "soft" }, message.note || ""))
+      element("td", { class: message.ok ? "good" : message.unfinished ? "soft" : "bad" }, how), element("td", { class: "soft" }, message.note || ""))
     const old = this.log.querySelector(`[data-number="${number}"]`)
     if (old) old.replaceWith(made)
     else this.log.append(made)
@@ -215,6 +218,7 @@ export class Rescue {
   on_over(message) {
     this.now.textContent = message.summary || `The rescue is over: ${message.ended}.`
     this.asking.hidden = true
+    this.root.classList.add("over")
     if (message.files) this.link(message.files)
   }
 

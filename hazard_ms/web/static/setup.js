@@ -64,7 +64,7 @@ export async function listed(api, kind, open) {
   const found = (await api("/api/rescues")).filter(row => row.kind === kind)
   if (!found.length) return element("div")
   const rows = found.map(row => {
-    const item = element("li", { class: "row" }, element("span", {}, `${row.task}, ${row.scene || `seed ${row.seed}`}, ${row.agent}, ${row.decisions} decisions`),
+    const item = element("li", { class: "row" }, element("span", {}, `${row.task}, ${row.scene || `seed ${row.seed}`}, ${row.agent}, ${row.decisions} decisions${row.over ? ", over: its film is missing" : ""}`),
       element("button", { onclick: () => open(row.name) }, "Go on"),
       element("button", { onclick: async () => { await api(`/api/rescues/${row.name}/end`, { body: {} }); item.remove() } }, "Delete"))
     return item

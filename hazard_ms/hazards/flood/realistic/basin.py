@@ -6,6 +6,7 @@ import warp as wp
 
 from hazard_ms.hazards.flood.realistic.floor_plan import BEYOND, CELL
 from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.kernels.rows import at, put
 
 wp.set_module_options(OPTIONS)
 
@@ -119,15 +120,15 @@ def note(e: int, rows: int, columns: int, outside: float, basin: Basin):
     for i in range(1, rows + 1):
         for j in range(1, columns + 1):
             c = i * pitch + j
-            deep = basin.depth[e, c]
+            deep = at(basin.depth, e, c)
             if deep >= DRY:
-                basin.surface[e, c] = basin.bed[e, c] + deep
-                total += basin.surface[e, c]
+                put(basin.surface, e, c, at(basin.bed, e, c) + deep)
+                total += at(basin.surface, e, c)
                 wet += 1.0
-                speed = wp.max(wp.abs(basin.velocity_x[e, c]), wp.abs(basin.velocity_y[e, c]))
+                speed = wp.max(wp.abs(at(basin.velocity_x, e, c)), wp.abs(at(basin.velocity_y, e, c)))
                 wave = speed + WAVES * wp.sqrt(GRAVITY * deep)
                 fastest = wp.max(fastest, wp.max(speed * (GROWTH * SAFE / FASTEST), wave))
-            elif basin.bed[e, c] > 0.0 and basin.bed[e, c] < FENCE:
+            elif at(basin.bed, e, c) > 0.0 and at(basin.bed, e, c) < FENCE:
                 around, count = float(0.0), float(0.0)
                 for k in range(4):
                     other = c + pitch
@@ -137,12 +138,12 @@ def note(e: int, rows: int, columns: int, outside: float, basin: Basin):
                         other = c + 1
                     if k == 3:
                         other = c - 1
-                    if basin.surface[e, other] > 0.0:
-                        around += basin.surface[e, other]
+                    if at(basin.surface, e, other) > 0.0:
+                        around += at(basin.surface, e, other)
                         count += 1.0
                 if count > 0.0:
-                    basin.surface[e, c] = wp.min(around / count, basin.bed[e, c])
+                    put(basin.surface, e, c, wp.min(around / count, at(basin.bed, e, c)))
             else:
-                basin.surface[e, c] = NOWHERE
+                put(basin.surface, e, c, NOWHERE)
     basin.signal[e] = fastest
     basin.level[e] = total / wp.max(wet, 1.0)

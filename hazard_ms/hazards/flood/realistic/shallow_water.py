@@ -23,6 +23,7 @@ import warp as wp
 from hazard_ms.hazards.flood.realistic.basin import FASTEST, FILM, GRAVITY, SAFE, SIDE, Basin, note
 from hazard_ms.hazards.flood.realistic.inlets import let_in, orifice
 from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.kernels.rows import at, put
 
 wp.set_module_options(OPTIONS)
 
@@ -52,35 +53,35 @@ def pushed(
     length of the step [s/m].
     """
     b = c - along
-    if wp.max(depth[e, b], depth[e, c]) <= 0.0:
+    if wp.max(at(depth, e, b), at(depth, e, c)) <= 0.0:
         return 0.0
-    ground = wp.max(bed[e, b], bed[e, c])
-    low = wp.max(bed[e, b] - ground + depth[e, b], 0.0)
-    high = wp.max(bed[e, c] - ground + depth[e, c], 0.0)
+    ground = wp.max(at(bed, e, b), at(bed, e, c))
+    low = wp.max(at(bed, e, b) - ground + at(depth, e, b), 0.0)
+    high = wp.max(at(bed, e, c) - ground + at(depth, e, c), 0.0)
     if wp.max(low, high) < FILM:
         return 0.0
     deep = 0.5 * (low + high)
     if wp.min(low, high) <= 0.0:  # at a front, all of the mass is on one side
         deep = wp.max(low, high)
-    u, before, after, share = own[e, c], own[e, c - along], own[e, c + along], 0.5 * ratio / deep
+    u, before, after, share = at(own, e, c), at(own, e, c - along), at(own, e, c + along), 0.5 * ratio / deep
     rise = high - low
     if wp.abs(rise) < STILL:
         rise = float(0.0)
     # momentum over the mass between the middles of the two cells; no more than all of it comes in a step
-    come = wp.min(share * wp.max(carried[e, b] + carried[e, c], 0.0), 1.0) * (u - before)
+    come = wp.min(share * wp.max(at(carried, e, b) + at(carried, e, c), 0.0), 1.0) * (u - before)
     if u > before and u + before > 0.0:  # it speeds up: half the difference of the squares, of the energy head
         come = 0.5 * ratio * (u + before) * (u - before)
     if u < after and u + after < 0.0:
         come += 0.5 * ratio * (u + after) * (after - u)
     else:
-        come += wp.max(share * wp.min(carried[e, c] + carried[e, c + along], 0.0), -1.0) * (after - u)
-    come += wp.min(share * wp.max(beside[e, b] + beside[e, c], 0.0), 1.0) * (u - own[e, c - across])
-    leaving = beside[e, b + across] + beside[e, c + across]
-    come += wp.max(share * wp.min(leaving, 0.0), -1.0) * (own[e, c + across] - u)
-    slip = 0.25 * (other[e, b] + other[e, c] + other[e, b + across] + other[e, c + across])
+        come += wp.max(share * wp.min(at(carried, e, c) + at(carried, e, c + along), 0.0), -1.0) * (after - u)
+    come += wp.min(share * wp.max(at(beside, e, b) + at(beside, e, c), 0.0), 1.0) * (u - at(own, e, c - across))
+    leaving = at(beside, e, b + across) + at(beside, e, c + across)
+    come += wp.max(share * wp.min(leaving, 0.0), -1.0) * (at(own, e, c + across) - u)
+    slip = 0.25 * (at(other, e, b) + at(other, e, c) + at(other, e, b + across) + at(other, e, c + across))
     slowed = 1.0 + ratio * SIDE * friction * wp.sqrt(u * u + slip * slip) / deep
     new = wp.clamp((u - come - ratio * GRAVITY * rise) / slowed, -FASTEST / ratio, FASTEST / ratio)
-    clear = height[e, c] - ground
+    clear = at(height, e, c) - ground
     if new > 0.0 and low > clear:  # the opening is under water
         new = wp.min(new, orifice(clear, low - high) / low)
     if new < 0.0 and high > clear:
@@ -94,44 +95,44 @@ def taken(e: int, c: int, along: int, u: float, bed: wp.array2d(dtype=float), de
     if u == 0.0:
         return 0.0
     b = c - along
-    ground = wp.max(bed[e, b], bed[e, c])
+    ground = wp.max(at(bed, e, b), at(bed, e, c))
     if u > 0.0:
-        return u * wp.max(bed[e, b] + depth[e, b] - ground, 0.0)
-    return u * wp.max(bed[e, c] + depth[e, c] - ground, 0.0)
+        return u * wp.max(at(bed, e, b) + at(depth, e, b) - ground, 0.0)
+    return u * wp.max(at(bed, e, c) + at(depth, e, c) - ground, 0.0)
 
 
 @wp.func
 def limit(e: int, c: int, pitch: int, ratio: float, basin: Basin):
     """Let a cell lose no more than it holds."""
-    held = basin.depth[e, c]
+    held = at(basin.depth, e, c)
     if held <= 0.0:  # nothing leaves it
         return
-    west, east = basin.discharge_x[e, c], basin.discharge_x[e, c + pitch]
-    south, north = basin.discharge_y[e, c], basin.discharge_y[e, c + 1]
+    west, east = at(basin.discharge_x, e, c), at(basin.discharge_x, e, c + pitch)
+    south, north = at(basin.discharge_y, e, c), at(basin.discharge_y, e, c + 1)
     lost = ratio * (wp.max(east, 0.0) - wp.min(west, 0.0) + wp.max(north, 0.0) - wp.min(south, 0.0))
     if lost > held:
         share = held / lost
         if east > 0.0:
-            basin.discharge_x[e, c + pitch] = east * share
+            put(basin.discharge_x, e, c + pitch, east * share)
         if west < 0.0:
-            basin.discharge_x[e, c] = west * share
+            put(basin.discharge_x, e, c, west * share)
         if north > 0.0:
-            basin.discharge_y[e, c + 1] = north * share
+            put(basin.discharge_y, e, c + 1, north * share)
         if south < 0.0:
-            basin.discharge_y[e, c] = south * share
+            put(basin.discharge_y, e, c, south * share)
 
 
 @wp.func
 def fill(e: int, c: int, pitch: int, ratio: float, basin: Basin):
     """Add what comes into a cell, less what leaves it, to its depth."""
-    gain = basin.discharge_x[e, c] - basin.discharge_x[e, c + pitch]
-    gain = ratio * (gain + basin.discharge_y[e, c] - basin.discharge_y[e, c + 1])
+    gain = at(basin.discharge_x, e, c) - at(basin.discharge_x, e, c + pitch)
+    gain = ratio * (gain + at(basin.discharge_y, e, c) - at(basin.discharge_y, e, c + 1))
     if gain != 0.0:
-        before = basin.depth[e, c]
-        part = gain + basin.depth_rest[e, c]
+        before = at(basin.depth, e, c)
+        part = gain + at(basin.depth_rest, e, c)
         after = wp.max(before + part, 0.0)
-        basin.depth_rest[e, c] = part - (after - before)
-        basin.depth[e, c] = after
+        put(basin.depth_rest, e, c, part - (after - before))
+        put(basin.depth, e, c, after)
 
 
 @wp.kernel
@@ -164,10 +165,9 @@ def flow(
         for i in range(1, rows + 1):
             for j in range(1, columns + 1):
                 c = i * pitch + j
-                new_x[e, c] = 0.0
-                new_y[e, c] = 0.0
-                if basin.open_x[e, c] > 0.0:
-                    new_x[e, c] = pushed(
+                west, south = float(0.0), float(0.0)
+                if at(basin.open_x, e, c) > 0.0:
+                    west = pushed(
                         e,
                         c,
                         pitch,
@@ -182,8 +182,8 @@ def flow(
                         basin.bed,
                         basin.depth,
                     )
-                if basin.open_y[e, c] > 0.0:
-                    new_y[e, c] = pushed(
+                if at(basin.open_y, e, c) > 0.0:
+                    south = pushed(
                         e,
                         c,
                         1,
@@ -198,15 +198,18 @@ def flow(
                         basin.bed,
                         basin.depth,
                     )
+                put(new_x, e, c, west)
+                put(new_y, e, c, south)
         for i in range(1, rows + 1):
             for j in range(1, columns + 1):
                 c = i * pitch + j
-                if new_x[e, c] != 0.0 or basin.velocity_x[e, c] != 0.0:
-                    basin.velocity_x[e, c] = new_x[e, c]
-                    basin.discharge_x[e, c] = taken(e, c, pitch, new_x[e, c], basin.bed, basin.depth)
-                if new_y[e, c] != 0.0 or basin.velocity_y[e, c] != 0.0:
-                    basin.velocity_y[e, c] = new_y[e, c]
-                    basin.discharge_y[e, c] = taken(e, c, 1, new_y[e, c], basin.bed, basin.depth)
+                west, south = at(new_x, e, c), at(new_y, e, c)
+                if west != 0.0 or at(basin.velocity_x, e, c) != 0.0:
+                    put(basin.velocity_x, e, c, west)
+                    put(basin.discharge_x, e, c, taken(e, c, pitch, west, basin.bed, basin.depth))
+                if south != 0.0 or at(basin.velocity_y, e, c) != 0.0:
+                    put(basin.velocity_y, e, c, south)
+                    put(basin.discharge_y, e, c, taken(e, c, 1, south, basin.bed, basin.depth))
         came += wp.float64(let_in(e, step, outside, pitch, basin))
         for i in range(1, rows + 1):
             for j in range(1, columns + 1):

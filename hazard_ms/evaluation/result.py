@@ -88,7 +88,7 @@ class EpisodeResult:
 
     `ended` is one of: what the task's goal says when it is achieved ("all rescued"); "failed", when it never can be;
     "stopped", by the agent, or the word that it has for that ("budget"); "time", when the last frame has passed;
-    "simulation error"; "too many decisions", for an agent whose actions take no time; "frame reached", for a run that
+    "simulation error"; "too many decisions", when 100 in a row took no time; "frame reached", for a run that
     was asked to end at a frame; "error", when the agent raised an error or chose what is not an action; "too slow",
     when a decision took it longer than allowed; "worker died", when the process that played it died twice. After the
     last three all is as it was at the last decision, and scored as it was then.

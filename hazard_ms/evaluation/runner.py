@@ -23,6 +23,7 @@ from hazard_ms.skills.executor import SkillEnv
 
 FRAME_REACHED = "frame reached"  # how a run ends if it was asked to end at a frame
 RUNNING = "running"  # of an episode that has not ended
+MOST_IDLE = 100  # decisions in a row after which an episode ends if no time passes [ours]
 
 
 class Runner:
@@ -78,7 +79,8 @@ class Runner:
 
     def _play(self, decision: Decision) -> str:
         """Play from the first `decision` on. Returns why the episode ended."""
-        while len(self._records) <= self.env.max_frames:  # an agent whose actions take no time must not go on for ever
+        idle = 0  # decisions since time last passed: an agent whose actions take none must not go on for ever
+        while idle < MOST_IDLE:
             extended(self._links, self.env)
             if self.env.until_frame is not None and self.env.frame >= self.env.until_frame:
                 return FRAME_REACHED
@@ -104,6 +106,7 @@ class Runner:
             if terminated or truncated:
                 extended(self._links, self.env)
                 return self._reason(action, info)
+            idle = idle + 1 if following.frame == decision.frame else 0
             decision = following
         return "too many decisions"
 

@@ -19,7 +19,7 @@ from hazard_ms.evaluation.result import Link
 from hazard_ms.evaluation.runner import FRAME_REACHED, Runner, environment
 from hazard_ms.evaluation.watchers import Progress, Watcher
 from hazard_ms.skills.brief import Brief, random_seed
-from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision, Result
+from hazard_ms.skills.decision import DROP, EXPLORE, STOP, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 
 pytestmark = pytest.mark.render
@@ -42,6 +42,19 @@ class Quits(Looker):
 
     def act(self, decision: Decision) -> Action:
         return super().act(decision) if len(self.left) > 2 else sys.exit(0)
+
+
+class Idle(Looker):
+    """Drops what it does not hold; looks around after every so many decisions, and stops at the 180th."""
+
+    def __init__(self, every: int | None) -> None:
+        self._every, self._made = every, 0
+
+    def act(self, decision: Decision) -> Action:
+        self._made += 1
+        if self._every is None or self._made % self._every:
+            return Action(DROP)
+        return Action(STOP if self._made >= 180 else EXPLORE)
 
 
 class Talks(Looker):
@@ -101,6 +114,17 @@ def test_a_run_ends_at_the_frame_that_was_asked_for(env: SkillEnv, frame: int) -
     assert env.frame == frame and played.ended == FRAME_REACHED and witness.told[-1] == ("finish", FRAME_REACHED)
     assert sum(kind == "frame" for kind, _ in witness.told) == frame
     assert Runner(env, Looker()).run(SEED).ended == "stopped", "the next run is not cut short"
+
+
+@pytest.mark.parametrize("every", [None, 90])
+def test_an_episode_in_which_no_time_passes_ends(env: SkillEnv, every: int | None) -> None:
+    """An agent that drops nothing for ever decides a hundred times; one that looks around in between goes on."""
+    played = Runner(env, Idle(every)).run(SEED)
+    if every is None:
+        assert (played.ended, len(played.decisions)) == ("too many decisions", 100)
+        assert all(d.frames == 0 for d in played.decisions)
+    else:
+        assert (played.ended, len(played.decisions)) == ("stopped", 180)
 
 
 def test_an_agent_cannot_end_the_process(env: SkillEnv) -> None:

@@ -50,8 +50,10 @@ def test_soot_only_grows_above_the_fire_and_labels_stay() -> None:
         now = frame
         pictures, labels = seen(env), seen(plain)
         for camera, modalities in pictures.items():
-            for name in ("segmentation", "depth", "position", "normal"):
+            for name in ("segmentation", "depth", "position"):
                 np.testing.assert_array_equal(modalities[name], labels[camera][name], err_msg=f"{camera} {name}")
+            known = np.isfinite(labels[camera]["normal"])  # where a model has none, only `full` makes one up
+            np.testing.assert_array_equal(modalities["normal"][known], labels[camera]["normal"][known], camera)
         amount = soot_of(env).amount.copy()
         assert (amount >= before - 1e-9).all() and amount.max() > before.max()
         before = amount

@@ -58,7 +58,7 @@ def test_a_table_ends_with_a_line_where_the_memory_does() -> None:
     made, stopped = rates.growth((1, 4, 16, 64), measure)
     assert [r.num_envs for r in made] == [1, 4] and asked == [1, 4, 16]
     assert stopped is not None and stopped.limit
-    assert str(stopped).startswith("16 environments: the memory is exhausted: torch.OutOfMemoryError: CUDA out of")
+    assert str(stopped).startswith("a batch of 16: the memory is exhausted: torch.OutOfMemoryError: CUDA out of")
     assert rates.growth((1, 4), measure)[1] is None
 
 
@@ -67,6 +67,12 @@ def test_a_table_ends_with_a_line_where_the_memory_does() -> None:
     [
         ("vk::Device::allocateMemory: ErrorOutOfDeviceMemory\nAborted", -6, "the memory is exhausted: vk", True),
         ("RuntimeError: CUDA error: out of memory", 1, "the memory is exhausted", True),
+        (
+            "[SAPIEN] [critical] fail to allocate memory 64 bytes!! Result = 2\nRuntimeError: x",
+            1,
+            "the memory is",
+            True,
+        ),
         ("loading", -9, "killed from outside", True),
         ("loading", -11, "crashed (signal 11): loading", False),
         ("Traceback\nValueError: seed must be a number\n", 1, "ValueError: seed must be a number", False),
@@ -194,7 +200,7 @@ def test_a_report_compares_and_counts_and_says_what_failed(tmp_path: Path) -> No
     text = page.read_text(encoding="utf-8")
     rows = [row for row in cells(text) if row[0] in (BODIES, JOINTS)]
     assert len(rows) == 4 and {cell for row in rows for cell in row[1:]} == {"0"}
-    assert text.count("**Failed**: ") == 2 and "2 environments: ValueError: num_envs must be 1" in text
+    assert text.count("**Failed**: ") == 2 and "a batch of 2: ValueError: num_envs must be 1" in text
 
 
 def test_tests_of_a_gpu_are_run_and_told(tmp_path: Path) -> None:

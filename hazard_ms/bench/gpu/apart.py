@@ -20,7 +20,9 @@ from typing import Any
 
 COMPLAINT = re.compile(r"\[(?:error|critical)\] *(.+)")  # as SAPIEN's log has it, after time and module
 EXHAUSTED = re.compile(
-    r"out ?of ?(?:host|device)?_? ?memory|MemoryError|bad_alloc|cudaErrorMemoryAllocation|can't allocate memory", re.I
+    r"out ?of ?(?:host|device)? ?memory|MemoryError|bad_alloc|cudaErrorMemoryAllocation"
+    r"|(?:can't|fail(?:ed)? to) allocate",
+    re.I,
 )
 MOST_COMPLAINTS = 5  # kinds that are kept of one measurement [ours]
 LONGEST = 300  # characters of a reason [ours]
@@ -60,7 +62,7 @@ def apart(job: str, budget: float, **words: Any) -> Answer:
 def run(command: Sequence[str], budget: float) -> str:
     """All that a command prints. Raises StoppedError where it fails or takes longer than `budget` seconds."""
     try:
-        done = subprocess.run(
+        done = subprocess.run(  # what it prints last, to either stream, is the reason of its end
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", timeout=budget
         )
     except subprocess.TimeoutExpired:

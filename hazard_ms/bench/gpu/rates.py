@@ -104,7 +104,7 @@ def growth(sizes: Iterable[int], measure: Callable[[int], Rate]) -> tuple[list[R
         try:
             made.append(measure(size))
         except StoppedError as error:
-            return made, StoppedError(f"{size:,} environments: {error}", error.limit)
+            return made, StoppedError(f"a batch of {size:,}: {error}", error.limit)
     return made, None
 
 

@@ -119,7 +119,7 @@ def _rates(page: Page, env_ids: Sequence[str], obs_mode: str, sizes: Sequence[in
         def measure(size: int, env_id: str = env_id) -> Rate:
             job = {"env_id": env_id, "num_envs": size, "obs_mode": obs_mode, "simulator": page.simulator}
             made = Rate(**page.measured("rate", **job))
-            print(f"{size:,} environments: {made.frames_per_second:,.0f} frames/s", flush=True)
+            print(f"a batch of {size:,}: {made.frames_per_second:,.0f} frames/s", flush=True)
             return made
 
         rates, stopped = growth(sizes, measure)

@@ -1,4 +1,4 @@
-"""Counts where the host waits for the GPU within a step: each place costs a batch of any size the same time.
+"""Counts where the host waits for the GPU within a step.
 
 Torch warns of them itself (`torch.cuda.set_sync_debug_mode`). Waits inside PhysX, the renderer and Warp are not seen.
 """

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+LEAST = 2  # characters of a column: Markdown's rule of a column of numbers is "-:" at least
+
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]], words: int = 1) -> str:
     """A table with columns of equal width; the first `words` columns hold words, the others numbers."""
-    widths = [max(len(row[i]) for row in (headings, *rows)) for i in range(len(headings))]
+    widths = [max(LEAST, *(len(row[i]) for row in (headings, *rows))) for i in range(len(headings))]
 
     def line(cells: Sequence[str]) -> str:
         aligned = [c.ljust(w) if i < words else c.rjust(w) for i, (c, w) in enumerate(zip(cells, widths, strict=True))]

@@ -16,7 +16,7 @@ import tyro
 
 from hazard_ms.assets.foreign import printable
 from hazard_ms.cli.assets import AssetCommand
-from hazard_ms.cli.bench import bench, danger
+from hazard_ms.cli.bench import bench, danger, gpu_check
 from hazard_ms.cli.demos import DemosCommand
 from hazard_ms.cli.describe import describe
 from hazard_ms.cli.episodes import evaluate, play, replay, serve
@@ -110,6 +110,7 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "report": report,
     "describe": describe,
     "bench": bench,
+    "gpu-check": gpu_check,
     "danger": danger,
     "validate": validate,
     "scenes": scenes,

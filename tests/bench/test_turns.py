@@ -143,6 +143,7 @@ def test_a_table_is_as_wide_as_its_longest_cells() -> None:
         "| a      | 100 |",
         "| longer |   1 |",
     ]
+    assert table(["n"], [["1"]], 0).splitlines()[1] == "| -: |"
 
 
 def test_a_case_is_made_with_its_robot_and_preset() -> None:

@@ -1,0 +1,63 @@
+"""The measurements that run in processes of their own: `python -m hazard_ms.bench.gpu.jobs JSON`.
+
+JSON has the name of a job, the file for its answer, and the job's keywords.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from hazard_ms.machine.files import write
+
+
+def rate_job(**keywords: Any) -> Any:
+    """See `hazard_ms.bench.gpu.rates.rate`."""
+    from hazard_ms.bench.gpu.rates import rate
+
+    return dataclasses.asdict(rate(**keywords))
+
+
+def course_job(file: str, **keywords: Any) -> Any:
+    """See `hazard_ms.bench.gpu.comparison.course`, which goes into `file`."""
+    from hazard_ms.bench.gpu.comparison import course, keep
+
+    keep(Path(file), course(**keywords))
+
+
+def waits_job(**keywords: Any) -> Any:
+    """See `hazard_ms.bench.gpu.waits.waits`."""
+    from hazard_ms.bench.gpu.waits import waits
+
+    return waits(**keywords)
+
+
+def physics_job() -> Any:
+    """Let SAPIEN turn to the GPU, for which it downloads a library once."""
+    from sapien import physx
+
+    physx.enable_gpu()
+    physx.PhysxGpuSystem("cuda")
+
+
+JOBS: dict[str, Callable[..., Any]] = {
+    "rate": rate_job,
+    "course": course_job,
+    "waits": waits_job,
+    "physics": physics_job,
+}
+
+
+def main(words: str) -> None:
+    """Run one job and write its answer."""
+    asked = json.loads(words)
+    job, answer = JOBS[asked.pop("job")], Path(asked.pop("answer"))
+    write(answer, json.dumps(job(**asked)))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

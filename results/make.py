@@ -15,6 +15,7 @@ import csv
 import json
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 from hazard_ms.evaluation.choices import HUMAN
@@ -108,7 +109,17 @@ def table(sweep: str) -> tuple[str, list[dict[str, Any]]]:
     for group in json.loads(told.stdout)["groups"]:
         lines += section(group)
     lines.append(f"\nNo agent can exceed {100 * sum(best.values()) / len(best):.1f} on average (the bound).")
+    if robot == "fetch":
+        lines += fidelity(RAW / sweep)
     return "\n".join(lines) + "\n", rows
+
+
+def fidelity(folder: Path) -> list[str]:
+    """What the sketch gives beside the real episodes in a folder, as `hazard-ms sketch check` tells it."""
+    told = subprocess.run([*COMMAND, "sketch", "check", str(folder)], capture_output=True, text=True)
+    if not told.stdout:
+        raise ValueError(f"hazard-ms sketch check must tell how far off the sketch is, got {told.stderr!r:.300}")
+    return ["\nThe sketch beside these episodes (`hazard-ms sketch check`):\n", "```text", told.stdout.strip(), "```"]
 
 
 def section(group: dict[str, Any]) -> list[str]:

@@ -46,8 +46,8 @@ def test_each_has_its_turn_in_every_round_with_each_kind_of_action() -> None:
     once = [(name, drawn) for name in ("slow", "quick") for drawn in (False, True) for _ in range(3)]
     assert steps == once * 2
     for kind in ("zeros", "random"):
-        assert found["slow"].cpu[kind] == pytest.approx(0.004, rel=0.2)
-        assert found["quick"].cpu[kind] == pytest.approx(0.002, rel=0.2)
+        assert found["slow"].cpu[kind] == pytest.approx(0.004, rel=0.4)
+        assert found["quick"].cpu[kind] == pytest.approx(0.002, rel=0.4)
         assert found["slow"].wall[kind] >= 0.0039
 
 

@@ -29,9 +29,9 @@ LONGEST = 300  # characters of a reason [ours]
 
 
 class StoppedError(Exception):
-    """A measurement that has no result; its text is the reason, in one line.
+    """A measurement gave no result; the message is the reason, in one line.
 
-    limit: it ran into a limit of the machine or of the time it was given, which is no fault.
+    `limit` is True if the machine's memory or the time budget ran out, which does not count as a failure.
     """
 
     def __init__(self, reason: str, limit: bool = False) -> None:
@@ -48,7 +48,7 @@ class Answer:
 
 
 def apart(job: str, budget: float, **words: Any) -> Answer:
-    """The answer of one of `hazard_ms.bench.gpu.jobs` in a process of its own, given as keywords what JSON can hold.
+    """Run one of `hazard_ms.bench.gpu.jobs` in a process of its own; its keywords must be what JSON can hold.
 
     Raises StoppedError where it fails or takes longer than `budget` seconds.
     """

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
 from hazard_ms import registry
 from hazard_ms.evaluation.choices import PRESETS, flag, offer
 from hazard_ms.registry.version import __version__
+
+if TYPE_CHECKING:
+    from hazard_ms.learning.cloning import Student
 
 ACTIONS = ("options", "paper")  # as hazard_ms.skills.options.choices has them; tests/cli compares them
 VALIDATION = 1000  # number of the first scene whose Value chooses the best round; training stays below it [ours]
@@ -44,10 +47,9 @@ def bc(
     """
     import torch
 
-    from hazard_ms.agents.learned.weights import ENDING, contents
     from hazard_ms.learning.cloning import Student, train
     from hazard_ms.learning.scenes import generated
-    from hazard_ms.machine.files import make_folder, write_together
+    from hazard_ms.machine.files import make_folder
     from hazard_ms.sketch.scenes import SCENES, level_ranges
     from hazard_ms.sketch.skill_times import load
     from hazard_ms.spec.checks import whole
@@ -55,7 +57,6 @@ def bc(
     count = whole(scenes, 1, VALIDATION - SCENES, "scenes")
     whole(rounds, 1, 1000, "rounds")
     whole(episodes, 1, 10**7, "episodes")
-    path = output / f"bc_{env_id}{ENDING}"
     make_folder(output)
     student = Student(level_ranges(env_id, physics), whole(seed, 0, 2**31, "seed"))
     numbers = [*range(SCENES, SCENES + count), *range(VALIDATION, VALIDATION + VALIDATION_SCENES)]
@@ -66,15 +67,58 @@ def bc(
         done = train(student, made[:count], made[count:], load("fetch"), seed, rounds, episodes, print)
     finally:
         torch.set_num_threads(threads)
-    facts: dict[str, Any] = {
-        "command": f"hazard-ms train bc -e {env_id} --seed {seed} --scenes {scenes} --rounds {rounds} "
-        f"--episodes {episodes} --physics {physics}",
-        "version": __version__,
-        "rounds": [vars(each) for each in done],
-    }
+    command = f"train bc -e {env_id} --seed {seed} --scenes {scenes} --rounds {rounds} --episodes {episodes}"
+    told = {"rounds": [vars(each) for each in done]}
+    return _stored(student, output, env_id, f"{command} --physics {physics}", told)
+
+
+def clone(
+    demos: tyro.conf.Positional[Path],
+    env_id: Annotated[str, offer(registry.TASKS), flag("-e")],
+    output: Annotated[Path, flag("-o")],
+    seed: int = 0,
+    passes: int = 20,
+    physics: Annotated[str, offer(PRESETS)] = "paper",
+) -> int:
+    """Train the policy of the agent `bc` by behaviour cloning of recorded decisions, in a minute on one core.
+
+    It learns to choose what the teacher chose, from what an agent without privileges saw, and prints how often it does,
+    also in every tenth episode, from which it does not learn. `hazard-ms evaluate --agents bc:weights=FILE` scores it.
+
+    Raises ValueError where there are no recorded decisions of the task.
+
+    Args:
+        demos: A dataset of `hazard-ms demos record`, or a folder of datasets, of which those of the task count.
+        env_id: Task.
+        output: Folder for bc_TASK.safetensors and bc_TASK.json.
+        seed: Seed of everything that is random.
+        passes: Passes over all decisions.
+        physics: Preset of the hazards that was recorded.
+    """
+    from hazard_ms.learning.cloning import Student, imitate
+    from hazard_ms.learning.recorded import choices
+    from hazard_ms.machine.files import make_folder
+    from hazard_ms.sketch.scenes import level_ranges
+    from hazard_ms.spec.checks import whole
+
+    student = Student(level_ranges(env_id, physics), whole(seed, 0, 2**31, "seed"))
+    whole(passes, 1, 10**6, "passes")
+    found = choices(demos, env_id, physics, student.encoder.layout)
+    make_folder(output)
+    command = f"train clone {shlex.quote(str(demos))} -e {env_id} --seed {seed} --passes {passes} --physics {physics}"
+    return _stored(student, output, env_id, command, {"agreement": imitate(student, found, passes, print)})
+
+
+def _stored(student: Student, output: Path, env_id: str, command: str, facts: dict[str, Any]) -> int:
+    """Write the files of a `student`, whom a `command` made, and print the command that scores it; returns 0."""
+    from hazard_ms.agents.learned.weights import ENDING, contents
+    from hazard_ms.machine.files import write_together
+
+    path = output / f"bc_{env_id}{ENDING}"
+    facts = {"command": f"hazard-ms {command}", "version": __version__, **facts}
     weights, told = contents(student.policy, env_id, facts)
     write_together({path: weights, path.with_suffix(".json"): told})
-    print(f"hazard-ms evaluate -e {env_id} --agents bc:weights={path} greedy --split train")
+    print(f"hazard-ms evaluate -e {env_id} --split test --agents bc:weights={path} greedy")
     return 0
 
 
@@ -198,6 +242,7 @@ def score(
 
 TrainCommand = (
     Annotated[int, tyro.conf.subcommand(name="bc", constructor=bc)]
+    | Annotated[int, tyro.conf.subcommand(name="clone", constructor=clone)]
     | Annotated[int, tyro.conf.subcommand(name="ppo", constructor=ppo)]
     | Annotated[int, tyro.conf.subcommand(name="score", constructor=score)]
 )

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import re
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, fields
@@ -106,9 +107,9 @@ def plain(name: str) -> str:
 def datasets(folder: Path, failures: bool = False) -> Iterator[Path]:
     """The datasets in `folder` and the folders in it, those of failures only if asked for.
 
-    Raises ValueError where there are none.
+    They may be recorded meanwhile: folders of episodes may come and go. Raises ValueError where there are none.
     """
-    found = sorted(path.parent for path in folder.rglob(MANIFEST))
+    found = sorted(Path(path) for path, _, files in os.walk(folder) if MANIFEST in files)
     kept = [path for path in found if failures or path.name != FAILURES or path == folder]
     if not kept:
         raise ValueError(f"folder must hold a dataset of `hazard-ms demos record`, got {folder}")

@@ -1,6 +1,8 @@
-"""Behaviour cloning over options in the sketch, with rounds in which the student's own rescues are labelled (DAgger).
+"""Behaviour cloning over options: from recorded choices, or from labels that the sketch gives.
 
-A student learns from `hazard_ms.learning.labels`: it raises its expected worth, less what keeps it from chance,
+In the sketch, there are rounds in which the student's own rescues are labelled (DAgger).
+
+There, a student learns from `hazard_ms.learning.labels`: it raises its expected worth, less what keeps it from chance,
 
     loss = - sum over options of p (worth - mean worth) - SOFT entropy(p)
 
@@ -15,11 +17,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
+from torch.nn.functional import cross_entropy
 
 from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
 from hazard_ms.learning.labels import SEEDS, Labels, collect
 from hazard_ms.learning.playing import TRIALS, Player
+from hazard_ms.learning.recorded import Choices
 from hazard_ms.sketch.policies import POLICIES, Policy, play
 from hazard_ms.sketch.rescues.features import MISSING
 from hazard_ms.sketch.rescues.scene import Floats, SketchScene
@@ -33,6 +38,7 @@ STUDENT = 0.7  # share of the options that the student chooses in the rounds aft
 BATCH = 256  # decisions of a step of the optimiser [ours]
 RATE = 2e-3  # greatest rate of learning [ours]
 DECAY = 1e-3  # of weights [ours]
+STRONG_DECAY = 0.05  # of weights that learn from recordings, which are few [ours]
 STEEPEST = 1.0  # norm that gradients are cut to [ours]
 EPOCHS = 3  # passes over all labels in a round: ten in the last of five rounds lost 0.02 of Value [ours]
 
@@ -69,21 +75,60 @@ class Student:
 
     def learn(self, labels: Labels, epochs: int) -> None:
         """Pass over all `labels` in a new order in each of `epochs`, in mirrored rooms half of the time."""
-        features, mask, worth = (torch.from_numpy(part) for part in (labels.features, labels.mask, labels.worth))
-        steps = epochs * -(-len(features) // BATCH)
-        optimiser = torch.optim.AdamW(self.policy.parameters(), RATE, weight_decay=DECAY)
+        worth = torch.from_numpy(labels.worth)
+        self._pass(labels.features, labels.mask, epochs, DECAY, lambda logits, mask, r: loss(logits, mask, worth[r]))
+
+    def imitate(self, choices: Choices, epochs: int) -> None:
+        """Pass over recorded `choices` as `learn` does over labels, and make what was chosen likelier."""
+        chosen = torch.from_numpy(choices.option)
+        self._pass(
+            choices.features, choices.mask, epochs, STRONG_DECAY, lambda logits, _, r: cross_entropy(logits, chosen[r])
+        )
+
+    def agreement(self, choices: Choices) -> float:
+        """The share of recorded `choices` that this student would choose, too."""
+        own = self.policy.choose(torch.from_numpy(choices.features), torch.from_numpy(choices.mask))
+        return float((own.numpy() == choices.option).mean())
+
+    def _pass(
+        self,
+        features: NDArray[np.float32],
+        mask: NDArray[np.bool_],
+        epochs: int,
+        decay: float,
+        cost: Callable[[Tensor, Tensor, Tensor], Tensor],
+    ) -> None:
+        """Make `cost` of the logits, the masks and the numbers of decisions small, in `epochs` passes over all."""
+        seen, allowed = torch.from_numpy(features), torch.from_numpy(mask)
+        steps = epochs * -(-len(seen) // BATCH)
+        optimiser = torch.optim.AdamW(self.policy.parameters(), RATE, weight_decay=decay)
         rates = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=steps)
         self.policy.train()
         for _ in range(epochs):
-            for some in torch.randperm(len(features), generator=self._chance).split(BATCH):
+            for some in torch.randperm(len(seen), generator=self._chance).split(BATCH):
                 turned = (torch.rand(len(some), 1, generator=self._chance) < 0.5) & self._mirrored
-                seen = torch.where(turned, -features[some], features[some])
                 optimiser.zero_grad()
-                loss(self.policy(seen, mask[some]), mask[some], worth[some]).backward()
+                logits = self.policy(torch.where(turned, -seen[some], seen[some]), allowed[some])
+                cost(logits, allowed[some], some).backward()
                 torch.nn.utils.clip_grad_norm_(self.policy.parameters(), STEEPEST)
                 optimiser.step()
                 rates.step()
         self.policy.eval()
+
+
+def imitate(student: Student, found: Choices, passes: int, told: Callable[[str], None]) -> dict[str, dict[str, float]]:
+    """Train `student` on recorded choices in some `passes` over all but those of every tenth episode.
+
+    Returns how many decisions there were of both kinds, and in what share it chooses as the teacher; each is `told`.
+    """
+    learnt, held_out = found.split()
+    student.imitate(learnt, passes)
+    made = {}
+    for name, part in (("learnt from", learnt), ("held out", held_out)):
+        if count := len(part.option):
+            made[name] = {"decisions": count, "agreement": student.agreement(part)}
+            told(f"{count:,} decisions {name}: it chooses as the teacher in {made[name]['agreement']:.1%}")
+    return made
 
 
 def loss(logits: Tensor, mask: Tensor, worth: Tensor) -> Tensor:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hazard_ms.demonstrations import claims, store
 from hazard_ms.demonstrations.layout import DECISIONS, FRAMES, PRIVILEGED, TRUTH, VIDEO, Entry
@@ -31,10 +32,12 @@ def stored(
     saved: bool = True,
     played: EpisodeResult | None = None,
     film: bytes = b"",
+    decisions: dict[str, NDArray[Any]] | None = None,
 ) -> Path:
     """Store an episode of three frames and two decisions as a recording does; its folder.
 
-    `played`: its result, another one than that with two targets; `film`: the film of the head camera, if there is one.
+    `played`: its result, another one than that with two targets; `film`: the film of the head camera, if there is one;
+    `decisions`: other arrays for them.
     """
     dataset.mkdir(parents=True, exist_ok=True)
     options = EpisodeOptions(agent="oracle", seed=seed)
@@ -43,7 +46,7 @@ def stored(
         assert mine
         part = store.begin(dataset, seed)
         rng = np.random.default_rng(seed)
-        store.put_arrays(part / DECISIONS, {"frame": np.array([0, 2], np.int32)})
+        store.put_arrays(part / DECISIONS, decisions or {"frame": np.array([0, 2], np.int32)})
         store.put_arrays(part / FRAMES, {"action": rng.random((3, 2), np.float32)})
         store.put_arrays(part / PRIVILEGED / TRUTH, {"best": np.ones(2, np.float32)})
         if film:

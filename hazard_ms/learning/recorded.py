@@ -1,0 +1,69 @@
+"""Choices of teachers, out of recorded episodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.agents.learned.set_policy import worthwhile
+from hazard_ms.demonstrations.layout import datasets
+from hazard_ms.demonstrations.reading import Demonstration, demonstrations
+from hazard_ms.skills.options.features import Encoder
+
+HELD_OUT = 10  # every so many episodes, one is kept to see how well a student agrees with it [ours]
+
+
+@dataclass(frozen=True)
+class Choices:
+    """M decisions at which a teacher began an option that its student could choose, too."""
+
+    features: NDArray[np.float32]  # as of `hazard_ms.skills.options.features`, [M, F]
+    mask: NDArray[np.bool_]  # options that could be chosen, [M, A]
+    option: NDArray[np.int64]  # that the teacher chose, [M]
+    episode: NDArray[np.int64]  # number of its episode, [M]
+
+    def of(self, rows: NDArray[np.bool_]) -> Choices:
+        """Some of them; `rows`: which, [M]."""
+        return Choices(*(getattr(self, name)[rows] for name in ("features", "mask", "option", "episode")))
+
+    def split(self) -> tuple[Choices, Choices]:
+        """Choices to learn from, and those of every tenth episode, which are none if there are fewer episodes."""
+        out = self.episode % HELD_OUT == HELD_OUT - 1
+        return self.of(~out), self.of(out)
+
+
+def choices(folder: Path, env_id: str, physics: str, layout: Encoder) -> Choices:
+    """The choices in all datasets of a task and a preset in `folder`; `layout`: of the features.
+
+    Left out are choices of what only the teacher knew, and to stop while something is left to do.
+
+    Raises ValueError where there are none, and for features of another layout.
+    """
+    made = []
+    for number, demonstration in enumerate(_episodes(folder, env_id, physics)):
+        decisions = demonstration.decisions
+        features, option = decisions["features"], decisions["option"].astype(np.int64)
+        if features.shape[1] != layout.size:
+            raise ValueError(
+                f"features of an episode must be {layout.size} numbers, got {features.shape[1]} in "
+                f"{demonstration.folder}; record it again"
+            )
+        mask = worthwhile(decisions["mask"])
+        begins = decisions["option_start"] & (option >= 0)
+        begins[begins] &= mask[begins, option[begins]]
+        made.append(Choices(features, mask, option, np.full(len(option), number)).of(begins))
+    if not sum(len(each.option) for each in made):
+        raise ValueError(f"demos must hold choices in {env_id} with physics {physics}, and {folder} holds none")
+    return Choices(*(np.concatenate([getattr(e, name) for e in made]) for name in vars(made[0])))
+
+
+def _episodes(folder: Path, env_id: str, physics: str) -> Iterator[Demonstration]:
+    for dataset in datasets(folder):
+        for demonstration in demonstrations(dataset):
+            if (demonstration.result.env_id, demonstration.result.settings["physics"]) != (env_id, physics):
+                break  # a dataset is of one recipe
+            yield demonstration

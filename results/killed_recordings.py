@@ -81,6 +81,7 @@ class Ordeal:
         else:
             return  # the command has not started any yet
         self.killed[what] += 1
+        print(f"kill {self.killed.total()} of {self.kills}: {what}", file=sys.stderr, flush=True)
 
     def _look(self) -> None:
         """Look at what is there, before anything is put in order."""

@@ -93,7 +93,7 @@ def perception(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[
 
 
 def train(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[TrainCommand]]) -> int:
-    """Policies: train bc, score one in the sketch."""
+    """Policies: train one by cloning or by reinforcement, score one in the sketch."""
     return int(done)
 
 

@@ -60,7 +60,7 @@ class Ordeal:
                     self._kill(process)
             ended = process.wait()
             _end_of_all(process.pid)
-            self._look()
+            self.look()
             if ended == 0 or (ended > 0 and self.killed.total() >= self.kills):
                 return ended
 
@@ -83,7 +83,7 @@ class Ordeal:
         self.killed[what] += 1
         print(f"kill {self.killed.total()} of {self.kills}: {what}", file=sys.stderr, flush=True)
 
-    def _look(self) -> None:
+    def look(self) -> None:
         """Look at what is there, before anything is put in order."""
         there = dict(shelves(self.dataset)) if self.dataset.exists() else {}
         self.unreadable |= {entry.name for folder, entry in there.items() if differences(folder, entry)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-import json
+import random
 import subprocess
 import sys
 from pathlib import Path
@@ -16,6 +16,8 @@ from hazard_ms.demonstrations.options import RecordOptions
 from hazard_ms.demonstrations.reading import entries
 from hazard_ms.demonstrations.recording import RecordJob, attempt
 from hazard_ms.evaluation.result import EpisodeResult
+from results.killed_recordings import Ordeal
+from tests.worlds.files.checkout import ROOT
 from tests.worlds.recordings import content, stored
 
 AGENT = "tests.evaluation.test_play:Short"
@@ -89,16 +91,26 @@ def test_an_episode_that_differs_when_it_is_simulated_again_is_not_kept(
 @pytest.mark.render
 @pytest.mark.long
 def test_a_recording_that_is_killed_again_and_again_ends_as_an_undisturbed_one(tmp_path: Path) -> None:
-    """In a process of its own, which makes copies of itself before anything is drawn."""
-    assert kill(tmp_path / "undisturbed", 0) == {"killed": 0, "wrong": 0}
-    told = kill(tmp_path / "killed", 3)
-    wanted, found = (next(datasets(tmp_path / name)) for name in ("undisturbed", "killed"))
-    assert told["killed"] and not told["wrong"] and content(entries(found)) == content(entries(wanted))
+    """By the command that tells how recordings stand `kill -9`."""
+    words = ["demos", "record", "-a", AGENT, "--episodes", "2", "--keep", "0", "-o", str(tmp_path / "undisturbed")]
+    assert main(words) == 0
+    (dataset,) = datasets(tmp_path / "undisturbed")
+    command = [sys.executable, "-m", "results.killed_recordings", str(dataset), "-o", str(tmp_path / "killed")]
+    done = subprocess.run([*command, "--kills", "4"], capture_output=True, text=True, cwd=ROOT)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "recorded while 4 random `kill -9` struck" in done.stdout
+    assert "0 episodes could not be read, 0 were lost after they had been told of, 0 differ" in done.stdout
+    (found,) = datasets(tmp_path / "killed")
+    assert content(entries(found)) == content(entries(dataset))
 
 
-def kill(output: Path, kills: int) -> dict[str, int]:
-    """What `tests.worlds.killed_recordings` prints."""
-    command = [sys.executable, "-m", "tests.worlds.killed_recordings", str(output), str(kills)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path(__file__).parents[2])
-    told: dict[str, int] = json.loads(done.stdout.splitlines()[-1])
-    return told
+def test_what_a_kill_has_cost_is_noticed(tmp_path: Path) -> None:
+    names = [stored(tmp_path / "one", seed).name for seed in range(3)]
+    log = tmp_path / "log.txt"
+    log.write_text("".join(f"{name}: 50.0 % of the value, 3 frames, 1 s, kept\n" for name in (*names, "gone-s000007")))
+    tried = Ordeal([], tmp_path / "one", log, 1, random.Random(0))
+    tried.look()
+    assert tried.lost == {"gone-s000007"} and not tried.unreadable
+    (tmp_path / "one" / names[1] / "frames.npz").write_bytes(b"")
+    tried.look()
+    assert tried.unreadable == {names[1]}

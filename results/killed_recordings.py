@@ -1,6 +1,6 @@
 """Kills a recording of demonstrations again and again, and looks at what is left each time.
 
-`./run python results/killed_recordings.py DATASET -o FOLDER [--episodes 20] [--kills 50] [--workers 2]` records
+`./run python results/killed_recordings.py DATASET -o FOLDER [--episodes 20] [--kills 50] [--longest 30]` records
 the first episodes of DATASET, which `hazard-ms demos record` has made undisturbed, once more in FOLDER. Meanwhile it
 kills, with SIGKILL and at random times, the command and all its processes, or the command alone, or one of its
 processes. It prints how many episodes could not be read, how many were lost after the command had told of them, and how
@@ -26,7 +26,6 @@ from hazard_ms.demonstrations.layout import FAILURES, MANIFEST, Entry
 from hazard_ms.demonstrations.reading import differences, entries
 from results.tables import COMMAND
 
-LONGEST = 30.0  # from one kill to the next: a start takes a third of it, an episode half [s]
 TOLD = re.compile(r"([\w.-]+-s\d{6}): [\d.]+ % of the value")  # how the command tells of an episode that is stored
 WHAT = ("all", "command", "process")  # that is killed
 
@@ -47,6 +46,7 @@ class Ordeal:
     log: Path
     kills: int
     chance: random.Random
+    longest: float = 30.0  # from one kill to the next: a start takes a third of it, an episode half [s]
     killed: Counter[str] = field(default_factory=Counter)
     unreadable: set[str] = field(default_factory=set)
     lost: set[str] = field(default_factory=set)
@@ -66,7 +66,7 @@ class Ordeal:
 
     def _kill(self, process: subprocess.Popen[bytes]) -> None:
         """Wait for a random time, then kill some of what runs."""
-        until = time.monotonic() + self.chance.uniform(0.0, LONGEST)
+        until = time.monotonic() + self.chance.uniform(0.0, self.longest)
         while time.monotonic() < until and process.poll() is None:
             time.sleep(0.02)
         what = self.chance.choice(WHAT)
@@ -108,7 +108,9 @@ def _end_of_all(group: int) -> None:
     raise RuntimeError(f"processes of a killed command must end by themselves within a minute, got group {group}")
 
 
-def ordeal(undisturbed: Path, output: Path, episodes: int, kills: int, workers: int) -> tuple[bool, str]:
+def ordeal(
+    undisturbed: Path, output: Path, episodes: int, kills: int, longest: float, workers: int
+) -> tuple[bool, str]:
     """Record episodes of a dataset again while killing the recording; whether all is well, and a sentence."""
     there = sorted((entry for _, entry in shelves(undisturbed)), key=lambda entry: entry.seed)[:episodes]
     wanted, seeds = {entry.name: entry.content for entry in there}, [entry.seed for entry in there]
@@ -117,7 +119,7 @@ def ordeal(undisturbed: Path, output: Path, episodes: int, kills: int, workers: 
     words += ["-s", str(seeds[0]), "-n", str(len(seeds)), "--workers", str(workers), "-o", str(output)]
     dataset = output / undisturbed.parent.name / undisturbed.name
     output.mkdir(parents=True, exist_ok=True)
-    tried = Ordeal([*COMMAND, "demos", "record", *words], dataset, output / "log.txt", kills, random.Random(0))
+    tried = Ordeal([*COMMAND, "demos", "record", *words], dataset, output / "log.txt", kills, random.Random(0), longest)
     start = time.monotonic()
     ended = tried.run()
     found = {entry.name: entry.content for _, entry in shelves(dataset)}
@@ -139,9 +141,10 @@ def main() -> int:
     parser.add_argument("-o", "--output", type=Path, required=True)
     parser.add_argument("--episodes", type=int, default=20)
     parser.add_argument("--kills", type=int, default=50)
+    parser.add_argument("--longest", type=float, default=30.0, help="from one kill to the next [s]")
     parser.add_argument("--workers", type=int, default=2)
     wanted = parser.parse_args()
-    well, text = ordeal(wanted.dataset, wanted.output, wanted.episodes, wanted.kills, wanted.workers)
+    well, text = ordeal(wanted.dataset, wanted.output, wanted.episodes, wanted.kills, wanted.longest, wanted.workers)
     print(text)
     return int(not well)
 

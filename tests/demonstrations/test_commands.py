@@ -96,7 +96,7 @@ def test_a_recording_that_is_killed_again_and_again_ends_as_an_undisturbed_one(t
     assert main(words) == 0
     (dataset,) = datasets(tmp_path / "undisturbed")
     command = [sys.executable, "-m", "results.killed_recordings", str(dataset), "-o", str(tmp_path / "killed")]
-    done = subprocess.run([*command, "--kills", "4"], capture_output=True, text=True, cwd=ROOT)
+    done = subprocess.run([*command, "--kills", "4", "--longest", "8"], capture_output=True, text=True, cwd=ROOT)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "recorded while 4 random `kill -9` struck" in done.stdout
     assert "0 episodes could not be read, 0 were lost after they had been told of, 0 differ" in done.stdout

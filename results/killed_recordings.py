@@ -54,6 +54,7 @@ class Ordeal:
     def run(self) -> int:
         """Kill the recording `kills` times, then let it end; the code that it ends with."""
         while True:
+            before = self.killed.total()
             with self.log.open("a", encoding="utf-8") as log:
                 process = subprocess.Popen(self.command, stdout=log, stderr=log, start_new_session=True)
                 while process.poll() is None and self.killed.total() < self.kills:
@@ -61,8 +62,8 @@ class Ordeal:
             ended = process.wait()
             _end_of_all(process.pid)
             self.look()
-            if ended == 0 or (ended > 0 and self.killed.total() >= self.kills):
-                return ended
+            if ended == 0 or (ended > 0 and self.killed.total() == before):
+                return ended  # it is done, or fails by itself
 
     def _kill(self, process: subprocess.Popen[bytes]) -> None:
         """Wait for a random time, then kill some of what runs."""

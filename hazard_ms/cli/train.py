@@ -25,7 +25,7 @@ def bc(
     output: Annotated[Path, flag("-o")],
     seed: int = 0,
     scenes: int = 225,
-    rounds: int = 4,
+    rounds: int = 5,
     episodes: int = 1536,
     physics: Annotated[str, offer(PRESETS)] = "paper",
     workers: int = 0,

@@ -84,8 +84,8 @@ class SlowSketch:
             every = int(np.bitwise_or.reduce(self.s.spots[:, mark]))
             unseen = bin(every & ~self.spots[mark]).count("1")
             away = math.dist(self.s.position[site], self.place)
-            if ("mark", mark) in self.known and self.visits[mark] < 2 and unseen:
-                scored.append((-(4.0 / 16 * unseen) / (1.0 + away) / (1 + self.visits[mark]) ** 2, mark))
+            if ("mark", mark) in self.known and self.visits[mark] < 2:
+                scored.append((-(2.5 + 3.4 * unseen) / (1.0 + away) / (1 + self.visits[mark]) ** 2, mark))
         return [mark for _, mark in sorted(scored)[:MARKS]]
 
     def options(self) -> set[int]:

@@ -126,6 +126,7 @@ def stand(env: SkillEnv, x: float, y: float, heading: float, looks: int) -> None
 def restore(env: SkillEnv, state: dict[str, Any]) -> None:
     """Put everything back into `state`; only what the robot has seen by now stays."""
     env.base.set_state_dict(state)
+    env.seen.frame = int(env.base.world.frame[0])  # a map refuses looks that are older than its last one
     env.stage = Stage(env.base, env.seen, env.look)
 
 

@@ -39,8 +39,8 @@ def test_a_student_learns_in_rounds_and_stays_as_in_its_best() -> None:
     assert scores(scenes, chancy_times(), student.play, CHOICE_TRIALS).mean() == pytest.approx(best)
     rule = scores(scenes, chancy_times(), POLICIES["rule"]).mean()
     assert best > before + 0.02 and best > rule, (before, rule, best)
-    text, told_there = table(scenes, chancy_times(), {"mine": student.play}), scores(scenes, chancy_times(), student.play)
-    assert f"{told_there.mean():.3f}" in next(line for line in text.splitlines() if line.endswith("mine"))
+    text, usual = table(scenes, chancy_times(), {"mine": student.play}), scores(scenes, chancy_times(), student.play)
+    assert f"{usual.mean():.3f}" in next(line for line in text.splitlines() if line.endswith("mine"))
 
 
 def test_training_is_repeatable() -> None:

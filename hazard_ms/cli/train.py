@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 ACTIONS = ("options", "paper")  # as hazard_ms.skills.options.choices has them; tests/cli compares them
 VALIDATION = 1000  # number of the first scene whose Value chooses the best round; training stays below it [ours]
-VALIDATION_SCENES = 24  # of that sort: 192 rescues, whose mean is known to 0.02 [ours]
+VALIDATION_SCENES = 24  # of that sort [ours]
 
 
 def bc(

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 import torch
 
+from hazard_ms.learning import cloning
 from hazard_ms.learning.cloning import CHOICE_TRIALS, SOFT, Round, Student, loss, scores, train
 from hazard_ms.learning.comparison import table
+from hazard_ms.learning.labels import Labels
 from hazard_ms.sketch.policies import POLICIES
 from tests.worlds.sketch_scenes import chancy_times, random_scene
 
@@ -41,6 +45,19 @@ def test_a_student_learns_in_rounds_and_stays_as_in_its_best() -> None:
     assert best > before + 0.02 and best > rule, (before, rule, best)
     text, usual = table(scenes, chancy_times(), {"mine": student.play}), scores(scenes, chancy_times(), student.play)
     assert f"{usual.mean():.3f}" in next(line for line in text.splitlines() if line.endswith("mine"))
+
+
+def test_the_student_goes_on_after_its_options_from_the_third_round_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    judges, collect = [], cloning.collect
+
+    def watched(*given: Any) -> Labels:
+        judges.append(given[3])
+        return collect(*given)
+
+    monkeypatch.setattr(cloning, "collect", watched)
+    student, scenes = Student(FIRE, 0), [random_scene(seed) for seed in range(2)]
+    train(student, scenes, scenes, chancy_times(), 0, 4, 4, lambda _: None)
+    assert judges == [POLICIES["greedy"]] * 2 + [student.play] * 2
 
 
 def test_training_is_repeatable() -> None:

@@ -35,17 +35,20 @@ def check(folder: Folder) -> int:
     return run(folder)
 
 
-def show(folder: Folder, output: Annotated[Path, flag("-o")] = Path("perception.html"), pictures: int = 24) -> int:
+def show(
+    folder: Folder, output: Annotated[Path, flag("-o")] = Path("perception.html"), pictures: int = 24, things: int = 0
+) -> int:
     """Write a page about a dataset: pictures with masks and states, and statistics.
 
     Args:
         folder: A dataset, OUTPUT/TASK.
         output: Page to write, NAME.html; NAME.png or NAME.jpg gets the pictures alone.
         pictures: Pictures of each split that are shown.
+        things: Things of each split that are shown one by one, drawn at random; on a sheet, in place of pictures.
     """
     from hazard_ms.perception.show import show as run
 
-    print(f"page: {run(folder, output, pictures).resolve()}")
+    print(f"page: {run(folder, output, pictures, things).resolve()}")
     return 0
 
 

@@ -31,6 +31,8 @@ class CaptureOptions:
     """Width and height of a picture in pixels."""
     fov: float = FOV
     """Field of view in degrees; the robots' head cameras have 120."""
+    last_frame: int | None = None
+    """Last frame of an episode of which pictures are taken; 0: only what no hazard has changed yet."""
     shader: Literal["default", "rt-fast", "rt"] = "default"
     """Raster (default), or ray-traced, which takes seconds a picture."""
     spp: int = 4
@@ -57,6 +59,8 @@ class CaptureOptions:
         whole(self.size, SMALLEST, LARGEST, "size")
         if not NARROWEST <= self.fov <= WIDEST:
             raise ValueError(f"fov must be from {NARROWEST:g} to {WIDEST:g} degrees, got {self.fov!r}")
+        if self.last_frame is not None:
+            whole(self.last_frame, 0, self.env.max_frames - 1, "last_frame")
         whole(self.spp, 1, MOST_SAMPLES, "spp")
         whole(self.seed, 0, MOST, "seed")
         whole(self.workers, 0, MOST_WORKERS, "workers")
@@ -80,12 +84,18 @@ class CaptureOptions:
         made: dict[str, Any] = {"env_id": self.env.env_id, "settings": self.env.settings}
         made |= {name: getattr(self, name) for name in names}
         made |= {} if self.fov == FOV else {"fov": self.fov}
+        made |= {} if self.last_frame is None else {"last_frame": self.last_frame}
         return made if self.shader == "default" else {**made, "spp": self.spp}
 
     @property
     def angle(self) -> float:
         """The field of view [rad]."""
         return ANGLE if self.fov == FOV else math.radians(self.fov)
+
+    @property
+    def frames(self) -> int:
+        """Frames of an episode over which pictures are spread."""
+        return self.env.max_frames if self.last_frame is None else self.last_frame + 1
 
     def episode(self, scene: str, seed: int) -> EpisodeOptions:
         """The episode of `scene` in which nobody acts."""

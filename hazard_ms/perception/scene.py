@@ -93,7 +93,7 @@ def _pictures(
     stops = -(-options.per_scene // POSES)
     for stop in range(stops):
         rng = np.random.default_rng([key, options.seed, stop])
-        _play(env, watch, int((stop + rng.random()) * options.env.max_frames / stops))
+        _play(env, watch, int((stop + rng.random()) * options.frames / stops))
         env.lights.mode = str(rng.choice(DRAWN)) if options.lights == VARIED else options.lights
         lighting = env.lights.chosen(env.world.chance.seed.cpu())[0]
         eye.show()

@@ -15,23 +15,15 @@ from numpy.typing import NDArray
 from hazard_ms.machine.files import make_folder, write
 from hazard_ms.perception import coco, layout
 from hazard_ms.perception.card import numbers
-from hazard_ms.perception.states import MOVING
+from hazard_ms.perception.closeups import COLOURS, closeups, state_of
 from hazard_ms.spec.checks import whole
 
-MOST_PICTURES = 500  # of a page [ours]
+MOST_PICTURES, MOST_THINGS = 500, 5000  # of a page [ours]
 EDGE = 384  # of a picture on the page [pixels] [ours]
 PIXELS = 80  # of a thing whose name is written [pixels], on EDGE [ours]
 QUALITY = 82  # of the page's JPEG pictures, of 100 [ours]
 COVER = 0.35  # share of the colour of a mask [ours]
-COLUMNS = 4  # of a sheet [ours]
-COLOURS = {  # red, green, blue of a thing by its state [ours]
-    "burning": (255, 90, 40),
-    "burnt": (150, 90, 200),
-    "under water": (60, 150, 255),
-    "moving": (255, 220, 60),
-    "target": (90, 220, 120),
-    "other": (170, 170, 170),
-}
+COLUMNS, OF_THINGS = 4, 10  # of a sheet of pictures, and of one of things [ours]
 PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>{title}</title>
 <style>body{{font:15px system-ui,sans-serif;margin:24px;background:#0f1115;color:#eceff4}}
 td,th{{padding:3px 12px 3px 0;text-align:left;vertical-align:top}}
@@ -42,21 +34,26 @@ b{{padding:1px 8px;border-radius:4px;color:#000;margin-right:6px}}</style>
 """
 
 
-def show(dataset: Path, output: Path, pictures: int) -> Path:
+def show(dataset: Path, output: Path, pictures: int, things: int = 0) -> Path:
     """Write the page, NAME.html, or only its pictures as one sheet, NAME.png or NAME.jpg. Returns its path.
 
-    `pictures` of each split are shown, evenly spread. Raises ValueError for a folder that is not a dataset, and for a
-    page that cannot be written.
+    `pictures` of each split are shown, evenly spread, and `things` of each, drawn at random; a sheet has these alone
+    if there are any. Raises ValueError for a folder that is not a dataset, and for a page that cannot be written.
     """
     whole(pictures, 1, MOST_PICTURES, "pictures")
+    whole(things, 0, MOST_THINGS, "things")
     splits = layout.splits_of(dataset)
     endings = (".html", ".png", ".jpg")
     if output.suffix not in endings:
         raise ValueError(f"output must be a name that ends in {' or '.join(endings)}, got {output.name!r}")
     make_folder(output.parent)
+    if output.suffix != ".html" and things:
+        cells = [cell for path in splits for cell in closeups(dataset, path, things)]
+        write(output, _encoded(sheet(cells, OF_THINGS), output.suffix))
+        return output
     if output.suffix != ".html":
         shown = [drawn for path in splits for drawn, _ in _some(dataset, layout.read_instances(path), pictures)]
-        write(output, _encoded(sheet(shown), output.suffix))
+        write(output, _encoded(sheet(shown, COLUMNS), output.suffix))
         return output
     parts = []
     for path in splits:
@@ -64,15 +61,17 @@ def show(dataset: Path, output: Path, pictures: int) -> Path:
         table = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in numbers(rows))
         figures = "".join(_figure(drawn, image) for drawn, image in _some(dataset, rows, pictures))
         parts.append(f"<h2>{escape(path.stem)}</h2><table>{table}</table><p>{figures}</p>")
+        cells = closeups(dataset, path, things)
+        parts.append(f"<p>{_image(sheet(cells, OF_THINGS))}</p>" if cells else "")
     legend = "".join(f'<b style="background:rgb{colour}">{name}</b>' for name, colour in COLOURS.items())
     write(output, PAGE.format(title=escape(dataset.name), legend=legend, body="".join(parts), edge=EDGE))
     return output
 
 
-def sheet(pictures: list[NDArray[np.uint8]]) -> NDArray[np.uint8]:
-    """Pictures of EDGE pixels as one, COLUMNS in a row, [H, W, 3]."""
-    blank = np.zeros((EDGE, EDGE, 3), np.uint8)
-    columns = min(COLUMNS, len(pictures))
+def sheet(pictures: list[NDArray[np.uint8]], columns: int) -> NDArray[np.uint8]:
+    """Pictures of one size as one, at most `columns` in a row, [H, W, 3]."""
+    blank = np.zeros_like(pictures[0])
+    columns = min(columns, len(pictures))
     rest = [*pictures, *[blank] * (-len(pictures) % columns)]
     rows = [np.hstack(rest[k : k + columns]) for k in range(0, len(rest), columns)]
     whole_sheet: NDArray[np.uint8] = np.vstack(rows)
@@ -112,21 +111,13 @@ def drawn(picture: Path, annotations: list[Mapping[str, Any]]) -> NDArray[np.uin
     return np.ascontiguousarray(shown)
 
 
-def state_of(attributes: Mapping[str, Any]) -> str:
-    """The one of COLOURS that says most about a thing."""
-    if attributes["status"] != "normal":
-        return str(attributes["status"])
-    if attributes["submerged"] > 0.0:
-        return "under water"
-    if attributes["speed_mps"] > MOVING:
-        return "moving"
-    return "target" if attributes["target"] else "other"
-
-
 def _figure(picture: NDArray[np.uint8], image: Mapping[str, Any]) -> str:
-    data = base64.b64encode(_encoded(picture, ".jpg")).decode()
     words = f"{image['scene']}, frame {image['frame']}, {image['lighting']}, effects {image['effects']}"
-    return f'<figure><img src="data:image/jpeg;base64,{data}"><figcaption>{escape(words)}</figcaption></figure>'
+    return f"<figure>{_image(picture)}<figcaption>{escape(words)}</figcaption></figure>"
+
+
+def _image(picture: NDArray[np.uint8]) -> str:
+    return f'<img src="data:image/jpeg;base64,{base64.b64encode(_encoded(picture, ".jpg")).decode()}">'
 
 
 def _encoded(picture: NDArray[np.uint8], ending: str) -> bytes:

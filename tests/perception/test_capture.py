@@ -129,6 +129,22 @@ def command(options: CaptureOptions, output: Path, *more: str) -> list[str]:
     return [sys.executable, "-m", "hazard_ms.cli", "perception", "capture", *words, "-o", str(output), *more]
 
 
+def test_pictures_of_the_first_frame_show_what_no_hazard_has_changed(tmp_path: Path) -> None:
+    options = CaptureOptions(scenes=("kitchen_a/03",), per_scene=9, size=64, last_frame=0, output=tmp_path)
+    assert capture(options) == 0
+    rows = rows_of(tmp_path / "HazardFire-v1")
+    assert {image["frame"] for image in rows["images"]} == {0}
+    assert {row["attributes"]["status"] for row in rows["annotations"]} == {"normal"}
+    with pytest.raises(ValueError, match="'last_frame': None.* got .*'last_frame': 0"):
+        capture(replace(options, last_frame=None))
+
+
+@pytest.mark.parametrize("last_frame", [-1, 10**6])
+def test_frames_that_no_episode_has_are_refused(last_frame: int) -> None:
+    with pytest.raises(ValueError, match=f"last_frame must be .*got {last_frame}"):
+        CaptureOptions(last_frame=last_frame).check()
+
+
 @pytest.mark.long
 def test_pictures_depend_on_neither_workers_nor_order(dataset: Path, options: CaptureOptions, tmp_path: Path) -> None:
     """Two processes take another scene beside: the files of the shared scene have the same checksums."""

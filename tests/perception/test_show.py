@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from hazard_ms.perception import layout
-from hazard_ms.perception.show import COLUMNS, EDGE, drawn, show, state_of
+from hazard_ms.perception.closeups import CELL, COLOURS, TEXT, state_of
+from hazard_ms.perception.show import COLUMNS, EDGE, OF_THINGS, drawn, show
 
 pytestmark = pytest.mark.render
 
@@ -26,6 +27,22 @@ def test_the_sheet_has_its_pictures_side_by_side(dataset: Path, tmp_path: Path) 
     assert sheet is not None
     assert sheet.shape == (2 * EDGE, COLUMNS * EDGE, 3)
     assert not sheet[EDGE:, 2 * EDGE :].any(), "the last places stay empty"
+
+
+def test_things_are_shown_one_by_one_with_the_colour_of_their_state(dataset: Path, tmp_path: Path) -> None:
+    """The outline of a thing has its state's colour; black cells fill the last row."""
+    sheet = cv2.imread(str(show(dataset, tmp_path / "things.png", 1, things=OF_THINGS + 3)))
+    assert sheet is not None
+    assert sheet.shape == (2 * (CELL + TEXT), OF_THINGS * CELL, 3)
+    assert not sheet[CELL + TEXT :, 3 * CELL :].any()
+    colours = np.array([*COLOURS.values()])[:, ::-1]
+    for row, column in [*((0, k) for k in range(OF_THINGS)), *((1, k) for k in range(3))]:
+        cell = sheet[row * (CELL + TEXT) :, column * CELL : (column + 1) * CELL][:CELL].reshape(-1, 3)
+        assert (cell[:, None] == colours).all(-1).any(0).sum() >= 1, "an outline has one of the colours"
+
+
+def test_a_page_shows_things_below_its_pictures(dataset: Path, tmp_path: Path) -> None:
+    assert show(dataset, tmp_path / "page.html", 5, things=4).read_text().count("data:image/jpeg;base64,") == 6
 
 
 def test_masks_are_drawn_where_things_are(dataset: Path) -> None:

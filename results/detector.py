@@ -9,6 +9,7 @@ and docs/detector.svg. Without words it does all of it. Each step resumes where 
 from __future__ import annotations
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -18,7 +19,7 @@ from typing import Any
 
 from hazard_ms.perception.detectors.small import Small
 from hazard_ms.perception.score import KINDS, STATES, average_precision, table
-from hazard_ms.perception.training.pictures import Picture, read, truth_of
+from hazard_ms.perception.training.pictures import read, truth_of
 from hazard_ms.perception.training.validation import results_of
 from hazard_ms.spec.checks import one_of
 from results.tables import COMMAND, HERE, TASKS, machine
@@ -32,7 +33,7 @@ SHIPPED, COMPARED = "15000", "4000"  # steps of the trainings
 ROOMS = ("fire", "flood")  # tasks whose pictures are compared
 STEPS = ("capture", "train", "compare", "tables")
 SETS = {"with hazards": PICTURES, "without": CALM}
-LARGE = 1000  # area from which a thing is large [pixels]
+LARGE = 1000.0  # area from which a thing is large [pixels]
 GROUPS: dict[str, Callable[[Any], bool]] = {  # of the chart
     "dry, not burnt": STATES["dry, not burnt"],
     "burning or burnt": lambda a: a["status"] != "normal",
@@ -44,19 +45,19 @@ Made by `./run python results/detector.py`: {pictures} pictures of 256 x 256 wit
 from the 75 training scenes of each task, {steps} steps of 8 crops of 128 x 128. Scored in {tests} pictures of rooms and
 streets that it was not trained in, on things that can be moved and carts. Written at {machine}.
 
-AP50 of boxes for things of more than {large} pixels: {box:.3f}; of masks: {mask:.3f}.
+AP50 of boxes for things of {large:.0f} pixels or more: {box:.3f}; of masks: {mask:.3f}.
 """
 BESIDE = """
 ## Trained with hazards and without
 
 Two detectors, {steps} steps each, on as many pictures of the same scenes of fire and flood; one set shows whole
 episodes, the other only what no hazard has changed yet, as the original's detector was trained. AP50 of masks in
-pictures of the test rooms, things of more than {least} pixels.
+pictures of the test rooms, things of {least:.0f} pixels or more.
 
 | things | number | trained with hazards | without |
 |---|---|---|---|
 """
-LEAST = 256  # area of things that are compared: smaller ones are hardly found by either [pixels]
+LEAST = 256.0  # area of things that are compared: smaller ones are hardly found by either [pixels]
 
 
 def run(*words: str | Path) -> None:
@@ -99,19 +100,24 @@ def compared(name: str) -> Path:
     return RAW / f"detector_{name.replace(' ', '_')}"
 
 
-def found_by(file: Path, tasks: Sequence[str]) -> tuple[dict[str, Any], list[dict[str, Any]], list[Picture]]:
-    """The truth about the test pictures of `tasks`, what the detector in `file` finds in them, and the pictures."""
-    classes = json.loads(file.with_suffix(".json").read_text(encoding="utf-8"))["classes"]
+def classes_of(folder: Path) -> list[str]:
+    """The categories that a detector tells."""
+    classes: list[str] = json.loads((folder / "small.json").read_text(encoding="utf-8"))["classes"]
+    return classes
+
+
+def found_by(folder: Path, tasks: Sequence[str], classes: list[str]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """The truth about things of `classes` in the test pictures of `tasks`, and what a detector finds in them."""
     pictures = read(datasets(PICTURES, tasks), "test")
-    return truth_of(pictures, classes), results_of(Small(str(file)), pictures), pictures
+    return truth_of(pictures, classes), results_of(Small(str(folder / "small.safetensors")), pictures)
 
 
 def tables() -> None:
     """Score the detectors, write detector.md, and draw the chart."""
-    truth, found, pictures = found_by(RAW / "detector" / "small.safetensors", [*TASKS])
-    box, mask = (average_precision(truth, found, kind, lambda a: a["pixels"] > LARGE)[1] for kind in KINDS)
+    truth, found = found_by(RAW / "detector", [*TASKS], classes_of(RAW / "detector"))
+    box, mask = (average_precision(truth, found, kind, area=(LARGE, math.inf))[1] for kind in KINDS)
     learned = len(read(datasets(PICTURES, [*TASKS]), "train"))
-    told = {"pictures": learned, "tests": len(pictures), "steps": SHIPPED, "large": LARGE}
+    told = {"pictures": learned, "tests": len(truth["images"]), "steps": SHIPPED, "large": LARGE}
     text = HEAD.format(machine=machine(), box=box, mask=mask, **told)
     for kind, name in KINDS.items():
         text += f"\n## {name.capitalize()}\n\n{table(truth, found, kind)}"
@@ -127,15 +133,13 @@ def tables() -> None:
 def beside() -> dict[str, tuple[int, list[float]]]:
     """For each of GROUPS the number of things, and the AP50 of masks of the detectors of SETS."""
     made: dict[str, tuple[int, list[float]]] = {name: (0, []) for name in GROUPS}
+    both = sorted(set.intersection(*(set(classes_of(compared(name))) for name in SETS)))
     for name in SETS:
-        truth, found, _ = found_by(compared(name) / "small.safetensors", ROOMS)
+        truth, found = found_by(compared(name), ROOMS, both)
         for group, rule in GROUPS.items():
-
-            def counts(a: Any, rule: Callable[[Any], bool] = rule) -> bool:
-                return rule(a) and a["pixels"] > LEAST
-
-            number = sum(counts(row["attributes"]) for row in truth["annotations"])
-            made[group] = number, [*made[group][1], average_precision(truth, found, "segm", counts)[1]]
+            number = sum(rule(row["attributes"]) and row["area"] >= LEAST for row in truth["annotations"])
+            found_again = average_precision(truth, found, "segm", rule, (LEAST, math.inf))[1]
+            made[group] = number, [*made[group][1], found_again]
     return made
 
 

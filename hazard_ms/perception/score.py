@@ -27,6 +27,7 @@ STATES: dict[str, Callable[[Row], bool]] = {  # of an annotation's attributes
 }
 AREAS = (0, 256, 1024, 4096, math.inf)  # ends of the groups by visible area [pixels] [ours]
 DISTANCES = (0, 1, 2, 4, math.inf)  # ends of the groups by distance from the camera [m] [ours]
+EVERY = (0.0, math.inf)  # of areas
 MOST_FOUND = 100  # detections of a picture that count, as in COCO
 KINDS = {"bbox": "boxes", "segm": "masks"}
 
@@ -100,35 +101,44 @@ def _finite(numbers: list[Any]) -> bool:
 
 def table(truth: Row, found: list[dict[str, Any]], kind: str) -> str:
     """Scores of `found` (bbox or segm, `kind`) in Markdown: a line for all things, and one for each group in it."""
-    every: dict[str, Callable[[Row], bool]] = {"all": lambda a: True, **STATES}
-    every |= {f"{name} pixels": rule for name, rule in _between("pixels", AREAS).items()}
-    every |= {f"{name} m away": rule for name, rule in _between("distance_m", DISTANCES).items()}
+    states: dict[str, Callable[[Row], bool]] = {"all": lambda a: True, **STATES}
+    every = {name: (rule, EVERY) for name, rule in states.items()}
+    for name, low, high in _between(AREAS):
+        every[f"{name} pixels"] = (lambda a: True), (low, high)
+    for name, low, high in _between(DISTANCES):
+        every[f"{name} m away"] = _within("distance_m", low, high), EVERY
     lines = ["| things | number | AP | AP50 | AR |", "| --- | --- | --- | --- | --- |"]
-    for name, rule in every.items():
-        count = sum(rule(row["attributes"]) for row in truth["annotations"])
+    for name, (rule, area) in every.items():
+        in_area = _within("pixels", *area)
+        count = sum(rule(row["attributes"]) and in_area(row["attributes"]) for row in truth["annotations"])
         if count:
-            numbers = average_precision(truth, found, kind, rule)
+            numbers = average_precision(truth, found, kind, rule, area)
             lines.append(f"| {name} | {count} | " + " | ".join(f"{number:.3f}" for number in numbers) + " |")
     return "\n".join(lines) + "\n"
 
 
-def _between(key: str, ends: tuple[float, ...]) -> dict[str, Callable[[Row], bool]]:
-    """Groups of things whose attribute `key` lies between neighbouring `ends`, the lower one included."""
-
-    def rule(low: float, high: float) -> Callable[[Row], bool]:
-        return lambda a: low <= a[key] < high
-
+def _between(ends: tuple[float, ...]) -> list[tuple[str, float, float]]:
+    """The groups between neighbouring `ends`, the lower one included: name and ends."""
     pairs = zip(ends[:-1], ends[1:], strict=True)
-    return {f"{low} or more" if high == math.inf else f"{low} to {high}": rule(low, high) for low, high in pairs}
+    return [(f"{low} or more" if high == math.inf else f"{low} to {high}", low, high) for low, high in pairs]
+
+
+def _within(key: str, low: float, high: float) -> Callable[[Row], bool]:
+    """Whether an attribute is from `low` to below `high`."""
+    return lambda a: low <= a[key] < high
 
 
 def average_precision(
-    truth: Row, found: list[dict[str, Any]], kind: str, counts: Callable[[Row], bool] = lambda a: True
+    truth: Row,
+    found: list[dict[str, Any]],
+    kind: str,
+    counts: Callable[[Row], bool] = lambda a: True,
+    area: tuple[float, float] = EVERY,
 ) -> tuple[float, float, float]:
     """AP, AP50 and AR of `found` (bbox or segm, `kind`) for the things whose attributes `counts` accepts.
 
-    Other things are neither missed nor found: detections of them are left out. Detections of nothing count in all
-    groups.
+    Other things are neither missed nor found: detections of them are left out. `area`: only things from its first end
+    to below its second [pixels] count, and only detections of nothing that are as large, as in COCO.
     """
     if not found:
         return 0.0, 0.0, 0.0
@@ -150,7 +160,7 @@ def average_precision(
         real.createIndex()
         key = {"bbox": "segmentation", "segm": "bbox"}[kind]  # pycocotools looks at the first key that it finds
         run = Grouped(real, real.loadRes([{k: v for k, v in row.items() if k != key} for row in found]), kind)
-        run.params.areaRng, run.params.areaRngLbl = [[0, 1e10]], ["all"]
+        run.params.areaRng, run.params.areaRngLbl = [[area[0], min(area[1] - 1, 1e10)]], ["all"]  # with both ends
         run.params.maxDets = [MOST_FOUND]
         run.evaluate()
         run.accumulate()

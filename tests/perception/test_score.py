@@ -83,6 +83,18 @@ def test_a_detection_of_nothing_lowers_the_precision(truth: dict[str, Any]) -> N
     assert average_precision(truth, [*found_in(truth), wrong], "bbox")[0] < 1.0
 
 
+@pytest.mark.parametrize("kind", ["bbox", "segm"])
+def test_a_small_detection_of_nothing_costs_large_things_nothing(truth: dict[str, Any], kind: str) -> None:
+    """As in COCO: it counts among things of its own area, from 0 to below 256 pixels."""
+    mask = np.zeros((SIDE, SIDE), bool)
+    mask[50:58, 2:10] = True
+    wrong = {**found_in(truth)[0], "segmentation": run_lengths(mask), "bbox": box_of(mask), "score": 0.99}
+    found = [*found_in(truth), wrong]
+    assert average_precision(truth, found, kind, area=(256.0, float("inf")))[0] == pytest.approx(1.0)
+    assert average_precision(truth, found, kind, area=(0.0, 256.0))[0] == pytest.approx(0.5), "one of two is a thing"
+    assert average_precision(truth, found, kind, area=(0.0, 257.0))[0] == pytest.approx((0.5 + 1.0) / 2), "two kinds"
+
+
 def test_the_tables_have_the_groups_that_there_are(truth: dict[str, Any], tmp_path: Path) -> None:
     (tmp_path / layout.instances("test")).write_text(json.dumps(truth))
     results = tmp_path / "found.json"

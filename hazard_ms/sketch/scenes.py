@@ -16,8 +16,9 @@ import numpy as np
 from hazard_ms.robots import robot_class
 from hazard_ms.scenes.splits import SCENES, spare_scene
 from hazard_ms.simulation.building import extent_of
+from hazard_ms.sketch.keeping import kept
 from hazard_ms.sketch.limits import limit_of
-from hazard_ms.sketch.recording import recorded
+from hazard_ms.sketch.recording import recorded, suite_of
 from hazard_ms.sketch.rescues.scene import LOOKS, SPOTS, Floats, Ints, SketchScene, spot_offsets
 from hazard_ms.sketch.sight import FETCH, G1, Sight
 from hazard_ms.sketch.timeline import STRIDE, Timeline
@@ -91,9 +92,10 @@ def level_ranges(env_id: str, physics: str) -> list[tuple[float, float]]:
 def sketch_scene(task: Task, physics: str, spec: SceneSpec, seed: int, robot: str = "fetch") -> SketchScene:
     """The scene `spec` with the fate that `seed` gives it in `task` under the preset `physics`, for `robot`.
 
-    Raises ValueError for an unknown preset or robot.
+    It is kept in the cache folder. Raises ValueError for an unknown preset or robot.
     """
-    return _Maker(task, spec, recorded(task, physics, spec, seed), robot).scene()
+    follows_from = f"{suite_of(task, physics, spec)} {seed} {robot}"
+    return kept(spec.name, follows_from, lambda: _Maker(task, spec, recorded(task, physics, spec, seed), robot).scene())
 
 
 @dataclass

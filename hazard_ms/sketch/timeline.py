@@ -10,8 +10,6 @@ A file is the digest of its contents, then the contents: a file in which a singl
 
 from __future__ import annotations
 
-import hashlib
-import io
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -20,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.machine import files
+from hazard_ms.sketch import columns
 
 FORMAT = 1  # goes up when older files can no longer be read
 STRIDE = 10  # frames from sample to sample: water and flames change every 10 frames [ours]
-DIGEST_BYTES = hashlib.sha256().digest_size  # at the start of a file
 TEXTS = ("scene", "task", "physics", "suite")
 
 
@@ -86,10 +84,7 @@ class Timeline:
 
     def to_bytes(self) -> bytes:
         """The record as the content of a file."""
-        columns: dict[str, Any] = {f.name: np.asarray(getattr(self, f.name)) for f in fields(self)}
-        packed = io.BytesIO()
-        np.savez_compressed(packed, format=np.asarray(FORMAT), **columns)
-        return hashlib.sha256(packed.getvalue()).digest() + packed.getvalue()
+        return columns.to_bytes(FORMAT, {f.name: getattr(self, f.name) for f in fields(self)})
 
     def write(self, path: Path) -> None:
         """Write the record to a file, whole or not at all. Raises ValueError where it cannot be written."""
@@ -99,19 +94,12 @@ class Timeline:
 
 def from_bytes(content: bytes) -> Timeline:
     """The record that `to_bytes` gave. Raises ValueError for any other content."""
-    digest, packed = content[:DIGEST_BYTES], content[DIGEST_BYTES:]
-    if hashlib.sha256(packed).digest() != digest:
-        raise ValueError("a timeline must have the digest of its contents, got another: damaged, or something else")
-    with np.load(io.BytesIO(packed), allow_pickle=False) as stored:
-        columns: dict[str, Any] = {name: stored[name] for name in stored.files}
-    found = int(columns.pop("format"))
-    if found != FORMAT:
-        raise ValueError(f"format of a timeline must be {FORMAT}, got {found}: record it anew")
+    found: dict[str, Any] = columns.from_bytes("a timeline", FORMAT, content)
     for name in TEXTS:
-        columns[name] = str(columns[name])
+        found[name] = str(found[name])
     for name in ("seed", "first", "stride"):
-        columns[name] = int(columns[name])
-    return Timeline(**{**columns, "names": tuple(columns["names"].tolist())})
+        found[name] = int(found[name])
+    return Timeline(**{**found, "names": tuple(found["names"].tolist())})
 
 
 def read(path: Path) -> Timeline:

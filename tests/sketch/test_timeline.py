@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hazard_ms.sketch.timeline import DIGEST_BYTES, Timeline, from_bytes, read
+from hazard_ms.sketch.columns import DIGEST_BYTES
+from hazard_ms.sketch.timeline import Timeline, from_bytes, read
 
 BALL, TABLE = 0, 1
 

@@ -1,0 +1,37 @@
+"""Records of named arrays as the content of a file: the digest of the rest, then the arrays.
+
+A file in which a single bit has changed is refused.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+DIGEST_BYTES = hashlib.sha256().digest_size  # at the start of a file
+
+
+def to_bytes(version: int, columns: Mapping[str, Any]) -> bytes:
+    """The content of a file of `columns`, [...] each, whose form has the number `version`."""
+    arrays: dict[str, Any] = {name: np.asarray(column) for name, column in columns.items()}
+    packed = io.BytesIO()
+    np.savez_compressed(packed, format=np.asarray(version), **arrays)
+    return hashlib.sha256(packed.getvalue()).digest() + packed.getvalue()
+
+
+def from_bytes(what: str, version: int, content: bytes) -> dict[str, NDArray[Any]]:
+    """The columns that `to_bytes` was given. Raises ValueError that names `what` it must be for any other content."""
+    digest, packed = content[:DIGEST_BYTES], content[DIGEST_BYTES:]
+    if hashlib.sha256(packed).digest() != digest:
+        raise ValueError(f"{what} must have the digest of its contents, got another: damaged, or something else")
+    with np.load(io.BytesIO(packed), allow_pickle=False) as stored:
+        columns = {name: stored[name] for name in stored.files}
+    found = int(columns.pop("format"))
+    if found != version:
+        raise ValueError(f"format of {what} must be {version}, got {found}: make it anew")
+    return columns

@@ -43,7 +43,8 @@ HEAD = """# The small detector
 
 Made by `./run python results/detector.py`: {pictures} pictures of 256 x 256 with 120 degrees, as the head cameras see,
 from the 75 training scenes of each task, {steps} steps of 8 crops of 128 x 128. Scored in {tests} pictures of rooms and
-streets that it was not trained in, on things that can be moved and carts. Written at {machine}.
+streets that it was not trained in, on things that can be moved and carts. One training each. Written at
+{machine}.
 
 AP50 of boxes for things of {large:.0f} pixels or more: {box:.3f}; of masks: {mask:.3f}.
 """
@@ -62,7 +63,8 @@ LEAST = 256.0  # area of things that are compared: smaller ones are hardly found
 
 def run(*words: str | Path) -> None:
     """Run a command of hazard-ms. Raises CalledProcessError where it fails."""
-    subprocess.run([*COMMAND, *map(str, words)], cwd=HERE.parent, check=True)
+    told = [os.path.relpath(word, HERE.parent) if isinstance(word, Path) else word for word in words]
+    subprocess.run([*COMMAND, *told], cwd=HERE.parent, check=True)
 
 
 def datasets(home: Path, tasks: Sequence[str]) -> list[Path]:
@@ -157,7 +159,8 @@ def chart(rows: dict[str, tuple[int, list[float]]]) -> None:
         bars.set_label(f"trained {name}" if k == 0 else "trained without")
         ax.bar_label(bars, fmt="%.2f", fontsize=9)
     ax.set_xticks(range(len(rows)), [f"{name}\n({count} things)" for name, (count, _) in rows.items()])
-    ax.set(ylabel="AP50 of masks", title="Small detector in rooms that it has not seen")
+    top = 1.15 * max(max(values) for _, values in rows.values())
+    ax.set(ylabel="AP50 of masks", title="Small detector in rooms that it has not seen", ylim=(0.0, top))
     ax.legend(frameon=False)
     ax.grid(alpha=0.3, axis="y")
     figure.tight_layout()

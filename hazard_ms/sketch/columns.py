@@ -25,7 +25,10 @@ def to_bytes(version: int, columns: Mapping[str, Any]) -> bytes:
 
 
 def from_bytes(what: str, version: int, content: bytes) -> dict[str, NDArray[Any]]:
-    """The columns that `to_bytes` was given. Raises ValueError that names `what` it must be for any other content."""
+    """The columns, [...] each, that `to_bytes` was given.
+
+    Raises ValueError that names `what` it must be for any other content.
+    """
     digest, packed = content[:DIGEST_BYTES], content[DIGEST_BYTES:]
     if hashlib.sha256(packed).digest() != digest:
         raise ValueError(f"{what} must have the digest of its contents, got another: damaged, or something else")

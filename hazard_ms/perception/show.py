@@ -47,9 +47,11 @@ def show(dataset: Path, output: Path, pictures: int, things: int = 0) -> Path:
     if output.suffix not in endings:
         raise ValueError(f"output must be a name that ends in {' or '.join(endings)}, got {output.name!r}")
     make_folder(output.parent)
+    close = [cell for path in splits for cell in closeups(dataset, path, things)] if things else []
+    if things and not close:
+        raise ValueError(f"{dataset} must hold annotated things to be shown, got none")
     if output.suffix != ".html" and things:
-        cells = [cell for path in splits for cell in closeups(dataset, path, things)]
-        write(output, _encoded(sheet(cells, OF_THINGS), output.suffix))
+        write(output, _encoded(sheet(close, OF_THINGS), output.suffix))
         return output
     if output.suffix != ".html":
         shown = [drawn for path in splits for drawn, _ in _some(dataset, layout.read_instances(path), pictures)]
@@ -61,8 +63,7 @@ def show(dataset: Path, output: Path, pictures: int, things: int = 0) -> Path:
         table = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in numbers(rows))
         figures = "".join(_figure(drawn, image) for drawn, image in _some(dataset, rows, pictures))
         parts.append(f"<h2>{escape(path.stem)}</h2><table>{table}</table><p>{figures}</p>")
-        cells = closeups(dataset, path, things)
-        parts.append(f"<p>{_image(sheet(cells, OF_THINGS))}</p>" if cells else "")
+    parts += [f"<h2>Things</h2><p>{_image(sheet(close, OF_THINGS))}</p>"] if close else []
     legend = "".join(f'<b style="background:rgb{colour}">{name}</b>' for name, colour in COLOURS.items())
     write(output, PAGE.format(title=escape(dataset.name), legend=legend, body="".join(parts), edge=EDGE))
     return output

@@ -94,7 +94,7 @@ def sketch_scene(task: Task, physics: str, spec: SceneSpec, seed: int, robot: st
 
     It is kept in the cache folder. Raises ValueError for an unknown preset or robot.
     """
-    follows_from = f"{suite_of(task, physics, spec)} {seed} {robot}"
+    follows_from = f"{suite_of(task, physics, spec)} {task.safe_place.containers} {seed} {robot}"
     return kept(spec.name, follows_from, lambda: _Maker(task, spec, recorded(task, physics, spec, seed), robot).scene())
 
 

@@ -7,13 +7,14 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from hazard_ms.sketch.keeping import MADE_BY, from_bytes, kept, to_bytes
 from hazard_ms.sketch.recording import LAWS
 from hazard_ms.sketch.rescues.scene import SketchScene
-from hazard_ms.sketch.scenes import scenes_of
+from hazard_ms.sketch.scenes import scenes_of, sketch_scene
+from hazard_ms.tasks import task_of
+from tests.worlds.same import same_fields
 
 # rooms that are loaded, too, and do not decide what a scene of the sketch is
 ELSEWHERE = {"effects", "machine", "registry"}
@@ -24,18 +25,8 @@ def scene() -> SketchScene:
     return scenes_of("HazardWind-v1", ["parking/03"], [3], max_frames=200)[0]
 
 
-def equal(one: SketchScene, other: SketchScene) -> None:
-    for field in dataclasses.fields(one):
-        a, b = getattr(one, field.name), getattr(other, field.name)
-        assert type(a) is type(b), field.name
-        if isinstance(a, np.ndarray):
-            assert a.dtype == b.dtype and np.array_equal(a, b), field.name
-        else:
-            assert a == b, field.name
-
-
 def test_a_scene_is_the_same_from_its_file(scene: SketchScene) -> None:
-    equal(scene, from_bytes(to_bytes(scene)))
+    same_fields(scene, from_bytes(to_bytes(scene)))
 
 
 def test_a_scene_is_made_once(scene: SketchScene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -47,7 +38,7 @@ def test_a_scene_is_made_once(scene: SketchScene, monkeypatch: pytest.MonkeyPatc
         return scene
 
     for _ in range(2):
-        equal(scene, kept("parking/03", "the seed 3", made))
+        same_fields(scene, kept("parking/03", "the seed 3", made))
     assert len(calls) == 1
     kept("parking/03", "the seed 4", made)
     assert len(calls) == 2, "what follows from something else is another scene"
@@ -62,7 +53,7 @@ def test_a_damaged_file_is_replaced(
     (path,) = (tmp_path / "sketch").iterdir()
     whole = path.read_bytes()
     path.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]) if spoilt is None else spoilt)
-    equal(scene, kept("parking/03", "", lambda: scene))
+    same_fields(scene, kept("parking/03", "", lambda: scene))
     assert path.read_bytes() == whole
 
 
@@ -71,7 +62,17 @@ def test_a_cache_that_cannot_be_written_to_only_costs_time(
 ) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("HAZARD_MS_HOME", str(tmp_path / "file"))
-    equal(scene, kept("parking/03", "", lambda: scene))
+    same_fields(scene, kept("parking/03", "", lambda: scene))
+
+
+def test_tasks_that_differ_in_their_safe_place_alone_have_scenes_of_their_own() -> None:
+    """As tasks of third parties can, in whose name nothing tells it."""
+    task = task_of("HazardFire-v1", "paper")
+    other = dataclasses.replace(task, safe_place=dataclasses.replace(task.safe_place, containers=("table",)))
+    spec = task.build("kitchen_b/00")
+    tables = sum(thing.category == "table" for thing in spec.things)
+    carts = [len(sketch_scene(each, "paper", spec, 0).cart_site) for each in (task, other)]
+    assert tables and carts == [0, tables]
 
 
 def test_all_code_that_makes_a_scene_is_in_its_name() -> None:

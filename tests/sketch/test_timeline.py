@@ -10,6 +10,7 @@ import pytest
 
 from hazard_ms.sketch.columns import DIGEST_BYTES
 from hazard_ms.sketch.timeline import Timeline, from_bytes, read
+from tests.worlds.same import same_fields
 
 BALL, TABLE = 0, 1
 
@@ -62,17 +63,7 @@ def test_a_file_gives_back_what_was_written(tmp_path: Path) -> None:
     path = tmp_path / "new" / "folder" / "one.timeline"
     line = timeline()
     line.write(path)
-    same_timeline(read(path), line)
-
-
-def same_timeline(one: Timeline, other: Timeline) -> None:
-    for field in dataclasses.fields(Timeline):
-        a, b = getattr(one, field.name), getattr(other, field.name)
-        assert type(a) is type(b), field.name
-        if isinstance(a, np.ndarray):
-            assert a.dtype == b.dtype and np.array_equal(a, b), field.name
-        else:
-            assert a == b, field.name
+    same_fields(read(path), line)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.6, 1.0])

@@ -21,8 +21,8 @@ RUNS = {  # name: pictures of a scene, scenes, options
 SCENES = [f"{room}/{number:02d}" for number in range(4) for room in ("kitchen_a", "living_room_a", "craft_room_a")]
 HEAD = """# Taking labelled pictures
 
-Made by `./run python results/capture.py` at {machine}: fire, pictures of 512 x 512, {workers} processes. Memory is of
-all processes together, at most in the first and in the last third of the run.
+Made by `./run python results/capture.py` at {machine}: fire, pictures of
+512 x 512, {workers} processes. Memory is of all processes together, at most in the first and in the last third of the run.
 
 | pictures | number | minutes | a second | 15,000 would take [h] | memory early, late [GiB] |
 |---|---|---|---|---|---|

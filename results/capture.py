@@ -22,7 +22,8 @@ SCENES = [f"{room}/{number:02d}" for number in range(4) for room in ("kitchen_a"
 HEAD = """# Taking labelled pictures
 
 Made by `./run python results/capture.py` at {machine}: fire, pictures of
-512 x 512, {workers} processes. Memory is of all processes together, at most in the first and in the last third of the run.
+512 x 512, {workers} processes. Memory is of all processes together, at most in the first and in the last third of the
+run.
 
 | pictures | number | minutes | a second | 15,000 would take [h] | memory early, late [GiB] |
 |---|---|---|---|---|---|

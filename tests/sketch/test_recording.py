@@ -22,7 +22,7 @@ from hazard_ms.sketch.recording import ahead, record, recorded, suite_of
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.spec import AgentStart, Body, Room, SceneSpec, Task
 from hazard_ms.tasks import task_of
-from tests.sketch.test_timeline import same_timeline
+from tests.worlds.same import same_fields
 
 FIRE = "HazardFire-v1"
 WATER = 1000.0  # density [kg/m^3]
@@ -95,7 +95,7 @@ def test_a_scene_is_recorded_alone_as_among_others(task: Task) -> None:
     together = record(task, "paper", specs, (1, 2, 3), 420)
     for seed, (spec, line) in enumerate(zip(specs, together, strict=True), start=1):
         (alone,) = record(task, "paper", (spec,), (seed,), 420)
-        same_timeline(alone, line)
+        same_fields(alone, line)
         assert (line.seed, line.first) == (seed, 0)
     assert any((line.damaged_at >= 0).any() for line in together)
 
@@ -196,10 +196,10 @@ def test_a_record_is_kept_until_something_changes(tmp_path: Path, task: Task, mo
     first = recorded(short, "paper", spec, 1)
     (path,) = (tmp_path / "timelines").rglob("*.timeline")
     written = path.stat().st_mtime_ns
-    same_timeline(recorded(short, "paper", spec, 1), first)
+    same_fields(recorded(short, "paper", spec, 1), first)
     assert path.stat().st_mtime_ns == written
     path.write_bytes(path.read_bytes()[:-1])
-    same_timeline(recorded(short, "paper", spec, 1), first)
+    same_fields(recorded(short, "paper", spec, 1), first)
     assert len(list((tmp_path / "timelines").rglob("*"))) == 2 and len(path.read_bytes()) > 1000
 
 

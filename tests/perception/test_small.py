@@ -12,7 +12,15 @@ import torch
 from safetensors.torch import save_file
 
 from hazard_ms.perception.detectors.small import Small, things
-from hazard_ms.perception.detectors.small_network import HIGHEST, RAISED, SmallNetwork, features
+from hazard_ms.perception.detectors.small_network import (
+    CHANNELS,
+    HIGHEST,
+    RAISED,
+    SCALE,
+    SmallNetwork,
+    features,
+    without_normalisation,
+)
 from hazard_ms.perception.training.pictures import read
 from hazard_ms.perception.training.small import SmallStudent, mirrored
 from hazard_ms.sensing.camera import STRUCTURE
@@ -53,6 +61,25 @@ def test_nothing_has_no_geometry_and_colours_are_from_minus_one_to_one() -> None
     )[0]
     assert bool((sky[3:] == 0.0).all())
     assert sky[:3, 0, 0].tolist() == pytest.approx([-1.0, 1.0, -0.6])
+
+
+def test_a_network_without_normalisation_says_the_same_and_leaves_the_trained_one_as_it_was() -> None:
+    torch.manual_seed(0)
+    trained = SmallNetwork(4)
+    for part in trained.modules():
+        if isinstance(part, torch.nn.BatchNorm2d):  # of a network that has learned something
+            for values, low, high in ((part.running_mean, -1.0, 1.0), (part.running_var, 0.5, 2.0)):
+                assert values is not None
+                torch.nn.init.uniform_(values, low, high)
+            torch.nn.init.uniform_(part.weight, 0.5, 2.0)
+            torch.nn.init.uniform_(part.bias, -1.0, 1.0)
+    asked = without_normalisation(trained)
+    assert not any(isinstance(part, torch.nn.BatchNorm2d) for part in asked.modules())
+    given = torch.rand(1, CHANNELS, SCALE, 2 * SCALE)
+    with torch.inference_mode():
+        for mine, theirs in zip(asked(given), trained.eval()(given), strict=True):
+            assert float(theirs.std()) > 0.01
+            torch.testing.assert_close(mine, theirs, rtol=1e-4, atol=1e-4)
 
 
 def painted(*squares: tuple[int, int, int, int]) -> tuple[np.ndarray, np.ndarray]:

@@ -126,6 +126,16 @@ def test_a_thing_has_no_stray_pixels_but_may_be_seen_in_two_parts() -> None:
     assert int(found.mask.sum()) == 12 * 10 and found.box == (10.0, 10.0, 22.0, 22.0)
 
 
+def test_a_thing_in_many_small_patches_keeps_its_largest() -> None:
+    """Branches before it may leave a thing in patches none of which has a tenth of its pixels."""
+    squares = [(1, 4 + 8 * column, 4 + 8 * row, 2) for row in range(5) for column in range(5)]
+    chances, offsets = painted(*squares, (1, 30, 44, 3))
+    down, right = np.mgrid[:SIDE, :SIDE] + 0.5
+    offsets[:] = 24.0 - right, 30.0 - down  # all point at one place
+    [found] = things(chances, offsets, CLASSES)
+    assert found.mask.sum() == 9 and found.mask[44:47, 30:33].all()
+
+
 def test_other_things_and_specks_are_not_told() -> None:
     chances, offsets = painted((1, 10, 10, 2), (3, 30, 30, 10))
     assert things(chances, offsets, CLASSES) == []

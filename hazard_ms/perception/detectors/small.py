@@ -115,15 +115,19 @@ def things(chances: NDArray[np.float32], offsets: NDArray[np.float32], classes: 
 
 
 def _without_strays(rows: NDArray[np.int64], columns: NDArray[np.int64], shape: tuple[int, int]) -> NDArray[np.bool_]:
-    """The mask, `shape` (H, W), of pixels at `rows` and `columns`, [P] each, without small patches beside others."""
+    """The mask, `shape` (H, W), of pixels at `rows` and `columns`, [P] each, without small patches beside others.
+
+    The largest ones stay, however small their share.
+    """
     top, left = int(rows.min()), int(columns.min())
     part = np.zeros((int(rows.max()) - top + 1, int(columns.max()) - left + 1), bool)
     part[rows - top, columns - left] = True
     patches, _ = ndimage.label(part, np.ones((3, 3)))
     size = np.bincount(patches.ravel())
     size[0] = 0
+    stays = size >= min(STRAY * size.sum(), size.max())
     mask = np.zeros(shape, bool)
-    mask[top : top + part.shape[0], left : left + part.shape[1]] = (size >= STRAY * size.sum())[patches] & part
+    mask[top : top + part.shape[0], left : left + part.shape[1]] = stays[patches] & part
     return mask
 
 

@@ -72,7 +72,7 @@ class Decision:
     agent_heading: float  # anticlockwise from +x [rad]
     held: str | None  # name of the thing in the hand
     targets: tuple[Target, ...]  # what is known of the things to rescue
-    containers: tuple[str, ...]  # carts, in wind; empty where the safe place is the bag
+    containers: tuple[str, ...]  # carts, or what is believed to be one, in wind; empty where the safe place is the bag
     map: SemanticMap  # what has been seen so far; it cannot be written to
     images: Images | None  # None where nothing renders
     available: tuple[Action, ...]  # what can be tried now

@@ -93,6 +93,20 @@ def test_near_a_cart_the_drop_drives_the_rest_of_the_way(away: float, verb: str)
     assert ground.held == "a" and player.act(ground.decision()) == Action(verb, "cart")
 
 
+def test_without_a_cart_it_looks_around_where_it_searches_even_at_a_target() -> None:
+    """What it holds keeps it from taking the other: it came there to see more, and once more it would see no more."""
+    ground = Playground({"a": (0.6, 0.0), "b": (2.0, 0.0), "cart": (9.0, 9.0)}, {"a": 5.0, "b": 1.0}, carts=("cart",))
+    player = begun(ground)
+    while ground.held is None:
+        ground.do(player.act(ground.decision()))
+    taken = []
+    for _ in range(4):
+        taken.append(player.act(ground.decision()))
+        ground.do(taken[-1])
+    assert ground.held == "a" and Action(WALK_TO, "b") in taken
+    assert taken[taken.index(Action(WALK_TO, "b")) + 1] == Action(EXPLORE)
+
+
 def test_after_a_step_that_did_not_bring_it_near_it_walks_up_to_the_cart() -> None:
     """A step that ends where it begins takes no frames: another one would follow for ever."""
     ground = Playground({"a": (0.6, 0.0), "cart": (0.0, 2.0)}, {"a": 1.0}, carts=("cart",))

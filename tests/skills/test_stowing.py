@@ -98,3 +98,18 @@ def test_a_thing_stays_in_the_hand_where_no_basket_is_within_reach(street: Arena
     result = street.run(drop(street.stage, cart))
     assert not result.ok and result.reason == failures.CART_UNREACHABLE
     assert street.stage.held == index and not np.isnan(street.stage.position(index)).any()
+
+
+def test_a_drop_finds_out_within_reach_that_no_cart_is_there(street: Arena, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where an agent only believes one to be; from farther away it cannot tell."""
+    cart = begin(street)
+    index = street.index("can")
+    assert street.run(pick_up(street.stage, index)).ok
+    missed: list[int] = []
+    monkeypatch.setattr(street.stage.labeller, "thing", lambda index: -1)
+    monkeypatch.setattr(street.stage.labeller, "missed", missed.append)
+    for back, found in ((3.0, []), (0.0, [cart])):
+        street.agent.place(torch.tensor([0]), torch.tensor([[-back, 0.0]]), torch.tensor([0.5]))
+        result = street.run(drop(street.stage, cart))
+        assert not result.ok and result.reason == failures.CART_UNREACHABLE and street.stage.held == index
+        assert missed == found and (result.frames > 0) == bool(found)  # it turns to the place

@@ -126,13 +126,14 @@ class Searcher(Agent):
         """Try what is nearest, although it is unlikely to be safe in time; stop where nothing is left to try."""
         holding = decision.held is not None
         names = [n for n in (ahead.carts if holding else ahead.targets) if n != decision.held]
-        if not names or (holding and not ahead.carts):
+        searching = not names
+        if searching:
             names = [mark.name for mark in ahead.lookouts]
         if not names:
             return self._say("nothing is left to try", Action(STOP))
         name = min(names, key=lambda n: distance(decision, decision.map.objects[decision.index(n)]))
         why = "too late by any plan, but the nearest"
-        if name not in (*ahead.targets, *ahead.carts):
+        if searching:
             return self._search(decision, name, why)
         return self._say(why, Action(WALK_TO, name))
 

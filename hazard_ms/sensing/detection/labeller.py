@@ -34,7 +34,7 @@ class Labeller:
         """Begin an episode in `world`; `containers`: names of its carts."""
         self._world, self._table = world, TargetTable(world)
         self.names: tuple[str, ...] = world.names[0]  # by the agent's index
-        self.containers: tuple[str, ...] = tuple(containers)  # names of those that are known to exist
+        self.containers: tuple[str, ...] = tuple(containers)  # names of those that are known to exist, or believed to
         self.loose: NDArray[np.bool_] = world.movable[0].cpu().numpy()  # by the agent's index: whether it can move
 
     def view(self, rgb: NDArray[np.uint8] | None, true: View, frame: int) -> View:
@@ -74,6 +74,9 @@ class Labeller:
         """Name of the thing in the hand."""
         held = torch.nonzero(self._world.held[0]).flatten().tolist()
         return self.names[held[0]] if held else None
+
+    def missed(self, index: int) -> None:
+        """Nothing that can be used was within reach where the agent believes the thing `index` to be."""
 
     def took(self, index: int) -> None:
         """The hand has taken what the agent knows as the thing `index`."""

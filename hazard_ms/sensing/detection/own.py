@@ -2,7 +2,8 @@
 
 The agent is told before what there is to rescue: two bowls are `bowl#1` and `bowl#2`. The first bowl that is found is
 `bowl#1`, whichever it is in truth. Where more are found than there are, or other things, they get names and indices
-behind these. What a hand takes at a track is what lies there in truth.
+behind these. What a hand takes at a track is what lies there in truth. Of the carts that are found, as many as there
+are count, the surest ones, until a drop finds none there.
 """
 
 from __future__ import annotations
@@ -56,7 +57,8 @@ class OwnLabeller(DetectingLabeller):
         self._by_index: dict[int, Track] = {}
         self._taken: tuple[Track, int] | None = None  # the track in the hand, and the index along B of what it is
         self._stowed: list[Track] = []  # in the bag
-        self._lost: list[int] = []
+        self._lost: list[int] = []  # at the last look
+        self._missed: list[int] = []  # since the last look
         self._frame = 0  # of the last look
 
     def view(self, rgb: NDArray[np.uint8] | None, true: View, frame: int) -> View:
@@ -72,11 +74,14 @@ class OwnLabeller(DetectingLabeller):
         out_of_sight = [*self._stowed, *([self._taken[0]] if self._taken else [])]
         named = {n: (found[n].category, sighting) for n, sighting in seen.items()}
         tracks, lost = self._tracker.update(view, frame, named, out_of_sight)
-        self._lost = [track.index for track in lost if track.index >= 0]
+        self._lost = [*self._missed, *(track.index for track in lost if track.index >= 0)]
+        self._missed = []
         for track in lost:
             self._by_index.pop(track.index, None)
-        for track in tracks.values():
+        for number, track in tracks.items():
+            track.score = max(track.score, found[number].score)
             self._introduce(track)
+        self.containers = self._surest_carts()
         return replace(true, labels=self._labels(view, tracks, out_of_sight))
 
     def _labels(self, view: View, tracks: Mapping[int, Track], out_of_sight: Sequence[Track]) -> NDArray[np.int64]:
@@ -98,7 +103,7 @@ class OwnLabeller(DetectingLabeller):
 
     def _introduce(self, track: Track) -> None:
         """Give a track that was seen often enough its index: one of what was told if that is free, else a new one."""
-        if track.index >= 0 or track.frames < ENOUGH:
+        if track.index >= 0 or track.frames < ENOUGH or track.refuted:
             return
         free = [i for i, kind in enumerate(self._kinds) if kind == track.category and i not in self._by_index]
         if free:
@@ -114,6 +119,27 @@ class OwnLabeller(DetectingLabeller):
                 self._told.append(replace(same, index=track.index, name=self.names[track.index]))
         if track.index >= 0:
             self._by_index[track.index] = track
+
+    def _is_cart(self, index: int) -> bool:
+        """Whether the agent takes the thing `index` for a cart."""
+        return bool(self._carts) and self._kinds[index] == self._categories[self._carts[0]]
+
+    def _surest_carts(self) -> tuple[str, ...]:
+        """The names of the carts that count, in the order of their indices: as many as there are in truth.
+
+        They are those of the surest detections; where too few are found, names of others that must be somewhere.
+        """
+        found = [track for index, track in self._by_index.items() if self._is_cart(index)]
+        count = sorted(track.index for track in sorted(found, key=lambda t: -t.score)[: len(self._carts)])
+        names = [name for i, name in enumerate(self.names) if self._is_cart(i) and i not in self._by_index]
+        return (*(self.names[index] for index in count), *names)[: len(self._carts)]
+
+    def missed(self, index: int) -> None:
+        track = self._by_index.pop(index, None)
+        if track is not None:
+            track.index, track.refuted = -1, True
+            self._missed.append(index)
+        self.containers = self._surest_carts()
 
     def _let_go(self) -> None:
         """Note what has become of the thing that was in the hand, once it is not there any more."""
@@ -136,7 +162,7 @@ class OwnLabeller(DetectingLabeller):
             return -1
         place = self._by_index[index].sighting.position
         world = self._world
-        cart = self.names[index] in self.containers
+        cart = self._is_cart(index)
         there = self._carts if cart else np.flatnonzero((world.movable & world.exists & ~world.away)[0].cpu().numpy())
         if not len(there):
             return -1

@@ -37,6 +37,8 @@ class Track:
     frames: int = 1  # in which it was seen
     empty: int = 0  # frames since then in which its place was seen empty
     index: int = -1  # by which the agent knows it; -1: not yet
+    score: float = 0.0  # of its surest detection
+    refuted: bool = False  # whether it turned out not to be there, so that it is never believed again
     rescued: bool = False
 
     @property

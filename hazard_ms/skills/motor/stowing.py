@@ -94,8 +94,13 @@ def _into_cart(stage: Stage, index: int, held: int) -> Skill:
     if not known(stage, index):
         return Result(False, failures.UNKNOWN)
     cart = stage.labeller.thing(index)
-    if cart < 0 or float(np.linalg.norm(stage.position(cart) - stage.robot.shoulder())) > LIMIT:
+    place = stage.position(cart) if cart >= 0 else stage.seen.objects[index].position
+    if float(np.linalg.norm(place - stage.robot.shoulder())) > LIMIT:
         return Result(False, failures.CART_UNREACHABLE)
+    if cart < 0:  # it turns to the place, and finds no cart there
+        turned = yield from turn_to(stage, place[:2])
+        stage.labeller.missed(index)
+        return Result(False, failures.CART_UNREACHABLE, turned.frames)
     used, tried, came_near = 0, set[int](), False
     while len(tried) < TRIES:
         basket = _basket(stage, cart)

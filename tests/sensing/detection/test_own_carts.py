@@ -1,0 +1,104 @@
+"""Which of the carts that an agent believes to have found count, and what a drop that finds none changes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from hazard_ms.sensing.camera import STRUCTURE
+from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
+from hazard_ms.sensing.detection.own import OwnLabeller
+from hazard_ms.sensing.view import View
+from hazard_ms.simulation.world import World
+from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec
+from tests.worlds.wall import view as wall
+
+SCENE = SceneSpec(
+    name="test/carts",
+    room=Room((8.0, 8.0)),
+    fixtures=(Fixture("cart_1", "cart", "", (2.0, 0.5, 0.0)), Fixture("cart_2", "cart", "", (2.0, -1.0, 0.0))),
+    bodies=(Body("mug_1", "mug", "", (2.0, 0.0, 0.95)),),
+    target_categories=("mug",),
+    fires=(),
+    agent_start=AgentStart((0.0, 0.0)),
+)
+CARTS = ("cart_1", "cart_2")
+MUG, CART_1, CART_2 = range(3)  # along B
+COLUMNS = (10, 25, 50, 75)  # of the pictures, 2 m before a camera at (0, 0, 1) that looks along +x, left to right
+
+
+class Scored(Detector):
+    """Finds a cart at each of COLUMNS that it is given a score for."""
+
+    scores: dict[int, float]
+
+    def detect(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> list[Detection]:
+        masks = {column: spot(column) for column in self.scores}
+        return [Detection("cart", self.scores[column], box_of(mask), mask) for column, mask in masks.items()]
+
+
+def spot(column: int) -> NDArray[np.bool_]:
+    mask = np.zeros((100, 100), bool)
+    mask[58:63, column - 2 : column + 3] = True
+    return mask
+
+
+def scene() -> View:
+    made = wall(4.0)
+    for column in COLUMNS:
+        made.depth[spot(column)] = 2.0
+    return replace(made, labels=np.full((100, 100), STRUCTURE, np.int64))
+
+
+@pytest.fixture
+def labeller() -> OwnLabeller:
+    world = World.of((SCENE,), [[(0.1, 0.1, 0.1)] * 3], [[1.0] * 3])
+    return OwnLabeller(world, CARTS, Scored(), 0.5)
+
+
+def look(labeller: OwnLabeller, frame: int, scores: dict[int, float]) -> View:
+    labeller._detector.scores = scores  # type: ignore[attr-defined]
+    return labeller.view(np.zeros((100, 100, 3), np.uint8), scene(), frame)
+
+
+def test_the_surest_count_whichever_was_found_first(labeller: OwnLabeller) -> None:
+    assert labeller.containers == ("cart#1", "cart#2")
+    for frame in range(2):
+        look(labeller, frame, {10: 0.6, 50: 0.7})
+    assert labeller.containers == ("cart#1", "cart#2")
+    for frame in range(2, 4):
+        look(labeller, frame, {10: 0.6, 50: 0.7, 25: 0.8})
+    assert labeller.names[3] == "cart#3" and labeller.containers == ("cart#2", "cart#3")
+    look(labeller, 4, {10: 0.9, 50: 0.5})  # sure once is sure
+    assert labeller.containers == ("cart#1", "cart#3")
+
+
+def test_a_cart_that_was_not_there_is_forgotten_and_never_believed_again(labeller: OwnLabeller) -> None:
+    for frame in range(2):  # of one picture, the least sure is entered first
+        look(labeller, frame, {10: 0.9, 50: 0.7, 75: 0.6})
+    false, true = labeller.index("cart#3"), labeller.index("cart#2")
+    assert labeller.containers == ("cart#2", "cart#3") and labeller.thing(false) == -1
+    labeller.missed(false)
+    assert labeller.containers == ("cart#1", "cart#2")
+    seen = look(labeller, 2, {10: 0.9, 50: 0.7})
+    assert false in labeller.unmapped() and labeller.containers == ("cart#1", "cart#2")
+    assert seen.labels is not None
+    assert seen.labels[60, 10] == STRUCTURE and seen.labels[60, 50] == true
+    for frame in (3, 4):  # its name is that of the next one
+        seen = look(labeller, frame, {10: 0.9, 50: 0.7, 25: 0.95})
+    assert seen.labels is not None
+    assert seen.labels[60, 25] == false and labeller.containers == ("cart#2", "cart#3")
+    look(labeller, 5, {})
+    assert false not in labeller.unmapped()
+
+
+def test_there_are_as_many_names_as_carts_even_if_none_is_believed(labeller: OwnLabeller) -> None:
+    """Without any, the hand would let go into the bag."""
+    for frame in range(2):
+        look(labeller, frame, {10: 0.9, 50: 0.7})
+    for name in labeller.containers:
+        labeller.missed(labeller.index(name))
+    assert labeller.containers == ("cart#1", "cart#2")

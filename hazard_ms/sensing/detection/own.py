@@ -29,6 +29,7 @@ from hazard_ms.spec.checks import one_of
 WITHIN = 0.35  # distance from where a thing is believed to be within which a hand finds what is there [m] [ours]
 CART_WITHIN = 1.0  # the same for carts, by their middles [m] [ours]
 WIDEST = 0.3  # half the width of what can be carried: a mask that is wider shows more than the thing [m] [ours]
+CART_WIDEST = 0.55  # the same for carts, which are 0.56 m by 0.94 m [m] [ours]
 MOST_THINGS = 512  # that are given names; scenes have up to 200 things [ours]
 UNSURE = MOST_THINGS  # label of pixels that may be of something that can move
 
@@ -172,7 +173,7 @@ class OwnLabeller(DetectingLabeller):
         return int(there[nearest]) if far[nearest] < (CART_WITHIN if cart else WITHIN) else -1
 
     def half_width(self, index: int) -> float:
-        return WIDEST if self.loose[index] else float("inf")
+        return WIDEST if self.loose[index] else CART_WIDEST if self._is_cart(index) else float("inf")
 
     def targets(self, damaged: frozenset[int] = frozenset()) -> tuple[Target, ...]:
         held = self._held_track()

@@ -95,6 +95,12 @@ def test_a_cart_that_was_not_there_is_forgotten_and_never_believed_again(labelle
     assert false not in labeller.unmapped()
 
 
+def test_a_mask_that_is_wider_than_a_cart_shows_more_than_the_cart(labeller: OwnLabeller) -> None:
+    """Else a walk would end at the edge of whatever the mask shows, too far for a drop."""
+    assert labeller.half_width(labeller.index("cart#1")) == pytest.approx(np.hypot(0.56, 0.94) / 2, abs=0.01)
+    assert labeller.half_width(labeller.index("mug#1")) < 0.55
+
+
 def test_there_are_as_many_names_as_carts_even_if_none_is_believed(labeller: OwnLabeller) -> None:
     """Without any, the hand would let go into the bag."""
     for frame in range(2):

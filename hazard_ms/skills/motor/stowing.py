@@ -98,7 +98,7 @@ def _into_cart(stage: Stage, index: int, held: int) -> Skill:
     if float(np.linalg.norm(place - stage.robot.shoulder())) > LIMIT:
         return Result(False, failures.CART_UNREACHABLE)
     if cart < 0:  # it turns to the place, and finds no cart there
-        turned = yield from turn_to(stage, place[:2])
+        turned = yield from turn_to(stage, (float(place[0]), float(place[1])))
         stage.labeller.missed(index)
         return Result(False, failures.CART_UNREACHABLE, turned.frames)
     used, tried, came_near = 0, set[int](), False

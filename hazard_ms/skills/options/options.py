@@ -8,7 +8,8 @@
     T+C+L+1                 stop: end the episode
 
 Targets and carts keep their slots throughout an episode (the order of `Decision.targets` and `.containers`), but for
-agents that find carts by themselves; landmarks are chosen anew at every decision, the most promising first. `hazard_ms.skills.options.macros` plays an option.
+carts that an agent finds by itself; landmarks are chosen anew at every decision, the most promising first.
+`hazard_ms.skills.options.macros` plays an option.
 """
 
 from __future__ import annotations

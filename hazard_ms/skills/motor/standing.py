@@ -16,7 +16,6 @@ from hazard_ms.skills.motor.surface import Surface, place_of
 
 DIRECTIONS = 12  # around the thing from which a place to stand is looked for [ours]
 SHARES = (STAND_OFF, 0.65)  # of the arm's span: how far from the thing these places are [ours]
-ASIDE = tuple(np.deg2rad([0.0, 30.0, -30.0]).tolist())  # how far beside the thing the base may face [rad] [ours]
 MOST = 16  # places that are weighed, the nearest ones by the way there [ours]
 
 
@@ -28,33 +27,26 @@ class Move(NamedTuple):
     frames: float
 
 
-def better_place(stage: Stage, index: int, worth: float, hits: int, apart: float = 0.0) -> Path | None:
+def better_place(stage: Stage, index: int, worth: float, hits: int) -> Path | None:
     """The path to where a pick-up of the thing `index` costs least, the way there included.
 
-    None where no place at least `apart` [m] from here makes it cost less than `worth` [frames] with at most `hits`
-    checked points of the arm's way in something.
+    None where no place makes it cost less than `worth` [frames] with at most `hits` checked points of the arm's way in
+    something.
     """
     place = place_of(stage, index)
     x, y, _ = stage.robot.base()
     best: Path | None = None
-    moves = sorted(_moves(stage, place.middle), key=lambda move: move.frames)[:MOST]
-    far = np.array([np.hypot(*(move.path.points[-1] - (x, y))) for move in moves])
-    moves = [move for move, way in zip(moves, far, strict=True) if way >= apart]
-    for aside in ASIDE:
-        swing = abs(aside) / stage.robot.build.turn_step
-        for move in moves:
-            if move.frames + swing + LEAST >= worth:
-                break
-            at, turn = move.path.points[-1], move.turn + aside
-            surface = Surface(stage, place, turn, at)
-            # where the thing would be before a base that stayed where it is
-            seen = turned(place.middle + np.array([x - at[0], y - at[1], 0.0]), (x, y), -turn)
-            for aim in aims(stage, seen, index):
-                for _, route in routes(stage, aim, surface, 0.0):
-                    if route.hits <= hits and move.frames + swing + route.cost < worth:
-                        best, worth = move.path, move.frames + swing + route.cost
-        if best is not None:
+    for move in sorted(_moves(stage, place.middle), key=lambda move: move.frames)[:MOST]:
+        if move.frames + LEAST >= worth:
             break
+        at = move.path.points[-1]
+        surface = Surface(stage, place, move.turn, at)
+        # where the thing would be before a base that stayed where it is
+        seen = turned(place.middle + np.array([x - at[0], y - at[1], 0.0]), (x, y), -move.turn)
+        for aim in aims(stage, seen, index):
+            for _, route in routes(stage, aim, surface, 0.0):
+                if route.hits <= hits and move.frames + route.cost < worth:
+                    best, worth = move.path, move.frames + route.cost
     return best
 
 

@@ -1,4 +1,4 @@
-"""Our own small detector: it looks at colours and depth, and takes 0.05 s of one core.
+"""Our own small detector, which looks at colours and depth, on one core.
 
 Its network tells the category of every pixel and where the middle of its thing is. Pixels that point at the same place
 are one thing.
@@ -78,7 +78,7 @@ class Small(Detector):
         given = functional.pad(given, (0, beside, 0, below)).contiguous(memory_format=torch.channels_last)
         logits, offsets = self._network(given)
         height, width = depth.shape
-        by_pixel = logits[0, :, :height, :width].permute(1, 2, 0)  # as they lie in memory: a sixth of the time
+        by_pixel = logits[0, :, :height, :width].permute(1, 2, 0)  # as they lie in memory, which is quicker
         chances = by_pixel.softmax(-1).permute(2, 0, 1).cpu().numpy()
         return things(chances, offsets[0, :, :height, :width].cpu().numpy(), self._classes)
 

@@ -117,7 +117,7 @@ def features(rgb: Tensor, depth: Tensor, intrinsic: Tensor, cam2world: Tensor) -
 def _unit(vectors: Tensor) -> Tensor:
     """The `vectors`, [N, 3, H, W], at length 1 [-]; those of length 0 stay.
 
-    As torch.nn.functional.normalize does along an axis that is not the last, in a tenth of the time.
+    What torch.nn.functional.normalize does, which is slow along an axis that is not the last.
     """
     length = (vectors * vectors).sum(dim=1, keepdim=True).sqrt()
     return vectors / length.clamp(min=1e-12)

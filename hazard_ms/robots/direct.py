@@ -6,8 +6,10 @@ one scene takes as long as the physics of the frame. Many scenes on a GPU go thr
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import torch
 from mani_skill.agents.controllers import (
     PDBaseForwardVelController,
@@ -16,7 +18,11 @@ from mani_skill.agents.controllers import (
     PDJointVelController,
 )
 from mani_skill.agents.controllers.base_controller import BaseController
+from numpy.typing import NDArray
 from torch import Tensor
+
+Floats = NDArray[np.float32]
+ONE, MINUS_ONE = np.float32(1.0), np.float32(-1.0)  # numbers of Python would be converted each time
 
 
 class DirectController(BaseController):
@@ -32,16 +38,31 @@ class DirectController(BaseController):
         super()._clip_and_scale_action_space()
         self._middle = 0.5 * (self.action_space_high + self.action_space_low)
         self._half = 0.5 * (self.action_space_high - self.action_space_low)
+        self._scale = self._middle.cpu().numpy(), self._half.cpu().numpy()
 
     def _clip_and_scale_action(self, action: Tensor) -> Tensor:
         return self._middle + self._half * torch.clip(action, -1, 1)
 
+    def act(self, action: Floats) -> None:
+        """Do in the one scene what `action` says, [N]; the same as `set_action`."""
+        self.set_action(torch.from_numpy(action[None]))
+
+    def _commands(self, action: Floats) -> Floats:
+        """The commands that `action` gives, [N], in the joints' units, [N]."""
+        if not self._normalize_action:
+            return action
+        middle, half = self._scale
+        return middle + half * np.minimum(np.maximum(action, MINUS_ONE), ONE)
+
+    def _joints_now(self) -> Floats:
+        """Positions of the controller's joints in the one scene [rad] or [m], [J]."""
+        positions: Floats = self.articulation._objs[0].qpos[self._numbers]
+        return positions
+
     @property
     def qpos(self) -> Tensor:
         """Positions of the controller's joints [rad] or [m], [E, J]."""
-        if not self._one:
-            return super().qpos
-        return torch.from_numpy(self.articulation._objs[0].qpos[None, self._numbers])
+        return torch.from_numpy(self._joints_now()[None]) if self._one else super().qpos
 
     def set_drive_targets(self, targets: Tensor) -> None:
         """Bring the joints to `targets` [rad] or [m], [E, J]."""
@@ -63,6 +84,22 @@ class DirectController(BaseController):
 class JointPos(DirectController, PDJointPosController):
     """Brings joints to positions, or changes them."""
 
+    _target_qpos: Tensor
+
+    def act(self, action: Floats) -> None:
+        """Bring the joints where `action` says, or move them by it, [N]."""
+        if self.config.interpolate:
+            super().act(action)
+            return
+        targets = self._commands(action)
+        if self.config.use_delta:
+            targets = (self._target_qpos[0].numpy() if self.config.use_target else self._joints_now()) + targets
+        if len(targets) != len(self._motors):
+            targets = np.repeat(targets, len(self._motors))
+        self._target_qpos = torch.from_numpy(targets[None].copy())
+        for motor, target in zip(self._motors, targets.tolist(), strict=True):
+            motor.set_drive_target(target)
+
 
 class JointVel(DirectController, PDJointVelController):
     """Drives joints at velocities."""
@@ -79,29 +116,42 @@ class Fingers(DirectController, PDJointPosMimicController):
         super()._initialize_joints()
         pairs = [*zip(self.mimic_control_joint_indices.tolist(), self.mimic_joint_indices.tolist(), strict=True)]
         self._pair = pairs[0] if len(pairs) == 1 else None
+        self._factor, self._shift = self._multiplier.cpu().numpy(), self._offset.cpu().numpy()
 
-    def set_action(self, action: Tensor) -> None:
-        """Bring both joints where `action` says, [E, 1]."""
+    def act(self, action: Floats) -> None:
+        """Bring both joints where `action` says, [1]."""
         if self._pair is None or self.config.use_delta or self.config.interpolate:
-            super().set_action(action)
+            super().act(action)
             return
         led, follower = self._pair
-        action = self._preprocess_action(action)
-        self._target_qpos[:, led : led + 1] = action
-        self._target_qpos[:, follower : follower + 1] = action * self._multiplier + self._offset
-        self.set_drive_targets(self._target_qpos)
+        targets = self._target_qpos.numpy()[0]  # the same memory
+        targets[led] = self._commands(action)[0]
+        targets[follower] = (targets[led] * self._factor + self._shift)[0]
+        for motor, target in zip(self._motors, targets.tolist(), strict=True):
+            motor.set_drive_target(target)
 
 
 class BaseForwardVel(DirectController, PDBaseForwardVelController):
     """Drives the base ahead and turns it."""
 
-    def set_action(self, action: Tensor) -> None:
-        """Drive as `action` says, [E, 2]."""
-        action = self._preprocess_action(action)
-        heading = self.qpos[:, 2:3]
+    def act(self, action: Floats) -> None:
+        """Drive as `action` says, [2]."""
+        forward, turn = self._commands(action)
+        heading = torch.from_numpy(self._joints_now()[2:3])  # numpy's cosine differs from torch's in the last bit
         # ManiSkill turns (forward, 0) by a matrix, whose sums with a product of 0 have no negative zeros
-        along = torch.cat([heading.cos(), heading.sin()], dim=1) * action[:, :1] + 0.0
-        self.set_drive_velocity_targets(torch.cat([along, action[:, 1:]], dim=1))
+        along = (float(np.float32(way.item()) * forward) + 0.0 for way in (heading.cos(), heading.sin()))
+        for motor, speed in zip(self._motors, (*along, float(turn)), strict=True):
+            motor.set_drive_velocity_target(speed)
+
+
+def parts_of(controller: Any) -> tuple[tuple[Callable[[Floats], None], int, int], ...]:
+    """Functions that act in the one scene, each with its part of an action of ManiSkill's combined `controller`."""
+    every = ((part, *controller.action_mapping[name]) for name, part in controller.controllers.items())
+    return tuple((part.act if isinstance(part, DirectController) else _by_tensor(part), a, b) for part, a, b in every)
+
+
+def _by_tensor(controller: BaseController) -> Callable[[Floats], None]:
+    return lambda action: controller.set_action(torch.from_numpy(action[None]))
 
 
 DIRECT = {c.__bases__[1]: c for c in (JointPos, JointVel, Fingers, BaseForwardVel)}

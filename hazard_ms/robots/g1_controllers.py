@@ -15,7 +15,7 @@ from gymnasium import spaces
 from mani_skill.agents.controllers import PDJointPosControllerConfig
 from torch import Tensor
 
-from hazard_ms.robots.direct import JointPos
+from hazard_ms.robots.direct import DirectController, JointPos
 from hazard_ms.robots.g1_description import DOWN
 
 THIGH, SHIN = 0.30698, 0.30007  # hips' axis to knee, knee to ankle [m] (the installed URDF)
@@ -43,6 +43,7 @@ class LegsController(JointPos):
     """Takes no action: the legs go where the crouch joint takes the hips until the end of the frame."""
 
     config: LegsControllerConfig
+    act = DirectController.act
 
     def _initialize_action_space(self) -> None:
         self.single_action_space = spaces.Box(-1.0, 1.0, (0,), dtype=np.float32)
@@ -74,6 +75,7 @@ class HandsController(JointPos):
     """
 
     config: HandsControllerConfig
+    act = DirectController.act
     shut: Tensor  # [E, 2], bool: commanded shut in the last frame
     used: Tensor  # [E], RIGHT or LEFT
 

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from hazard_ms.robots.chain import Chain
+from hazard_ms.robots.direct import parts_of
 from hazard_ms.robots.robot import Robot
 from hazard_ms.spec.checks import one_of
 
@@ -47,6 +48,9 @@ class PlanarRobot(Robot):
     device: torch.device
     _control_freq: int
 
+    _acting: Any = None  # the controller of these:
+    _acts: tuple[tuple[Callable[[NDArray[np.float32]], None], int, int], ...] = ()
+
     rest: NDArray[np.float64]  # all joints where the robot stands tucked, in SAPIEN's order
     ride_height: float  # of the description's root above the floor [m]
     bag: tuple[float, float, float]  # mouth of the bag in the base's frame [m]
@@ -62,9 +66,16 @@ class PlanarRobot(Robot):
 
     def set_action(self, action: Tensor) -> None:
         """Give each controller its part of `action`, [E, D]. Raises ValueError for NaN, where asking costs no time."""
-        if not self.scene.gpu_sim_enabled and bool(action.isnan().any()):
+        if self.scene.gpu_sim_enabled:
+            self.controller.set_action(action)
+            return
+        (numbers,) = action.numpy()
+        if np.isnan(numbers).any():
             raise ValueError(f"an action must hold numbers, got {action.tolist()}")
-        self.controller.set_action(action)
+        if self._acting is not self.controller:
+            self._acting, self._acts = self.controller, parts_of(self.controller)
+        for act, start, end in self._acts:
+            act(numbers[start:end])
 
     def action_size(self, control_mode: str) -> int:
         """Length of an action in `control_mode`, one of the robot's. The present mode stays."""
@@ -106,8 +117,13 @@ class PlanarRobot(Robot):
         self.robot.set_joint_drive_targets(qpos[:, 3:], held, torch.arange(3, qpos.shape[1], device=self.device))
 
     def base_pose(self) -> tuple[Tensor, Tensor]:
-        qpos = self.robot.get_qpos()
-        return torch.cat([qpos[:, :2], torch.zeros_like(qpos[:, :1])], dim=-1), qpos[:, 2].clone()
+        if self.scene.gpu_sim_enabled:
+            qpos = self.robot.get_qpos()
+            return torch.cat([qpos[:, :2], torch.zeros_like(qpos[:, :1])], dim=-1), qpos[:, 2].clone()
+        joints = self.robot._objs[0].qpos[:3]  # of our own
+        heading = torch.from_numpy(joints[2:].copy())
+        joints[2] = 0.0
+        return torch.from_numpy(joints[None]), heading
 
     def base_velocity(self) -> Tensor:
         return self.robot.get_qvel()[:, :2]

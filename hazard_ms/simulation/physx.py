@@ -32,6 +32,7 @@ class CpuHandles:
     def __init__(self, entities: list[sapien.Entity]) -> None:
         self.bodies = [e.find_component_by_type(PhysxRigidDynamicComponent) for e in entities]
         self._groups = [[s.get_collision_groups() for s in b.collision_shapes] for b in self.bodies]
+        self._add = [b.add_force_torque for b in self.bodies]
         self._frozen = [False] * len(self.bodies)
         self._px: Any = entities[0].scene.physx_system if entities else None
         self._length = -1  # size of what SAPIEN packed last [bytes]
@@ -69,9 +70,10 @@ class CpuHandles:
         """Apply `force` [N] and `torque` [N m], [1, B, 3], world frame, for one physics step."""
         forces = force[0].numpy()
         torques = np.zeros_like(forces) if torque is None else torque[0].numpy()
-        for b in (forces.any(1) | torques.any(1)).nonzero()[0].tolist():
+        rows = (forces.any(1) | torques.any(1)).nonzero()[0]
+        for b, one, turn in zip(rows.tolist(), forces[rows], torques[rows], strict=True):
             if not self._frozen[b]:
-                self.bodies[b].add_force_torque(forces[b], torques[b])
+                self._add[b](one, turn)
 
     def place(self, rows: Tensor, base: Tensor, rotation: Tensor) -> None:
         """Put all bodies at rest at `base` [m], [1, B, 3], and `rotation` [1, B, 4], unless `rows` is empty."""

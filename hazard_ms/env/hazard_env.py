@@ -152,16 +152,16 @@ class HazardEnv(BuiltEnv):
 
         Raises ValueError for an action of a wrong type, shape or number; the episode is left unchanged.
         """
-        obs, reward, terminated, _, info = super().step(inputs.action(self, action))
-        if not none_set(self.episode.sim_error):
-            obs = finite(obs)
-        return (
-            obs,
-            torch.where(self.episode.sim_error, 0.0, reward),
-            terminated & ~self.episode.sim_error,
-            self.episode.sim_error.clone(),
-            info,
-        )
+        commands = self._step_action(inputs.action(self, action))
+        self._elapsed_steps += 1
+        info = self.get_info()
+        raw = self.get_obs(info, unflattened=True)
+        reward = self.get_reward(raw, commands, info)
+        obs = self._last_obs = self._flatten_raw_obs(raw)
+        terminated, broken = info["success"] | info["fail"], self.episode.sim_error.clone()
+        if not none_set(broken):
+            obs, reward, terminated = finite(obs), torch.where(broken, 0.0, reward), terminated & ~broken
+        return obs, reward, terminated, broken, info
 
     def advance(self, action: Any) -> dict[str, Any]:
         """One frame like `step`, without observation and reward: what skills use between decisions. Returns info."""

@@ -13,6 +13,8 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.base import State, none_set, quantity
+from hazard_ms.kernels.bodies import Bodies
+from hazard_ms.kernels.reaching import nearest
 from hazard_ms.simulation.world import World, rotate
 from hazard_ms.spec.robot import GRASP_REACH
 
@@ -47,12 +49,21 @@ def distance_to_boxes(world: World, point: Tensor) -> Tensor:
     return (local.abs() - world.extent / 2).clamp(min=0).norm(dim=-1)
 
 
+def nearest_target(world: World, hand: Tensor) -> tuple[Tensor, Tensor]:
+    """The target that is not safe yet and nearest to the `hand` [m], [E, 3]: its index along B, -1 for none, [E].
+
+    And the distance [m] of the hand from the surface of its box, infinite for none, [E]. Both hold until the next call.
+    """
+    found = world.launches.once(nearest, lambda: (world.frame.clone(), world.agent_heading.clone()))
+    bodies = world.launches.struct(Bodies, world)
+    world.launches.run(nearest, (world.num_envs,), hand, world.target, bodies, *found)
+    return found[0], found[1]
+
+
 def graspable(world: World, gripper: Tensor) -> Tensor:
     """Index along B of the target that a hand takes if it shuts at `gripper` [m], [E, 3]: [E], -1 for none."""
-    distance = distance_to_boxes(world, gripper)
-    able = world.target & world.exists & ~world.safe & (distance <= GRASP_REACH)
-    nearest = torch.where(able, distance, torch.inf).argmin(dim=1)
-    return torch.where(able.any(dim=1), nearest, -1)
+    index, distance = nearest_target(world, gripper.contiguous())
+    return torch.where(distance <= GRASP_REACH, index, -1)
 
 
 def update(hand: Hand, world: World, gripper: Tensor, rotation: Tensor, closed: Tensor) -> Tensor:
@@ -60,14 +71,17 @@ def update(hand: Hand, world: World, gripper: Tensor, rotation: Tensor, closed: 
 
     Returns the index along B of what was let go, [E], -1 for none.
     """
-    if none_set(closed != hand.closed):
+    changed = closed != hand.closed
+    if none_set(changed):
         return torch.full_like(hand.held, -1)  # nothing is taken or let go
-    dropped = torch.where(~closed & hand.closed, hand.held, -1)
-    hand.held = torch.where(dropped >= 0, -1, hand.held)
-    taken = torch.where(closed & ~hand.closed & (hand.held < 0), graspable(world, gripper), -1)
-    hand.held = torch.where(taken >= 0, taken, hand.held)
-    _remember(hand, world, gripper, rotation, taken)
     hand.closed = closed.clone()
+    shut, holds = changed & closed, hand.held >= 0
+    dropped = torch.where(changed & ~closed, hand.held, -1)
+    taken = torch.where(shut & ~holds, graspable(world, gripper), -1)
+    if none_set((dropped >= 0) | (taken >= 0)):
+        return dropped
+    hand.held = torch.where(taken >= 0, taken, torch.where(dropped >= 0, -1, hand.held))
+    _remember(hand, world, gripper, rotation, taken)
     index = torch.arange(world.num_bodies, device=world.device)
     world.held[:] = index == hand.held[:, None]
     return dropped

@@ -46,6 +46,8 @@ def in_carts(world: World) -> Rule:
 
     def rule(drop: Drop) -> Tensor:
         inside = containers.in_containers(world, carts, torch.zeros_like(world.safe))
+        if none_set(inside):
+            return inside
         return containers.in_containers(world, carts, inside) & world.target  # and what is piled on it
 
     return rule

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from hazard_ms.episode.episode import Episode
 from hazard_ms.robots.robot import Robot
@@ -19,6 +20,7 @@ class Situation:
     episode: Episode
     agent: Robot
     affects_agent: bool = False
+    known: dict[str, Any] | None = None  # what was worked out of this frame already; None: nothing is kept
 
     @property
     def world(self) -> World:

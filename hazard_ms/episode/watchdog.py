@@ -17,8 +17,11 @@ from typing import Any
 import torch
 from torch import Tensor
 
+from hazard_ms.kernels.bodies import Bodies
+from hazard_ms.kernels.watching import broken
 from hazard_ms.simulation.world import World
 
+MAX_TURN = 2.0  # largest number of a rotation: that of a unit quaternion is 1
 MAX_SPEED = 50.0  # highest speed of a body [m/s]: nothing in a room moves faster (docs/reliability.md 5)
 MAX_SPIN = 1000.0  # highest angular velocity of a body [rad/s]; PhysX itself limits bodies to 100
 LOST = 5.0  # distance outside the room at which a body counts as lost [m] [ours]
@@ -27,29 +30,20 @@ HISTORY = 20  # number of the last states that are written when an episode break
 
 
 class Limits:
-    """The range of positions [m], rotations, velocities [m/s] and angular velocities [rad/s] that bodies can have.
-
-    `centre` and `half` (half of the width) are [E, 1, 13].
-    """
+    """The places [m] where bodies can be: within `half` of `centre`, [E, 3] each."""
 
     def __init__(self, world: World) -> None:
         height = world.room.new_tensor([[s.room.height] for s in world.specs])
-        middle = torch.cat([world.room, height], dim=1) / 2
-        half = middle + world.room.new_tensor([[s.room.beyond, s.room.beyond, 0.0] for s in world.specs])
-
-        def same(value: float, count: int) -> Tensor:
-            return torch.full((world.num_envs, count), value, device=world.device)
-
-        self.centre = torch.cat([middle, same(0.0, 10)], dim=1)[:, None]
-        widths = [half + LOST, same(2.0, 4), same(MAX_SPEED, 3), same(MAX_SPIN, 3)]
-        self.half = torch.cat(widths, dim=1)[:, None]
+        self.centre = torch.cat([world.room, height], dim=1) / 2
+        beyond = world.room.new_tensor([[s.room.beyond, s.room.beyond, 0.0] for s in world.specs])
+        self.half = self.centre + beyond + LOST
+        self._found = torch.zeros(world.num_envs, dtype=torch.bool, device=world.device)
 
     def broken(self, world: World, qpos: Tensor) -> Tensor:
         """Whether each environment's simulation is broken, bool [E]. `qpos`: the robot's joints [rad], [E, J]."""
-        state = torch.cat([world.position, world.rotation, world.velocity, world.angular_velocity], dim=-1)
-        good = ((state - self.centre).abs() <= self.half).all(-1)  # NaN fails every comparison
-        unwatched = ~(world.exists & world.movable) | world.away | world.held
-        return ~((good | unwatched).all(-1) & (qpos.abs() < torch.inf).all(-1))
+        limits = (self.centre, self.half, qpos, MAX_TURN, MAX_SPEED, MAX_SPIN)
+        world.launches.run(broken, (world.num_envs,), *limits, world.launches.struct(Bodies, world), self._found)
+        return self._found
 
 
 class FlightRecorder:

@@ -62,6 +62,16 @@ class Launches:
             )
         return known
 
+    def once(self, kernel: wp.Kernel, make: Callable[[], tuple[Tensor, ...]]) -> tuple[Tensor, ...]:
+        """Tensors for the results of `kernel`, [...] each in its own unit [-], which `make` makes at the first call.
+
+        They are the same ones at every call, as those of `results`, and never change their shapes.
+        """
+        known = self._results.get(kernel)
+        if known is None:
+            known = self._results[kernel] = make()
+        return known
+
     def struct(self, kind: wp.Struct, source: object) -> Any:
         """The struct `kind`, filled with the attributes of `source` that have the names of its fields.
 

@@ -70,8 +70,8 @@ class Observer:
         if not terms:
             return {}
         values = [term.of(self.situation) for term in terms]
-        columns = [v.float() if v.ndim == 3 else v.float()[..., None] for v in values]
-        taken = self.table.of(torch.cat(columns, dim=-1)).split([c.shape[-1] for c in columns], dim=-1)
+        columns = torch.cat([v if v.ndim == 3 else v[..., None] for v in values], dim=-1).float()
+        taken = self.table.of(columns).split([v.shape[2] if v.ndim == 3 else 1 for v in values], dim=-1)
         return {term.name: part.flatten(1) for term, part in zip(terms, taken, strict=True)}
 
     def add_hazard_image(self, obs: dict[str, Any], in_extra: bool) -> dict[str, Any]:

@@ -47,14 +47,15 @@ class TargetTable:
         for e, row in enumerate(rows):
             self.index[e, : len(row)] = row
         self.there = self.index >= 0
+        self._absent = ~self.there
         starts = torch.arange(world.num_envs, device=world.device)[:, None] * world.num_bodies
         self._row = (starts + self.index.clamp(min=0)).flatten()  # in a list of the things of all scenes
 
     def of(self, of_things: Tensor) -> Tensor:
         """Numbers of the targets, [E, T, ...], taken from those of all things, [E, B, ...]; 0 without a target."""
-        taken = of_things.flatten(0, 1).index_select(0, self._row).unflatten(0, self.index.shape)
-        there = self.there.reshape(self.there.shape + (1,) * (taken.ndim - 2))
-        return torch.where(there, taken, taken.new_zeros(()))
+        taken = of_things.flatten(0, 1).index_select(0, self._row).view(*self.index.shape, *of_things.shape[2:])
+        absent = self._absent if taken.ndim == 2 else self._absent[..., None]
+        return taken.masked_fill_(absent, 0)
 
     def rows(self, world: World, env: int = 0, damaged: frozenset[int] | set[int] = frozenset()) -> tuple[Target, ...]:
         """The targets of scene `env`.

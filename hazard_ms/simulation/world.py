@@ -194,6 +194,12 @@ class World:
         """Frames since the start of each episode, [E], int64."""
         return self.chance.frame
 
+    @functools.cached_property
+    def targets(self) -> Tensor:
+        """Indices along B of the targets, [E, T]; those of a scene with fewer than T begin again with its first."""
+        rows = [row.nonzero().flatten() if row.any() else row[:1].long() for row in self.target]
+        return torch.stack([row[torch.arange(max(map(len, rows))) % len(row)] for row in rows])
+
     def lookup(self, attribute: str) -> Tensor:
         """A numeric attribute of the catalogue (temperatures in [C]) of every thing, float32 [E, B]; 0 for padding."""
         table = torch.tensor([float(getattr(c, attribute)) for c in CATEGORIES.values()], device=self.device)

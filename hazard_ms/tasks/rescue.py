@@ -12,8 +12,8 @@ from hazard_ms.spec import Goal, Task, Term
 from hazard_ms.tasks.terms import terms
 
 INFO = (
-    Term("rescued", lambda s: (s.world.safe & s.world.target).sum(1), "targets that are safe", low=0.0),
-    Term("targets", lambda s: s.world.target.sum(1), "things to rescue", low=0.0),
+    Term("rescued", rewards.rescued, "targets that are safe", low=0.0),
+    Term("targets", rewards.targets, "things to rescue", low=0.0),
     Term("value", rewards.rescued_value, "rescued value as a share of all, damaged targets half", low=0.0, high=1.0),
     Term("damaged", rewards.damaged_targets, "targets that were damaged and are not safe", low=0.0),
 )

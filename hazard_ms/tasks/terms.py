@@ -33,9 +33,12 @@ def properties(situation: Situation) -> Tensor:
 
 
 def level(hazard: Hazard, situation: Situation) -> Tensor:
-    """Level of `hazard` at the middle of every thing, [E, B], in the hazard's unit ([C], [m] or [m/s])."""
+    """Level of `hazard` at the middle of every target, in the hazard's unit ([C], [m] or [m/s]); else 0, [E, B]."""
     world = situation.world
-    return hazard.image(situation.episode.states[hazard.name], world, world.position)
+    index = world.targets
+    points = world.position.gather(1, index[..., None].expand(-1, -1, 3))
+    levels = hazard.image(situation.episode.states[hazard.name], world, points)
+    return torch.zeros_like(world.value).scatter_(1, index, levels)
 
 
 def _target(name: str, of: Any, meaning: str, **more: Any) -> Term:

@@ -17,7 +17,10 @@ from torch import Tensor
 from hazard_ms.hazards.base import Hazard, Level, State, none_set
 from hazard_ms.hazards.fire import coupling, floor, heat, spread
 from hazard_ms.hazards.fire.declared import TELLS, TEMPERATURE, ignites
-from hazard_ms.hazards.fire.fire_state import BURNING, BURNT, NORMAL, FireState
+from hazard_ms.hazards.fire.fire_state import BURNING, BURNT, NORMAL, FireState, lit, some_flames
+from hazard_ms.hazards.fire.kernels import Heat, temperature_at
+from hazard_ms.kernels.bodies import Bodies
+from hazard_ms.kernels.launch import of_environments
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
 
@@ -98,14 +101,16 @@ class Fire(Hazard):
         state.agent_temperature.copy_(heat.exchange(state.agent_temperature, around[:, -1], due, self.decay))
 
     def _sources(self, state: FireState, world: World) -> heat.Sources:
-        """The sources of heat: B things, the agent and F flames, M = B + 1 + F."""
+        """The sources of heat: B things, the agent and the first flames of the roster, M = B + 1 + F or fewer."""
         base = world.base_of(world.position, world.rotation, world.extent)
-        flame_temperature = torch.full_like(state.flame_place[..., 0], self.flame_temperature)
-        agent = torch.ones_like(state.agent_temperature, dtype=torch.bool)[:, None]
+        flames = state.flame_place[:, : some_flames(state)]
+        shape, like = flames.shape[:2], state.temperature
         return heat.Sources(
-            torch.cat([base, world.agent_position[:, None], state.flame_place], 1),
-            torch.cat([state.temperature, state.agent_temperature[:, None], flame_temperature], 1),
-            torch.cat([world.exists & ~world.safe, agent, lit(state, world.frame)], 1),
+            torch.cat([base, world.agent_position[:, None], flames], 1),
+            torch.cat([like, state.agent_temperature[:, None], like.new_full(shape, self.flame_temperature)], 1),
+            torch.cat(
+                [world.exists & ~world.safe, like.new_ones(shape[0], 1).bool(), lit(state, world.frame, shape[1])], 1
+            ),
         )
 
     def _burn(self, state: FireState, world: World, due: Tensor) -> None:
@@ -148,8 +153,13 @@ class Fire(Hazard):
 
     @torch.inference_mode()
     def image(self, state: FireState, world: World, points: Tensor) -> Tensor:
-        mean = heat.Mean(self.room_temperature, self.image_room_weight, self.reach, self.nearest)
-        return mean.at(points, self._sources(state, world))
+        points = of_environments(points, world.num_envs)
+        (found,) = world.launches.results(temperature_at, points[..., 0])
+        room = (self.room_temperature, self.image_room_weight / self.reach**2, self.nearest, self.flame_temperature)
+        sources = (world.launches.struct(Heat, state), world.launches.struct(Bodies, world), found)
+        where = (points, world.frame, world.agent_position)
+        world.launches.run(temperature_at, tuple(found.shape), *where, *room, *sources)
+        return found.clone()
 
     def threatens(self, target: Any, level: float, height: float) -> bool:
         return ignites(target, level)
@@ -222,11 +232,6 @@ def begin_flames(state: FireState, world: World, rows: Tensor, fixtures_block: b
     free = floor.free_floor(world, rows, state.anchor[rows], window, fixtures_block)
     free[:, :, window // 2, window // 2] |= there
     state.free[rows] = free
-
-
-def lit(state: FireState, frame: Tensor) -> Tensor:
-    """Whether each flame of the roster burns at `frame`, [E]: [E, F], bool."""
-    return (state.flame_cell >= 0) & (state.flame_birth <= frame[:, None])
 
 
 def floor_flames(state: FireState, frame: Tensor) -> tuple[Tensor, Tensor]:

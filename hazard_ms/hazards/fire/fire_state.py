@@ -11,6 +11,7 @@ from hazard_ms.hazards.base import State, quantity
 
 NORMAL, BURNING, BURNT = 0, 1, 2  # values of FireState.status
 ALL_USED = 15  # of FireState.flame_used: fire has spread in all four directions
+STRIDE = 4  # sources that torch adds up side by side
 
 
 @dataclass
@@ -39,3 +40,20 @@ class FireState(State):
         "E F", "frame", "the flame's last success in spreading, or its birth", dtype="int", fill=-1
     )
     flame_used: Tensor = quantity("E F", "", "directions used up, one bit each", dtype="int", low=0, high=ALL_USED)
+
+
+def some_flames(state: FireState) -> int:
+    """Number of places of the roster, from its beginning, that hold all flames; all of them on a GPU.
+
+    So many are left out, and so many without a flame kept, that torch's sums over all sources keep their last bits.
+    """
+    length = state.flame_cell.shape[1]
+    if state.flame_cell.device.type != "cpu":
+        return length
+    used = int((state.flame_cell >= 0).sum(1).max())
+    return min(used + STRIDE + (length - used) % STRIDE, length)
+
+
+def lit(state: FireState, frame: Tensor, count: int | None = None) -> Tensor:
+    """Whether each of the first `count` flames of the roster, all by default, burns at `frame`, [E]: [E, F], bool."""
+    return (state.flame_cell[:, :count] >= 0) & (state.flame_birth[:, :count] <= frame[:, None])

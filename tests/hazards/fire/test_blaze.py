@@ -201,6 +201,19 @@ def test_the_image_shows_the_layer_and_the_flames() -> None:
     assert place[0, 0].tolist() == [2.0, 2.0, 0.0] and float(scale[0, 0]) > 0.5
 
 
+def test_plates_of_the_image_gain_no_heat_in_the_flux_and_gas_that_warm_things() -> None:
+    world = with_room(room_world([("book", (2.4, 2.0, 0.0)), ("sofa", (3.0, 2.5, 0.0))], [(2.0, 2.0)]), floor="carpet")
+    state = begin(REAL, world)
+    run(REAL, state, world, 20.0)
+    points = torch.rand(1, 200, 3, generator=torch.Generator().manual_seed(0)) * torch.tensor([4.0, 4.0, 2.5])
+    plate = REAL.image(state, world, points).double() + 273.15
+    flux, gas = (v.double() for v in REAL._exposure(state, REAL._fires(state, world), points))
+    gain = 0.9 * (flux + 5.670e-11 * (293.15**4 - plate**4)) + 0.01 * (gas + 273.15 - plate)
+    below = plate < 820.0 + 273.0
+    assert int(below.sum()) > 100 and float(flux.max()) > 10.0 and int((state.flame_cell >= 0).sum()) > 3
+    assert bool((gain[below].abs() < 0.01 * flux[below].clamp(min=1.0)).all()) and bool((gain[~below] > -0.1).all())
+
+
 def test_an_episode_that_began_later_is_updated_at_its_own_frames() -> None:
     """Two environments, the second two frames behind: each has the bits that it has alone."""
     bodies, fires = [("book", (2.4, 2.0, 0.0)), ("throw_pillow", (2.0, 2.5, 0.0))], [(2.0, 2.0)]

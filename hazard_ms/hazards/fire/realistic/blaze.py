@@ -27,8 +27,8 @@ from torch import Tensor
 from hazard_ms.hazards.base import Hazard, Level, State, none_set
 from hazard_ms.hazards.fire import coupling, spread
 from hazard_ms.hazards.fire.declared import TELLS_OF_BLAZE, TEMPERATURE, ignites
-from hazard_ms.hazards.fire.fire import begin_flames, lit
-from hazard_ms.hazards.fire.fire_state import BURNING, NORMAL
+from hazard_ms.hazards.fire.fire import begin_flames
+from hazard_ms.hazards.fire.fire_state import BURNING, NORMAL, lit
 from hazard_ms.hazards.fire.realistic import (
     burning,
     front,
@@ -37,6 +37,7 @@ from hazard_ms.hazards.fire.realistic import (
     radiation,
     smoke,
     tenability,
+    thermometer,
     touching,
 )
 from hazard_ms.hazards.fire.realistic.blaze_state import HEATED, BlazeState
@@ -144,7 +145,7 @@ class Blaze(Hazard):
     def _fires(self, state: BlazeState, world: World) -> radiation.Fires:
         """The fires of each environment: B things, then F flames on the floor."""
         there = world.exists & ~world.safe & (state.status == BURNING)
-        things = burning.release(state.course, state.burn_age) * there
+        things = there.float() if none_set(there) else burning.release(state.course, state.burn_age) * there
         first = state.flame_peak > CELL_RELEASE
         share = torch.where(first, state.flame_peak / self.first_release, 1.0)  # of the fires at the start together
         flames = torch.minimum(burning.t_squared(self.growth * share, state.flame_age), state.flame_peak)
@@ -217,12 +218,9 @@ class Blaze(Hazard):
         return state.status != NORMAL
 
     def image(self, state: BlazeState, world: World, points: Tensor) -> Tensor:
-        """Temperature [C], [E, P], that plate thermometers at `points` [m], [E, P, 3], world frame, would show.
-
-        It comes from radiation, plumes and the layer of smoke.
-        """
-        flux, gas = self._exposure(state, self._fires(state, world), points)
-        return radiation.adiabatic(flux, gas, self.room_temperature).clamp(max=self.flame_temperature)
+        """Temperature [C], [E, P], that plate thermometers at `points` [m], [E, P, 3], world frame, would show."""
+        fires = self._fires(state, world)
+        return thermometer.shown(state, world, fires, points, self.room_temperature, self.flame_temperature)
 
     def threatens(self, target: Any, level: float, height: float) -> bool:
         return ignites(target, level)

@@ -1,4 +1,4 @@
-"""Heat from flames on surfaces: point sources, thick and thin solids, the adiabatic surface (torch).
+"""Heat from flames on surfaces: point sources, thick and thin solids (torch).
 
     flame length   L = D (3.7 Q*^0.4 - 1.02),  Q* = Q / (rho c T sqrt(g) D^2.5)           (Heskestad)
     flux           q = cos chi Q / (4 pi R^2), from the point at L / 3                    (point source)
@@ -122,18 +122,3 @@ def warm(temperature: Tensor, flux: Tensor, solid: Solid, room: float, dt: float
     slowness = torch.where(thick, math.pi / 4.0 * inertia / loss.clamp(min=_TINY), sheet) / loss.clamp(min=_TINY)
     cooled = most + (rise - most) * exponential(-dt / slowness)
     return room + torch.where((rise >= 0) & (rise < most), torch.minimum(grown, most), cooled)
-
-
-def adiabatic(flux: Tensor, gas: Tensor, room: float) -> Tensor:
-    """Temperature [C], [...], at which a surface under `flux` [kW/m^2], [...], in `gas` [C], [...], gains no more heat.
-
-    A plate thermometer shows it. Newton's method from above the root of a concave function: it falls to the root, five
-    digits in six steps.
-    """
-    background = (room + KELVIN) ** 4
-    hot = gas + KELVIN
-    surface = torch.maximum(hot, to_power(flux / STEFAN + background, 0.25))
-    for _ in range(6):
-        gain = EMISSIVITY * (flux + STEFAN * (background - surface**4)) + CONVECTION * (hot - surface)
-        surface = surface + gain / (4.0 * EMISSIVITY * STEFAN * surface**3 + CONVECTION)
-    return surface - KELVIN

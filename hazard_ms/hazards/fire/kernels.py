@@ -1,0 +1,67 @@
+"""The temperature around points in a burning room (Warp), as hazard_ms.hazards.fire.heat has it for things."""
+
+from __future__ import annotations
+
+import warp as wp
+
+from hazard_ms.kernels.bodies import Bodies
+from hazard_ms.kernels.boxes import axes_of, base_of
+from hazard_ms.kernels.launch import OPTIONS
+
+wp.set_module_options(OPTIONS)
+
+
+@wp.struct
+class Heat:
+    """The fields of hazard_ms.hazards.fire.fire_state.FireState with the same names, of B things and F flames."""
+
+    temperature: wp.array2d(dtype=float)
+    agent_temperature: wp.array(dtype=float)
+    flame_cell: wp.array2d(dtype=wp.int64)
+    flame_place: wp.array2d(dtype=wp.vec3)
+    flame_birth: wp.array2d(dtype=wp.int64)
+
+
+@wp.func
+def weight_of(offset: wp.vec3, nearest: float) -> float:
+    """The weight [1/m^2] of a source at this `offset` [m]; nearer ones than `nearest` [m] weigh no more."""
+    return 1.0 / wp.max(wp.dot(offset, offset), nearest * nearest)
+
+
+@wp.kernel
+def temperature_at(
+    points: wp.array2d(dtype=wp.vec3),
+    frame: wp.array(dtype=wp.int64),
+    agent: wp.array(dtype=wp.vec3),
+    room: float,
+    room_weight: float,
+    nearest: float,
+    flame: float,
+    heat: Heat,
+    bodies: Bodies,
+    found: wp.array2d(dtype=float),
+):
+    """Set `found` to the mean temperature [C] around each of the `points` [m] of each environment.
+
+    Sources are things that are not safe, the `agent` [m], and flames, at the temperature `flame` [C]; `room_weight`
+    [1/m^2] is that of the room, at the temperature `room` [C].
+    """
+    e, p = wp.tid()
+    point = points[e, p]
+    total = weight_of(agent[e] - point, nearest)
+    excess = total * (heat.agent_temperature[e] - room)
+    total += room_weight
+    for b in range(heat.temperature.shape[1]):
+        if bodies.exists[e, b] and not bodies.safe[e, b]:
+            place = base_of(bodies.position[e, b], axes_of(bodies.rotation[e, b]), bodies.extent[e, b])
+            w = weight_of(place - point, nearest)
+            total += w
+            excess += w * (heat.temperature[e, b] - room)
+    for f in range(heat.flame_cell.shape[1]):
+        if heat.flame_cell[e, f] < wp.int64(0):
+            break  # the roster is in the order of ignition
+        if heat.flame_birth[e, f] <= frame[e]:
+            w = weight_of(heat.flame_place[e, f] - point, nearest)
+            total += w
+            excess += w * (flame - room)
+    found[e, p] = room + excess / total

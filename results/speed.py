@@ -1,21 +1,24 @@
-"""What frames, resets and pictures cost: `./run python results/speed.py`, on a machine that does nothing else.
+"""What frames, resets and pictures cost: `./run python results/speed.py [PART...]`, on a machine that does no more.
 
-Runs each of COMMANDS in a process of its own and writes docs/speed.md with what they print; takes about ten minutes.
+Runs each of COMMANDS, or those of the parts that are named, in a process of its own and writes docs/speed.md with what
+they print; all take about ten minutes.
 """
 
 from __future__ import annotations
 
 import os
 import subprocess
+import sys
 
+from hazard_ms.spec.checks import one_of
 from results.tables import COMMAND, HERE
 
 PAGE = HERE.parent / "docs" / "speed.md"
 HEAD = """# Speed
 
 Made by `./run python results/speed.py`. Times belong to the machine that is named with them; compare ratios. What is
-compared is taken in turn, in one process. In the minutes before, {load:.1f} processes on average wanted the machine's
-cores: the tables hold what an idle machine does only if that is about 0.
+compared is taken in turn, in one process. Each part says how many processes wanted the machine's cores in the minutes
+before: its tables hold what an idle machine does only if that is about 0.
 """
 GPU = """## On a GPU
 
@@ -43,26 +46,43 @@ with status 1. For less at a time, and a page of its own:
 The first simulation on a GPU lets SAPIEN download PhysX for GPUs from GitHub into `~/.sapien/physx`. A machine without
 network needs that folder from one that has it.
 """
+STOCK, SCALING, RESETS = "stock", "scaling", "resets"
+TITLES = {
+    STOCK: "Beside ManiSkill's own tasks",
+    SCALING: "By the number of things and the size of pictures",
+    RESETS: "Many resets",
+}
 COMMANDS = {
-    "Beside ManiSkill's own tasks": ("--against stock",),
-    "By the number of things and the size of pictures": ("--scaling",),
-    "Many resets": tuple(f"--resets -e {task}" for task in ("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1")),
+    STOCK: ("--against stock",),
+    SCALING: ("--scaling",),
+    RESETS: tuple(f"--resets -e {task}" for task in ("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1")),
 }
 
 
-def main() -> None:
-    """Write the page."""
-    parts = [HEAD.format(load=os.getloadavg()[1])]
-    for title, commands in COMMANDS.items():
-        parts.append(f"## {title}\n")
-        for words in commands:
-            done = subprocess.run(
-                [*COMMAND, "bench", *words.split()], cwd=HERE.parent, stdout=subprocess.PIPE, text=True, check=True
-            )
-            parts.append(f"`hazard-ms bench {words}` prints:\n\n{done.stdout.rstrip()}\n")
-            print(parts[-1], flush=True)
-    PAGE.write_text("\n".join([*parts, GPU]), encoding="utf-8")
+def measured(part: str) -> str:
+    """The section of one of COMMANDS, measured now."""
+    load = f"In the minutes before, {os.getloadavg()[1]:.1f} processes on average wanted the machine's cores.\n"
+    lines = [f"## {TITLES[part]}\n", load]
+    for words in COMMANDS[part]:
+        command = [*COMMAND, "bench", *words.split()]
+        done = subprocess.run(command, cwd=HERE.parent, stdout=subprocess.PIPE, text=True, check=True)
+        lines.append(f"`hazard-ms bench {words}` prints:\n\n{done.stdout.rstrip()}\n")
+        print(lines[-1], flush=True)
+    return "\n".join(lines)
+
+
+def kept(part: str) -> str:
+    """The section of one of COMMANDS as it is on the page."""
+    _, heading, rest = PAGE.read_text(encoding="utf-8").partition(f"## {TITLES[part]}\n")
+    return heading + rest.split("\n## ")[0]
+
+
+def main(wanted: list[str]) -> None:
+    """Write the page, its parts called `wanted` measured anew, or all. Raises ValueError for unknown names."""
+    chosen = [one_of(name, TITLES, "a part of the page") for name in wanted] or [*TITLES]
+    parts = [measured(part) if part in chosen else kept(part) for part in TITLES]
+    PAGE.write_text("\n".join([HEAD, *parts, GPU]), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

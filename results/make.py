@@ -5,20 +5,20 @@ With `tables` alone it plays nothing.
 Every agent plays the 25 scenes of each task's split `test` once, and the agents that are compared with `planner` play
 them three times with Fetch; raw results go to build/results, from where `hazard-ms report` and `hazard-ms regret` can
 read them. Rescues of people, played with `hazard-ms serve --folder build/results/SWEEP/people`, become a row `human`.
-README.md and scores.csv beside this file are written anew; sweeps of which this machine has no raw results stay in
-them as they are.
+README.md and scores.csv beside this file are written anew. Episodes in scores.csv that this machine has no raw results
+of stay in the tables, as long as all their columns are there: delete the rows of a sweep whose agents or skills have
+changed. Sweeps without any raw results here stay as they are.
 """
 
 from __future__ import annotations
 
 import csv
-import json
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 from hazard_ms.evaluation.choices import HUMAN
+from hazard_ms.evaluation.comparison.folders import title as settings
 from hazard_ms.evaluation.comparison.summary import interval
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.robots import robot_class
@@ -26,12 +26,12 @@ from hazard_ms.sketch.bound import bound
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.spec.checks import one_of
 from hazard_ms.tasks import task_of
+from results.rows import COLUMNS, Row, group, merged, read, row_of, whole
 from results.tables import COMMAND, HERE, TASKS, evaluate, machine, results_in
 
 RAW = HERE.parent / "build" / "results"
 MAIN = ("greedy", "mcts", "planner", "oracle")
 ALL = (*MAIN, "random", "rule", "oracle:known=true", "paper/greedy", "paper/rule", "paper/mcts")
-COLUMNS = ("task", "robot", "agent", "scene", "seed", "value", "bound", "frames", "ended", "rescued", "targets")
 COMPARED = ("greedy", "mcts", "planner")
 SCENES, SEEDS = 25, 75  # episodes of an agent, and of those that are compared
 SWEEPS = {f"{task}-{robot}": ALL if robot == "fetch" else MAIN for robot in ("fetch", "g1") for task in TASKS}
@@ -51,9 +51,9 @@ def play(sweep: str) -> None:
         evaluate(task, RAW / sweep, *options, "--agents", *agents, check=False)
 
 
-def bounds(env_id: str, robot: str, results: list[EpisodeResult]) -> dict[int, float]:
-    """The Value that no agent can exceed with each seed of `results`."""
-    task, build, made = task_of(env_id, "paper"), robot_class(robot).build, dict[int, float]()
+def bounds(env_id: str, robot: str, results: list[EpisodeResult], known: dict[int, float]) -> dict[int, float]:
+    """The Value that no agent can exceed with each seed of `results`; those in `known` are not worked out anew."""
+    task, build, made = task_of(env_id, "paper"), robot_class(robot).build, dict(known)
     for result in results:
         if result.seed not in made:
             spec = task.build(result.scene)
@@ -69,54 +69,45 @@ def title(sweep: str) -> str:
     return f"## {task.capitalize()}, {robot}\n"
 
 
-def kept(sweep: str) -> tuple[str, list[dict[str, Any]]]:
-    """The section of a sweep in the README as it is, and its rows in scores.csv; empty if there are none."""
-    task, robot = sweep.split("-")
+def kept(sweep: str) -> str:
+    """The section of a sweep in the README as it is; empty if there is none."""
     _, heading, rest = (HERE / "README.md").read_text(encoding="utf-8").partition(title(sweep))
-    with (HERE / "scores.csv").open(newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if (row["task"], row["robot"]) == (task, robot)]
-    return f"\n{heading}{rest.split(chr(10) + '## ')[0]}" if heading else "", rows
+    return f"\n{heading}{rest.split(chr(10) + '## ')[0]}" if heading else ""
 
 
-def table(sweep: str) -> tuple[str, list[dict[str, Any]]]:
+def table(sweep: str) -> tuple[str, list[Row]]:
     """The section of a sweep in the README, and its rows in scores.csv."""
     task, robot = sweep.split("-")
+    before = read(HERE / "scores.csv", task, robot)
     results = [*results_in(RAW / sweep), *results_in(RAW / sweep / PEOPLE)]
     if not results:
-        return kept(sweep)
-    best, rows = bounds(TASKS[task], robot, results), []
-    for r in results:
-        rows.append(
-            {
-                "task": task,
-                "robot": robot,
-                "agent": r.agent,
-                "scene": r.scene,
-                "seed": r.seed,
-                "value": round(r.tally.value, 4),
-                "bound": round(best[r.seed], 4),
-                "frames": r.frames,
-                "ended": r.ended,
-                "rescued": sum(t.rescued for t in r.targets),
-                "targets": len(r.targets),
-            }
-        )
-        if r.tally.value > best[r.seed] + 1e-9:
-            raise AssertionError(f"Value must not exceed its bound {best[r.seed]}, got {r.tally.value} of {r.agent}")
-    told = subprocess.run([*COMMAND, "report", str(RAW / sweep), "--json"], check=True, capture_output=True, text=True)
-    played = "; ".join((RAW / sweep / PLAYED).read_text(encoding="utf-8").splitlines())
-    lines = [f"\n{title(sweep)}", f"Played at {played}.\n"]
-    for group in json.loads(told.stdout)["groups"]:
-        lines += section(group)
-    lines.append(f"\nNo agent can exceed {100 * sum(best.values()) / len(best):.1f} on average (the bound).")
+        return kept(sweep), before
+    best = bounds(TASKS[task], robot, results, {int(row["seed"]): float(row["bound"]) for row in before})
+    rows = merged(whole(before), (row_of(task, robot, r, best[r.seed]) for r in results))
+    for row in rows:
+        if row["value"] > row["bound"] + 1e-4:
+            raise AssertionError(
+                f"Value must not exceed its bound {row['bound']}, got {row['value']} of {row['agent']}"
+            )
+    lines = [f"\n{title(sweep)}", f"Played at {played(sweep, bool(whole(before)))}.\n"]
+    lines += section(group(settings(results[0]), rows))
+    limits = {row["seed"]: row["bound"] for row in rows}
+    lines.append(f"\nNo agent can exceed {100 * sum(limits.values()) / len(limits):.1f} on average (the bound).")
     if robot == "fetch":
-        lines += fidelity(RAW / sweep)
+        lines += fidelity(sweep)
     return "\n".join(lines) + "\n", rows
 
 
-def fidelity(folder: Path) -> list[str]:
-    """What the sketch gives beside the real episodes in a folder, as `hazard-ms sketch check` tells it."""
-    told = subprocess.run([*COMMAND, "sketch", "check", str(folder)], capture_output=True, text=True)
+def played(sweep: str, before: bool) -> str:
+    """The commits and machines on which a sweep was played; with `before` also those that the README names."""
+    _, _, rest = kept(sweep).partition("Played at ")
+    old = rest.split(".\n")[0].replace("; commit ", "\ncommit ").splitlines() if before else []
+    return "; ".join(dict.fromkeys([*old, *(RAW / sweep / PLAYED).read_text(encoding="utf-8").splitlines()]))
+
+
+def fidelity(sweep: str) -> list[str]:
+    """What the sketch gives beside the real episodes of a sweep here, as `hazard-ms sketch check` tells it."""
+    told = subprocess.run([*COMMAND, "sketch", "check", str(RAW / sweep)], capture_output=True, text=True)
     if not told.stdout:
         raise ValueError(f"hazard-ms sketch check must tell how far off the sketch is, got {told.stderr!r:.300}")
     return ["\nThe sketch beside these episodes (`hazard-ms sketch check`):\n", "```text", told.stdout.strip(), "```"]

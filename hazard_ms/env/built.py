@@ -18,7 +18,6 @@ from hazard_ms.hazards.presets import FREQUENCIES
 from hazard_ms.scenes.choice import SceneChoice
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.labels import labels_of
-from hazard_ms.sensing.observation_table import leaves
 from hazard_ms.sensing.observations import Observer
 from hazard_ms.simulation import building, clearance
 from hazard_ms.simulation.lighting import Lighting
@@ -90,6 +89,20 @@ class BuiltEnv(BaseEnv):
         self.episode.see(self.agent)
         self.episode.begin_hazards(env_idx)
 
+    def _step_action(self, action: Any) -> Any:
+        """As ManiSkill's, which looks again at what an action is; one that is checked already needs no second look."""
+        if self.gpu_sim_enabled or not isinstance(action, Tensor):
+            return super()._step_action(action)
+        self.agent.set_action(action)
+        self._before_control_step()
+        for _ in range(self._sim_steps_per_control):
+            self.agent.before_simulation_step()
+            self._before_simulation_step()
+            self.scene.step()
+            self._after_simulation_step()
+        self._after_control_step()
+        return action
+
     def _before_control_step(self) -> None:
         if self.affects_agent:
             self.agent.carry(self.episode.slowed)
@@ -112,7 +125,7 @@ class BuiltEnv(BaseEnv):
     def _flatten_raw_obs(self, obs: Any) -> Any:
         if self.obs_mode != "state":
             return super()._flatten_raw_obs(obs)
-        return torch.cat([part for _, part in leaves(obs)], dim=1)  # as ManiSkill's, in one step
+        return torch.cat(_tensors(obs), dim=1)  # as ManiSkill's, in one step
 
     def place_robot(self, position: tuple[float, float], heading: float, env: int = 0) -> None:
         """Put the robot of environment `env` at `position` x, y [m] with `heading` [rad], tucked and at rest.
@@ -143,3 +156,11 @@ class BuiltEnv(BaseEnv):
     def hand(self) -> Hand:
         """The hand of each agent: whether and which thing it holds."""
         return self.episode.hand
+
+
+def _tensors(obs: dict[str, Any]) -> list[Tensor]:
+    """All tensors of a nested observation, [E, N] each, in its own units [-], in their order."""
+    made: list[Tensor] = []
+    for value in obs.values():
+        made += _tensors(value) if isinstance(value, dict) else [value]
+    return made

@@ -91,8 +91,7 @@ class Episode:
     def watch(self, qpos: Tensor) -> None:
         """Mark environments whose simulation broke, and write their last states; `qpos` [rad], [E, J]: joints."""
         self.recorder.keep(self.world)
-        new = self.limits.broken(self.world, qpos) & ~self.sim_error
-        self.sim_error |= new
+        new = self.limits.mark(self.world, qpos, self.sim_error)
         if not none_set(new):
             for env in torch.nonzero(new).flatten().tolist():
                 path = self.recorder.dump(self.world, env)

@@ -8,9 +8,10 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.grasp import nearest_target
 from hazard_ms.episode.situation import Situation
+from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.counting import count
+from hazard_ms.kernels.reaching import hint
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Goal
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
@@ -22,10 +23,14 @@ LARGEST = PER_RESCUE + FOR_HOLDING + FOR_NEARNESS  # reward of one frame with on
 
 
 class Counts(NamedTuple):
-    """The fate of the targets by now, as hazard_ms.kernels.counting tells it."""
+    """The fate of the targets by now, [E] each, as hazard_ms.kernels.counting tells it."""
 
-    number: Tensor  # int64 [E, 3]: targets, safe ones, others that are damaged
-    amount: Tensor  # [E, 2] [-]: value of the safe ones as a share of all, things rescued in this frame
+    targets: Tensor  # int64
+    saved: Tensor  # int64: those that are safe
+    spoilt: Tensor  # int64: those that are not, but damaged
+    worth: Tensor  # value of the safe ones as a share of all, damaged ones counting half
+    now: Tensor  # things rescued in this frame, damaged ones counting half
+    done: Tensor  # bool: there are targets, and all are safe
 
 
 def counts(situation: Situation) -> Counts:
@@ -43,46 +48,49 @@ def counts(situation: Situation) -> Counts:
     return made
 
 
-def _room_for_counts(world: World) -> tuple[Tensor, Tensor]:
-    return world.frame.new_zeros(world.num_envs, 3), world.value.new_zeros(world.num_envs, 2)
+def _room_for_counts(world: World) -> tuple[Tensor, ...]:
+    number, share = torch.zeros_like(world.frame), torch.zeros_like(world.agent_heading)
+    return *(number.clone() for _ in range(3)), share, share.clone(), share.bool()
 
 
 def targets(situation: Situation) -> Tensor:
     """Number of targets, [E]."""
-    return counts(situation).number[:, 0].clone()
+    return counts(situation).targets.clone()
 
 
 def rescued(situation: Situation) -> Tensor:
     """Number of targets that are safe, [E]."""
-    return counts(situation).number[:, 1].clone()
+    return counts(situation).saved.clone()
 
 
 def damaged_targets(situation: Situation) -> Tensor:
     """Number of targets that were damaged and are not safe, [E]."""
-    return counts(situation).number[:, 2].clone()
+    return counts(situation).spoilt.clone()
 
 
 def all_rescued(situation: Situation) -> Tensor:
     """Whether there are targets and all of them are safe, bool [E]."""
-    number = counts(situation).number
-    return (number[:, 0] == number[:, 1]) & (number[:, 0] > 0)
+    return counts(situation).done.clone()
 
 
 def rescued_value(situation: Situation) -> Tensor:
     """Value of the rescued targets as a share of the value of all, damaged ones counting half, [E]."""
-    return counts(situation).amount[:, 0].clone()
+    return counts(situation).worth.clone()
 
 
 def rescued_now(situation: Situation) -> Tensor:
     """Number of targets that became safe in this frame, damaged ones counting half, [E]."""
-    return counts(situation).amount[:, 1].clone()
+    return counts(situation).now.clone()
 
 
 def dense(situation: Situation) -> Tensor:
     """Dense reward, [E]: 20 per rescue, a little for holding a target, less for being near one."""
-    _, distance = nearest_target(situation.world, situation.agent.gripper_pose()[0])
-    hints = FOR_NEARNESS * (1.0 - torch.tanh(distance)) + FOR_HOLDING * situation.world.held.any(dim=1)
-    return PER_RESCUE * counts(situation).amount[:, 1] + hints
+    world, now = situation.world, counts(situation).now
+    (made,) = world.launches.once(hint, lambda: (torch.zeros_like(now),))
+    hand, bodies = situation.agent.gripper_pose()[0].contiguous(), world.launches.struct(Bodies, world)
+    worth = (PER_RESCUE, FOR_HOLDING, FOR_NEARNESS)
+    world.launches.run(hint, (world.num_envs,), hand, world.target, now, *worth, bodies, made)
+    return made.clone()
 
 
 def evaluate(goal: Goal, situation: Situation) -> dict[str, Tensor]:

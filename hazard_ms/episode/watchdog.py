@@ -37,13 +37,17 @@ class Limits:
         self.centre = torch.cat([world.room, height], dim=1) / 2
         beyond = world.room.new_tensor([[s.room.beyond, s.room.beyond, 0.0] for s in world.specs])
         self.half = self.centre + beyond + LOST
-        self._found = torch.zeros(world.num_envs, dtype=torch.bool, device=world.device)
+        self._new = torch.zeros(world.num_envs, dtype=torch.bool, device=world.device)
 
-    def broken(self, world: World, qpos: Tensor) -> Tensor:
-        """Whether each environment's simulation is broken, bool [E]. `qpos`: the robot's joints [rad], [E, J]."""
+    def mark(self, world: World, qpos: Tensor, broken_ones: Tensor) -> Tensor:
+        """Mark in `broken_ones`, bool [E], the environments whose simulation broke; those that are new, bool [E].
+
+        `qpos`: the robot's joints [rad], [E, J]. The result holds until the next call.
+        """
         limits = (self.centre, self.half, qpos, MAX_TURN, MAX_SPEED, MAX_SPIN)
-        world.launches.run(broken, (world.num_envs,), *limits, world.launches.struct(Bodies, world), self._found)
-        return self._found
+        marks = (world.launches.struct(Bodies, world), broken_ones, self._new)
+        world.launches.run(broken, (world.num_envs,), *limits, *marks)
+        return self._new
 
 
 class FlightRecorder:

@@ -20,33 +20,38 @@ def count(
     rescued_damaged: wp.array2d(dtype=bool),
     frame: wp.array(dtype=wp.int64),
     share: float,
-    number: wp.array2d(dtype=wp.int64),
-    amount: wp.array2d(dtype=float),
+    targets: wp.array(dtype=wp.int64),
+    saved: wp.array(dtype=wp.int64),
+    spoilt: wp.array(dtype=wp.int64),
+    worth: wp.array(dtype=float),
+    now: wp.array(dtype=float),
+    done: wp.array(dtype=bool),
 ):
-    """Count, in each environment, its targets and what became of them.
+    """Count, in each environment, its `targets`, those that are `saved`, and those that are not but `spoilt`.
 
-    `number`: targets, those that are safe, those that are not but damaged. `amount`: value of those that are safe as a
-    share of that of all, one that was damaged counting as `share`; things rescued in this `frame`, counted likewise.
+    `worth`: value of those that are saved as a share of that of all, one that was damaged counting as `share`; `now`:
+    things rescued in this `frame`, counted likewise; `done`: there are targets, and all are saved.
     """
     e = wp.tid()
-    targets, saved, spoilt = int(0), int(0), int(0)
-    total, worth, now = float(0.0), float(0.0), float(0.0)
+    every, safe_ones, damaged_ones = int(0), int(0), int(0)
+    total, kept, fresh = float(0.0), float(0.0), float(0.0)
     for b in range(target.shape[1]):
         counts = float(1.0)
         if rescued_damaged[e, b]:
             counts = share
         if rescued[e, b] and rescued_at[e, b] == frame[e]:
-            now += counts
+            fresh += counts
         if target[e, b]:
-            targets += 1
+            every += 1
             total += value[e, b]
             if safe[e, b]:
-                saved += 1
-                worth += counts * value[e, b]
+                safe_ones += 1
+                kept += counts * value[e, b]
             elif damaged[e, b]:
-                spoilt += 1
-    number[e, 0] = wp.int64(targets)
-    number[e, 1] = wp.int64(saved)
-    number[e, 2] = wp.int64(spoilt)
-    amount[e, 0] = worth / wp.max(total, 1.0)
-    amount[e, 1] = now
+                damaged_ones += 1
+    targets[e] = wp.int64(every)
+    saved[e] = wp.int64(safe_ones)
+    spoilt[e] = wp.int64(damaged_ones)
+    worth[e] = kept / wp.max(total, 1.0)
+    now[e] = fresh
+    done[e] = every > 0 and safe_ones == every

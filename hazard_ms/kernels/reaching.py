@@ -24,6 +24,32 @@ def gap(point: wp.vec3, centre: wp.vec3, axes: wp.mat33, extent: wp.vec3) -> flo
 
 
 @wp.kernel
+def hint(
+    hand: wp.array(dtype=wp.vec3),
+    target: wp.array2d(dtype=bool),
+    now: wp.array(dtype=float),
+    per_rescue: float,
+    for_holding: float,
+    for_nearness: float,
+    bodies: Bodies,
+    reward: wp.array(dtype=float),
+):
+    """Set the dense `reward`: `per_rescue` for each of the things rescued `now`, for holding one, for being near one.
+
+    The nearness is that of the `hand` [m] to the target that is not safe yet and nearest to it.
+    """
+    e = wp.tid()
+    held, least = float(0.0), float(wp.inf)
+    for b in range(target.shape[1]):
+        if bodies.held[e, b]:
+            held = 1.0
+        if target[e, b] and not bodies.safe[e, b]:
+            away = gap(hand[e], bodies.position[e, b], axes_of(bodies.rotation[e, b]), bodies.extent[e, b])
+            least = wp.min(least, away)
+    reward[e] = per_rescue * now[e] + for_holding * held + for_nearness * (1.0 - wp.tanh(least))
+
+
+@wp.kernel
 def nearest(
     hand: wp.array(dtype=wp.vec3),
     target: wp.array2d(dtype=bool),

@@ -34,9 +34,12 @@ def broken(
     fastest: float,
     spinning: float,
     bodies: Bodies,
-    found: wp.array(dtype=bool),
+    known: wp.array(dtype=bool),
+    fresh: wp.array(dtype=bool),
 ):
-    """Set `found` for environments in which a body that moves, or a joint, has a number that none can have.
+    """Mark environments in which a body that moves, or a joint, has a number that none can have.
+
+    Those that are not yet `known` are `fresh`; then all of them are known.
 
     Places are within `half` of `centre` [m]; the others are at most `turned` (of a rotation), `fastest` [m/s] and
     `spinning` [rad/s] along each axis; `joints` are finite.
@@ -53,4 +56,5 @@ def broken(
             bad = bad or beyond(bodies.angular_velocity[e, b], zero, spin)
     for j in range(joints.shape[1]):
         bad = bad or not wp.isfinite(joints[e, j])
-    found[e] = bad
+    fresh[e] = bad and not known[e]
+    known[e] = known[e] or bad

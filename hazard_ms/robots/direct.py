@@ -144,7 +144,16 @@ class BaseForwardVel(DirectController, PDBaseForwardVelController):
             motor.set_drive_velocity_target(speed)
 
 
-def parts_of(controller: Any) -> tuple[tuple[Callable[[Floats], None], int, int], ...]:
+Part = tuple[Callable[[Floats], None], int, int]  # what acts on a part of an action, from and to where
+
+
+def going_on(controller: Any) -> tuple[BaseController, ...]:
+    """The parts of ManiSkill's combined `controller` that have something to do in the middle of a frame."""
+    every = controller.controllers.values()
+    return tuple(p for p in every if not isinstance(p, DirectController) or getattr(p.config, "interpolate", False))
+
+
+def parts_of(controller: Any) -> tuple[Part, ...]:
     """Functions that act in the one scene, each with its part of an action of ManiSkill's combined `controller`."""
     every = ((part, *controller.action_mapping[name]) for name, part in controller.controllers.items())
     return tuple((part.act if isinstance(part, DirectController) else _by_tensor(part), a, b) for part, a, b in every)

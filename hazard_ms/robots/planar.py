@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from hazard_ms.robots.chain import Chain
-from hazard_ms.robots.direct import parts_of
+from hazard_ms.robots.direct import Part, going_on, parts_of
 from hazard_ms.robots.robot import Robot
 from hazard_ms.spec.checks import one_of
 
@@ -49,7 +49,7 @@ class PlanarRobot(Robot):
     _control_freq: int
 
     _acting: Any = None  # the controller of these:
-    _acts: tuple[tuple[Callable[[NDArray[np.float32]], None], int, int], ...] = ()
+    _acts: tuple[tuple[Part, ...], tuple[Any, ...]] = ((), ())
 
     rest: NDArray[np.float64]  # all joints where the robot stands tucked, in SAPIEN's order
     ride_height: float  # of the description's root above the floor [m]
@@ -72,10 +72,22 @@ class PlanarRobot(Robot):
         (numbers,) = action.numpy()
         if np.isnan(numbers).any():
             raise ValueError(f"an action must hold numbers, got {action.tolist()}")
-        if self._acting is not self.controller:
-            self._acting, self._acts = self.controller, parts_of(self.controller)
-        for act, start, end in self._acts:
+        for act, start, end in self._parts_now()[0]:
             act(numbers[start:end])
+
+    def before_simulation_step(self) -> None:
+        """Let those controllers go on that have something to do in the middle of a frame."""
+        if self.scene.gpu_sim_enabled:
+            self.controller.before_simulation_step()
+            return
+        for controller in self._parts_now()[1]:
+            controller.before_simulation_step()
+
+    def _parts_now(self) -> tuple[tuple[Part, ...], tuple[Any, ...]]:
+        """What acts on each part of an action in the present control mode, and what goes on within a frame."""
+        if self._acting is not self.controller:
+            self._acting, self._acts = self.controller, (parts_of(self.controller), going_on(self.controller))
+        return self._acts
 
     def action_size(self, control_mode: str) -> int:
         """Length of an action in `control_mode`, one of the robot's. The present mode stays."""

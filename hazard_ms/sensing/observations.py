@@ -63,6 +63,8 @@ class Observer:
 
     def _value(self, term: Term) -> Tensor:
         value = term.of(self.situation)
+        if value.ndim == 2 and value.dtype == torch.float32 and not term.per_target:
+            return value
         return (self.table.of(value) if term.per_target else value).float().flatten(1)
 
     def _of_targets(self, terms: Sequence[Term]) -> dict[str, Tensor]:
@@ -71,8 +73,9 @@ class Observer:
             return {}
         values = [term.of(self.situation) for term in terms]
         columns = torch.cat([v if v.ndim == 3 else v[..., None] for v in values], dim=-1).float()
-        taken = self.table.of(columns).split([v.shape[2] if v.ndim == 3 else 1 for v in values], dim=-1)
-        return {term.name: part.flatten(1) for term, part in zip(terms, taken, strict=True)}
+        widths = [v.shape[2] if v.ndim == 3 else 1 for v in values]
+        taken = self.table.told(columns, widths).split([self.table.slots * width for width in widths], dim=1)
+        return {term.name: part for term, part in zip(terms, taken, strict=True)}
 
     def add_hazard_image(self, obs: dict[str, Any], in_extra: bool) -> dict[str, Any]:
         """Put the hazard image of the head camera, [E, H, W, K], into an observation with sensor data.

@@ -5,11 +5,13 @@ It never holds their places, which an agent must see for itself.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
 from torch import Tensor
 
+from hazard_ms.kernels.telling import tell
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.catalogue import CATEGORIES
 
@@ -47,7 +49,8 @@ class TargetTable:
         for e, row in enumerate(rows):
             self.index[e, : len(row)] = row
         self.there = self.index >= 0
-        self._absent = ~self.there
+        self._absent, self._launches = ~self.there, world.launches
+        self._layouts: dict[tuple[int, ...], tuple[Tensor, Tensor]] = {}  # by the widths of terms, see `told`
         starts = torch.arange(world.num_envs, device=world.device)[:, None] * world.num_bodies
         self._row = (starts + self.index.clamp(min=0)).flatten()  # in a list of the things of all scenes
 
@@ -56,6 +59,28 @@ class TargetTable:
         taken = of_things.flatten(0, 1).index_select(0, self._row).view(*self.index.shape, *of_things.shape[2:])
         absent = self._absent if taken.ndim == 2 else self._absent[..., None]
         return taken.masked_fill_(absent, 0)
+
+    @property
+    def slots(self) -> int:
+        """Number of columns, T."""
+        return self.index.shape[1]
+
+    def told(self, of_things: Tensor, widths: Sequence[int]) -> Tensor:
+        """Numbers of the targets, [E, T K], taken from those of all things, [E, B, K] [-]; 0 without a target.
+
+        They come one term after the other, target by target; `widths` says how many of the K numbers each term has.
+        """
+        layout = self._layouts.get(tuple(widths))
+        if layout is None:
+            first = [sum(widths[:k]) for k, width in enumerate(widths) for _ in range(width)]
+            wide = [width for width in widths for _ in range(width)]
+            layout = torch.tensor(first, device=of_things.device), torch.tensor(wide, device=of_things.device)
+            self._layouts[tuple(widths)] = layout
+        environments, count = self.index.shape
+        made = of_things.new_empty(environments, count * of_things.shape[2])
+        size = (environments, count, of_things.shape[2])
+        self._launches.run(tell, size, of_things.contiguous(), self.index, *layout, made)
+        return made
 
     def rows(self, world: World, env: int = 0, damaged: frozenset[int] | set[int] = frozenset()) -> tuple[Target, ...]:
         """The targets of scene `env`.

@@ -158,10 +158,10 @@ class HazardEnv(BuiltEnv):
         raw = self.get_obs(info, unflattened=True)
         reward = self.get_reward(raw, commands, info)
         obs = self._last_obs = self._flatten_raw_obs(raw)
-        terminated, broken = info["success"] | info["fail"], self.episode.sim_error.clone()
+        broken, over = self.episode.sim_error.clone(), torch.logical_or(info["success"], info["fail"])
         if not none_set(broken):
-            obs, reward, terminated = finite(obs), torch.where(broken, 0.0, reward), terminated & ~broken
-        return obs, reward, terminated, broken, info
+            obs = finite(obs)
+        return obs, torch.where(broken, 0.0, reward), over & ~broken, broken, info
 
     def advance(self, action: Any) -> dict[str, Any]:
         """One frame like `step`, without observation and reward: what skills use between decisions. Returns info."""

@@ -54,7 +54,7 @@ def nearest_target(world: World, hand: Tensor) -> tuple[Tensor, Tensor]:
 
     And the distance [m] of the hand from the surface of its box, infinite for none, [E]. Both hold until the next call.
     """
-    found = world.launches.once(nearest, lambda: (world.frame.clone(), world.agent_heading.clone()))
+    found = world.launches.once(nearest, world.frame, lambda: (world.frame.clone(), world.agent_heading.clone()))
     bodies = world.launches.struct(Bodies, world)
     world.launches.run(nearest, (world.num_envs,), hand, world.target, bodies, *found)
     return found[0], found[1]

@@ -39,7 +39,7 @@ def counts(situation: Situation) -> Counts:
     if known is not None and "counts" in known:
         return known["counts"]
     world, damage, rescue = situation.world, situation.episode.damage, situation.episode.rescue
-    made = Counts(*world.launches.once(count, lambda: _room_for_counts(world)))
+    made = Counts(*world.launches.once(count, world.frame, lambda: _room_for_counts(world)))
     things = world.target, world.value, world.safe, damage.damaged
     rescues = rescue.safe, rescue.frame, rescue.damaged, world.frame
     world.launches.run(count, (world.num_envs,), *things, *rescues, DAMAGED_SHARE, *made)
@@ -86,7 +86,7 @@ def rescued_now(situation: Situation) -> Tensor:
 def dense(situation: Situation) -> Tensor:
     """Dense reward, [E]: 20 per rescue, a little for holding a target, less for being near one."""
     world, now = situation.world, counts(situation).now
-    (made,) = world.launches.once(hint, lambda: (torch.zeros_like(now),))
+    (made,) = world.launches.once(hint, now, lambda: (torch.zeros_like(now),))
     hand, bodies = situation.agent.gripper_pose()[0].contiguous(), world.launches.struct(Bodies, world)
     worth = (PER_RESCUE, FOR_HOLDING, FOR_NEARNESS)
     world.launches.run(hint, (world.num_envs,), hand, world.target, now, *worth, bodies, made)

@@ -44,6 +44,7 @@ class Launches:
     def __init__(self) -> None:
         self._made: dict[wp.Kernel, _Recorded] = {}
         self._results: dict[wp.Kernel, tuple[Tensor, ...]] = {}
+        self._once: dict[tuple[wp.Kernel, torch.Size, torch.device], tuple[Tensor, ...]] = {}
         self._structs: dict[wp.Struct, _Filled] = {}
 
     def __reduce__(self) -> tuple[type[Launches], tuple[()]]:
@@ -62,14 +63,15 @@ class Launches:
             )
         return known
 
-    def once(self, kernel: wp.Kernel, make: Callable[[], tuple[Tensor, ...]]) -> tuple[Tensor, ...]:
+    def once(self, kernel: wp.Kernel, like: Tensor, make: Callable[[], tuple[Tensor, ...]]) -> tuple[Tensor, ...]:
         """Tensors for the results of `kernel`, [...] each in its own unit [-], which `make` makes at the first call.
 
-        They are the same ones at every call, as those of `results`, and never change their shapes.
+        They are the same ones at every call with the shape and the device of `like`, [...].
         """
-        known = self._results.get(kernel)
+        key = (kernel, like.shape, like.device)
+        known = self._once.get(key)
         if known is None:
-            known = self._results[kernel] = make()
+            known = self._once[key] = make()
         return known
 
     def struct(self, kind: wp.Struct, source: object) -> Any:

@@ -17,7 +17,7 @@ from mani_skill.agents.controllers import (
     PDJointPosMimicController,
     PDJointVelController,
 )
-from mani_skill.agents.controllers.base_controller import BaseController
+from mani_skill.agents.controllers.base_controller import BaseController, CombinedController
 from numpy.typing import NDArray
 from torch import Tensor
 
@@ -134,11 +134,18 @@ class Fingers(DirectController, PDJointPosMimicController):
 class BaseForwardVel(DirectController, PDBaseForwardVelController):
     """Drives the base ahead and turns it."""
 
+    def set_action(self, action: Tensor) -> None:
+        """Drive as `action` says, [E, 2]."""
+        action = self._preprocess_action(action)
+        heading = self.qpos[:, 2:3]
+        # ManiSkill turns (forward, 0) by a matrix, whose sums with a product of 0 have no negative zeros
+        along = torch.cat([heading.cos(), heading.sin()], dim=1) * action[:, :1] + 0.0
+        self.set_drive_velocity_targets(torch.cat([along, action[:, 1:]], dim=1))
+
     def act(self, action: Floats) -> None:
         """Drive as `action` says, [2]."""
         forward, turn = self._commands(action)
         heading = torch.from_numpy(self._joints_now()[2:3])  # numpy's cosine differs from torch's in the last bit
-        # ManiSkill turns (forward, 0) by a matrix, whose sums with a product of 0 have no negative zeros
         along = (float(np.float32(way.item()) * forward) + 0.0 for way in (heading.cos(), heading.sin()))
         for motor, speed in zip(self._motors, (*along, float(turn)), strict=True):
             motor.set_drive_velocity_target(speed)
@@ -148,13 +155,15 @@ Part = tuple[Callable[[Floats], None], int, int]  # what acts on a part of an ac
 
 
 def going_on(controller: Any) -> tuple[BaseController, ...]:
-    """The parts of ManiSkill's combined `controller` that have something to do in the middle of a frame."""
-    every = controller.controllers.values()
+    """The parts of ManiSkill's `controller` that have something to do in the middle of a frame."""
+    every = controller.controllers.values() if isinstance(controller, CombinedController) else (controller,)
     return tuple(p for p in every if not isinstance(p, DirectController) or getattr(p.config, "interpolate", False))
 
 
 def parts_of(controller: Any) -> tuple[Part, ...]:
-    """Functions that act in the one scene, each with its part of an action of ManiSkill's combined `controller`."""
+    """Functions that act in the one scene, each with its part of an action of ManiSkill's `controller`."""
+    if not isinstance(controller, CombinedController):
+        return ((_by_tensor(controller), 0, controller.single_action_space.shape[0]),)
     every = ((part, *controller.action_mapping[name]) for name, part in controller.controllers.items())
     return tuple((part.act if isinstance(part, DirectController) else _by_tensor(part), a, b) for part, a, b in every)
 

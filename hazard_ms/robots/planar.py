@@ -72,7 +72,10 @@ class PlanarRobot(Robot):
         (numbers,) = action.numpy()
         if np.isnan(numbers).any():
             raise ValueError(f"an action must hold numbers, got {action.tolist()}")
-        for act, start, end in self._parts_now()[0]:
+        parts = self._parts_now()[0]
+        if len(numbers) != max(end for _, _, end in parts):
+            raise ValueError(f"an action must have {max(end for _, _, end in parts)} numbers, got {len(numbers)}")
+        for act, start, end in parts:
             act(numbers[start:end])
 
     def before_simulation_step(self) -> None:

@@ -33,7 +33,10 @@ def properties(situation: Situation) -> Tensor:
 
 
 def level(hazard: Hazard, situation: Situation) -> Tensor:
-    """Level of `hazard` at the middle of every target, in the hazard's unit ([C], [m] or [m/s]); else 0, [E, B]."""
+    """Level of `hazard` at the middle of every target, in the hazard's unit ([C], [m] or [m/s]), [E, B].
+
+    What is no target has none of its own; it is 0, or in a scene without targets that of the first thing.
+    """
     world = situation.world
     index = world.targets
     points = world.position.gather(1, index[..., None].expand(-1, -1, 3))

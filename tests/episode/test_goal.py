@@ -63,3 +63,12 @@ def test_damaged_targets_are_counted_until_they_are_safe() -> None:
     assert int(rewards.damaged_targets(now)) == 1
     rescue(now, 0)
     assert int(rewards.damaged_targets(now)) == 0
+
+
+def test_numbers_of_earlier_frames_stay() -> None:
+    now = situation([True, True, True])
+    functions = (rewards.rescued, rewards.rescued_value, rewards.all_rescued, rewards.rescued_now)
+    before = [of(now) for of in functions]
+    now.world.safe[:] = True
+    after = [float(of(now)) for of in functions]
+    assert [float(number) for number in before] == [0.0] * 4 and after == [3.0, 1.0, 1.0, 0.0]

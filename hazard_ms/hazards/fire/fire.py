@@ -2,8 +2,8 @@
 
 Two clocks, both counting frames: every 5 frames all temperatures (hazard_ms.hazards.fire.heat), then all states of
 burning; every 10 frames flames grow or spread (hazard_ms.hazards.fire.spread, .floor). Flames on the floor never go
-out. A thing is where the middle of its base is, as in the original. Constants: docs/physics.md 1.1; what the presets
-change: docs/physics.md 1.5.
+out. A thing is where the middle of its base is, as in the original. Images come from a kernel. Constants:
+docs/physics.md 1.1; what the presets change: docs/physics.md 1.5.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ class Fire(Hazard):
         sources = self._sources(state, world)
         nodes = state.temperature.shape[1] + 1  # things and the agent; after them come the flames
         mean = heat.Mean(self.room_temperature, 1.0, self.reach, self.nearest)
-        around = mean.at(sources.place[:, :nodes], sources, apart=True)
+        around = mean.at(sources.place[:, :nodes], sources)
         # what went out under water has none
         embers = (state.status == BURNT) & state.threshold.isfinite() & self.embers
         fixed = (state.status == BURNING) | embers

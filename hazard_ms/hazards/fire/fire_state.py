@@ -45,13 +45,14 @@ class FireState(State):
 def some_flames(state: FireState) -> int:
     """Number of places of the roster, from its beginning, that hold all flames; all of them on a GPU.
 
-    So many are left out, and so many without a flame kept, that torch's sums over all sources keep their last bits.
+    STRIDE - 1 empty ones stay, since torch adds up sources in STRIDE rows, and the last few apart: what is left out
+    then changes no bit.
     """
     length = state.flame_cell.shape[1]
     if state.flame_cell.device.type != "cpu":
         return length
     used = int((state.flame_cell >= 0).sum(1).max())
-    return min(used + STRIDE + (length - used) % STRIDE, length)
+    return min(used + STRIDE - 1, length)
 
 
 def lit(state: FireState, frame: Tensor, count: int | None = None) -> Tensor:

@@ -38,19 +38,16 @@ class Mean:
     reach: float  # distance at which a source has the weight 1 [m]
     nearest: float  # nearer sources weigh no more than at this distance [m]
 
-    def at(self, points: Tensor, sources: Sources, apart: bool = False) -> Tensor:
-        """Mean temperature [C] at `points` [m], [E, P, 3]: [E, P].
-
-        With `apart`, point p is source p, and is no source to itself.
-        """
+    def at(self, points: Tensor, sources: Sources) -> Tensor:
+        """Mean temperature [C] at `points` [m], [E, P, 3]: [E, P]. Point p is source p, and no source to itself."""
         environments = len(points)
         block = environments if points.is_cuda else max(1, _BLOCK // (points.shape[1] * sources.place.shape[1]))
         if block >= environments:
-            return self._block(points, sources, apart)
+            return self._block(points, sources)
         parts = (slice(start, start + block) for start in range(0, environments, block))
-        return torch.cat([self._block(points[p], Sources(*(s[p] for s in sources)), apart) for p in parts])
+        return torch.cat([self._block(points[p], Sources(*(s[p] for s in sources))) for p in parts])
 
-    def _block(self, points: Tensor, sources: Sources, apart: bool) -> Tensor:
+    def _block(self, points: Tensor, sources: Sources) -> Tensor:
         place, temperature, active = sources
         x = torch.where(active, place[..., 0], torch.inf)  # infinitely far: of weight 0
         ahead, across, above = points.transpose(1, 2).contiguous()[:, :, None].unbind(1)  # side by side: twice as fast
@@ -59,8 +56,7 @@ class Mean:
             offset = place[..., axis, None] - there
             weight.addcmul_(offset, offset)
         weight.clamp_(min=self.nearest**2).reciprocal_()
-        if apart:
-            weight[:, : points.shape[1]].diagonal(dim1=1, dim2=2).zero_()
+        weight[:, : points.shape[1]].diagonal(dim1=1, dim2=2).zero_()
         total = weight.sum(1).add_(self.room_weight / self.reach**2).clamp_(min=_TINY)
         # the excess over the room: a scene at the room's temperature stays there exactly; sums, not products of
         # matrices, whose rounding depends on how many environments there are

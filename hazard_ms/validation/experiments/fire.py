@@ -61,7 +61,7 @@ def isolated(thing: int) -> float:
     points, temperature = torch.tensor([[[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]]]), torch.tensor([[300.0, 20.0]])
     mean = Mean(20.0, 0.0, 0.5, 0.1)
     for _ in range(200):
-        around = mean.at(points, Sources(points, temperature, torch.ones(1, 2, dtype=torch.bool)), apart=True)
+        around = mean.at(points, Sources(points, temperature, torch.ones(1, 2, dtype=torch.bool)))
         temperature = exchange(temperature, around, torch.tensor(True), 0.03)
     return float(temperature[0, thing])
 

@@ -95,7 +95,7 @@ def pair_law(temperature: torch.Tensor, distance: float, room_weight: float, cou
     points = torch.tensor([[[0.0, 0.0, 0.0], [distance, 0.0, 0.0]]])
     mean = Mean(20.0, room_weight, 0.5, 0.1)
     for _ in range(count):
-        around = mean.at(points, Sources(points, temperature, torch.ones(1, 2, dtype=torch.bool)), apart=True)
+        around = mean.at(points, Sources(points, temperature, torch.ones(1, 2, dtype=torch.bool)))
         temperature = exchange(temperature, around, torch.tensor(True), 0.03)
     return temperature
 

@@ -53,3 +53,12 @@ def test_the_rest_of_the_roster_changes_no_bit(preset: Fire, monkeypatch: pytest
     assert some_flames(short) < short.flame_cell.shape[1] - 3 and int((short.flame_cell >= 0).sum()) > 6
     for name, value in short.save().items():
         assert torch.equal(value, getattr(whole, name)), name
+
+
+def test_an_image_stays_when_another_is_made(preset: Fire) -> None:
+    world = crowded()
+    state = begin(preset, world)
+    near, far = torch.tensor([[[8.5, 8.5, 0.3]]]), torch.tensor([[[1.0, 1.0, 0.3]]])
+    first = preset.image(state, world, near)
+    kept = float(first)
+    assert float(preset.image(state, world, far)) < kept == float(first)

@@ -40,8 +40,8 @@ class HazardEnv(BuiltEnv):
     One step (a frame):
         robot.set_action, kept out of what would destroy it
         each physics step: world.read -> sum over hazards of hazard.force -> world.push (once) -> physics
-        then: world.read -> guard -> chance.tick -> each hazard.advance in order -> damage -> hand -> observation,
-            reward, info
+        then: world.read -> guard -> chance.tick -> each hazard.advance in order -> damage -> hand -> info,
+            observation, reward
     """
 
     SUPPORTED_REWARD_MODES = keywords.REWARD_MODES

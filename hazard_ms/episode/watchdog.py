@@ -21,7 +21,7 @@ from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.watching import broken
 from hazard_ms.simulation.world import World
 
-MAX_TURN = 2.0  # largest number of a rotation: that of a unit quaternion is 1
+MAX_TURN = 2.0  # largest number of a rotation: that of a unit quaternion is 1 [ours]
 MAX_SPEED = 50.0  # highest speed of a body [m/s]: nothing in a room moves faster (docs/reliability.md 5)
 MAX_SPIN = 1000.0  # highest angular velocity of a body [rad/s]; PhysX itself limits bodies to 100
 LOST = 5.0  # distance outside the room at which a body counts as lost [m] [ours]

@@ -73,8 +73,8 @@ class PlanarRobot(Robot):
         if np.isnan(numbers).any():
             raise ValueError(f"an action must hold numbers, got {action.tolist()}")
         parts = self._parts_now()[0]
-        if len(numbers) != max(end for _, _, end in parts):
-            raise ValueError(f"an action must have {max(end for _, _, end in parts)} numbers, got {len(numbers)}")
+        if len(numbers) != parts[-1][2]:
+            raise ValueError(f"an action must have {parts[-1][2]} numbers, got {len(numbers)}")
         for act, start, end in parts:
             act(numbers[start:end])
 

@@ -7,7 +7,6 @@ layer or of the hottest plume around it. The laws are those of `.radiation` and 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import torch
 import warp as wp
@@ -108,15 +107,6 @@ def show(
     found[e, p] = wp.min(adiabatic(flux, wp.min(gas + rise, hottest), room), hottest)
 
 
-class _Fires(NamedTuple):
-    """What `Fires` is filled with."""
-
-    place: Tensor
-    power: Tensor
-    radiant: Tensor
-    diameter: Tensor
-
-
 def shown(
     state: BlazeState, world: World, fires: radiation.Fires, points: Tensor, room: float, hottest: float
 ) -> Tensor:
@@ -126,7 +116,7 @@ def shown(
     """
     points = of_environments(points, world.num_envs)
     found = torch.empty_like(points[..., 0])
-    of_fires = world.launches.struct(Fires, _Fires(*(v.contiguous() for v in fires)))
+    of_fires = world.launches.struct(Fires, radiation.Fires(*(v.contiguous() for v in fires)))
     arguments = (points, room, hottest, of_fires, world.launches.struct(Rooms, state), found)
     world.launches.run(show, tuple(found.shape), *arguments)
     return found

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.skills import failures
-from hazard_ms.skills.motor.grasping import DOUBTFUL, pick_up
+from hazard_ms.skills.motor.grasping import APART, HOPELESS, pick_up
 from hazard_ms.skills.motor.reaching import arm_way
-from tests.worlds.arena import Arena
+from tests.worlds.arena import Arena, Box
 from tests.worlds.skill_room import horizontal, walk
 
 HIGH = 1.5  # of what the robot believes to stand around the thing [m]
@@ -35,7 +35,7 @@ def test_the_base_goes_round_to_where_the_arm_gets_at_a_thing(fresh: Arena) -> N
     _believe(fresh, "bowl", np.deg2rad(200.0))
     fresh.agent.use_hand(stage.position(index))
     here = arm_way(stage, index, set(), stage.position(index))
-    assert here is None or here.route.hits > DOUBTFUL
+    assert here is None or here.route.hits > HOPELESS
     x, y, _ = fresh.agent.base()
     assert fresh.run(pick_up(stage, index)).ok
     assert np.hypot(*np.subtract(fresh.agent.base()[:2], (x, y))) > 0.5  # it went to the side, or behind the bowl
@@ -48,3 +48,22 @@ def test_an_arm_that_would_not_get_there_stays_where_it_is(fresh: Arena) -> None
     result = fresh.run(pick_up(fresh.stage, fresh.index("bowl")))
     assert not result.ok and result.reason == failures.UNREACHABLE and result.frames < LITTLE
     assert fresh.stage.arm_gap(fresh.agent.tucked) < 0.1 and abs(horizontal(fresh, "bowl") - before) < 0.05
+
+
+SCREENED = (
+    Box("plinth", (0.8, 0.0, 0.35), (0.2, 0.2, 0.7), target=False),
+    Box("screen", (0.6, 0.0, 1.0), (0.03, 0.5, 0.5), target=False),
+    Box("can", (0.8, 0.0, 0.76), (0.07, 0.07, 0.12), 0.3),
+)
+
+
+def test_what_was_in_the_way_unseen_is_gone_round() -> None:
+    """The map does not show a screen: the arm meets it, the robot looks again, and stands elsewhere."""
+    arena = Arena(SCREENED)
+    try:
+        arena.map._firm[:] = 0.0
+        result = arena.run(pick_up(arena.stage, arena.index("can")))
+        assert result.ok and arena.looks > 0
+        assert np.hypot(*arena.agent.base()[:2]) > APART
+    finally:
+        arena.close()

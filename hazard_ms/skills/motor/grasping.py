@@ -15,6 +15,7 @@ from hazard_ms.skills.motor.arm import HOVER, fold, follow, go, posture_for
 from hazard_ms.skills.motor.drift import DRIFT_FRAMES, Drift
 from hazard_ms.skills.motor.kinematics import lifted
 from hazard_ms.skills.motor.motion import drive, turn_by, turn_to
+from hazard_ms.skills.motor.navigation import Path
 from hazard_ms.skills.motor.reaching import GRASP, STAND_OFF, Way, aims, arm_way_where_it_will_be
 from hazard_ms.skills.motor.routes import CLOSELY
 from hazard_ms.skills.motor.standing import better_place
@@ -29,12 +30,15 @@ NEAR = 0.35  # and if it is this close where the arm was stopped [m] [ours]
 ONCE_MORE = 75  # frames after which it is not led to a thing again where the arm was stopped [ours]
 FREE = 0.2  # height by which the hand is raised from what it touched [m] [ours]
 AGAIN_FRAMES = 20  # budget of each movement by which the hand is led to a thing anew [frames] [ours]
-DOUBTFUL = 5  # checked points of a way that may lie in something from which on it often fails [ours]
-HOPELESS = 8  # such points from which on it fails more often than not, so it is not tried [ours]
-RISK = 100.0  # frames that a doubtful way costs beyond what it takes: half of them fail [ours]
+CLEAN = 2  # checked points of a way that may lie in something: up to here no better place is looked for [ours]
+PASSABLE = 5  # such points that are put up with at another place [ours]
+HOPELESS = 10  # such points from which on it fails more often than not, so it is not tried [ours]
+RISK = 12.0  # frames that each such point of a way that is not clean costs beyond what it takes [ours]
 NO_WAY = 250.0  # cost of a pick-up to which there is no way: as that of one that fails, and of the next [frames] [ours]
 TRIES = 2  # number of postures that are tried
-GIVE_UP = 20  # frames after which no other posture is tried [ours]
+GIVE_UP = 20  # frames after which no other posture is tried from the same place [ours]
+ELSEWHERE = 60  # frames after which nothing is tried from another place, either [ours]
+APART = 0.15  # distance of that place from the first [m] [ours]
 CHASES = 5  # number of times that the arm is led to where a moving thing will be [ours]
 GIVE_UP_CHASE = 45  # frames after which neither that nor another way is tried [ours]
 MISSED = 0.2  # distance between where a thing will be and where the hand goes at which the hand is led anew [m] [ours]
@@ -111,25 +115,49 @@ def _take(stage: Stage, index: int) -> Skill:
         if len(tried) == TRIES or used > (GIVE_UP if chases == 0 else GIVE_UP_CHASE):
             break
         way = arm_way_where_it_will_be(stage, index, tried, drift)
+    again = stage.held != index and 0 < used <= ELSEWHERE and not chases
     if used:
         used += (yield from fold(stage, place)).frames
+    if again:
+        used += yield from _from_elsewhere(stage, index, drift)
     return Result(stage.held == index, "" if stage.held == index else failures.UNREACHABLE, used + moved)
+
+
+def _from_elsewhere(stage: Stage, index: int, drift: Drift) -> Generator[LowLevel, None, int]:
+    """Try once more from another place, where something was in the way that the map did not show; the frames."""
+    stage.look()
+    path = better_place(stage, index, NO_WAY, PASSABLE, APART)
+    if path is None:
+        return 0
+    place, used = place_of(stage, index), (yield from _go_to(stage, index, path))
+    way = arm_way_where_it_will_be(stage, index, set(), drift)
+    if way is None or way.route.hits > PASSABLE:
+        return used
+    used += (yield from turn_by(stage, way.turn)).frames if way.turn else 0
+    used += (yield from _grasp(stage, index, way, drift)).frames
+    return used + (yield from fold(stage, place)).frames
+
+
+def _go_to(stage: Stage, index: int, path: Path) -> Generator[LowLevel, None, int]:
+    """Go along the `path` to a better place, face the thing and look; the frames."""
+    moved = (yield from drive(stage, path.points, APPROACH_FRAMES)).frames
+    moved += (yield from turn_to(stage, stage.position(index))).frames
+    stage.look()
+    stage.robot.use_hand(stage.position(index))
+    return moved
 
 
 def _first_way(stage: Stage, index: int, drift: Drift) -> Generator[LowLevel, None, tuple[Way | None, int]]:
     """The arm's way to the thing, None if it would hardly get there, and the frames that went into standing well.
 
-    Where the way is doubtful, the base first goes to a better place, if there is one.
+    Where the way is not clean, the base first goes to a better place, if there is one.
     """
     way, moved = arm_way_where_it_will_be(stage, index, set(), drift), 0
-    if drift.ahead(1.0).any() or (way is not None and way.route.hits <= DOUBTFUL):
+    if drift.ahead(1.0).any() or (way is not None and way.route.hits <= CLEAN):
         return way, 0
-    path = better_place(stage, index, NO_WAY if way is None else way.cost + RISK, DOUBTFUL)
+    path = better_place(stage, index, NO_WAY if way is None else way.cost + RISK * way.route.hits, PASSABLE)
     if path is not None:
-        moved = (yield from drive(stage, path.points, APPROACH_FRAMES)).frames
-        moved += (yield from turn_to(stage, stage.position(index))).frames
-        stage.look()
-        stage.robot.use_hand(stage.position(index))
+        moved = yield from _go_to(stage, index, path)
         way = arm_way_where_it_will_be(stage, index, set(), drift)
     return (None if way is None or way.route.hits > HOPELESS else way), moved
 

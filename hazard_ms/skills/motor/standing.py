@@ -27,11 +27,11 @@ class Move(NamedTuple):
     frames: float
 
 
-def better_place(stage: Stage, index: int, worth: float, hits: int) -> Path | None:
+def better_place(stage: Stage, index: int, worth: float, hits: int, apart: float = 0.0) -> Path | None:
     """The path to where a pick-up of the thing `index` costs least, the way there included.
 
-    None where no place makes it cost less than `worth` [frames] with at most `hits` checked points of the arm's way in
-    something.
+    None where no place at least `apart` [m] from here makes it cost less than `worth` [frames] with at most `hits`
+    checked points of the arm's way in something.
     """
     place = place_of(stage, index)
     x, y, _ = stage.robot.base()
@@ -40,6 +40,8 @@ def better_place(stage: Stage, index: int, worth: float, hits: int) -> Path | No
         if move.frames + LEAST >= worth:
             break
         at = move.path.points[-1]
+        if float(np.hypot(*(at - (x, y)))) < apart:
+            continue
         surface = Surface(stage, place, move.turn, at)
         # where the thing would be before a base that stayed where it is
         seen = turned(place.middle + np.array([x - at[0], y - at[1], 0.0]), (x, y), -move.turn)

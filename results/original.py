@@ -8,6 +8,7 @@ FOLDER it plays nothing.
 
 from __future__ import annotations
 
+import itertools
 import os
 import subprocess
 import sys
@@ -16,7 +17,7 @@ from pathlib import Path
 
 from hazard_ms.evaluation.comparison.pairing import difference
 from hazard_ms.evaluation.metrics import Tally, scores
-from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.evaluation.result import STUCK, EpisodeResult
 from hazard_ms.robots import robot_class
 from hazard_ms.scenes.files import read_scenes
 from hazard_ms.scenes.reach import reachable
@@ -28,7 +29,6 @@ from results.tables import COMMAND, HERE, evaluate, machine, results_in, value_o
 RAW = HERE.parent / "build" / "original"
 PLACES = {"fire": "indoor", "flood": "indoor", "wind": "outdoor"}
 SCENES, ROBOT = 25, "fetch"
-STUCK = "too many decisions"  # how an episode ends after 100 decisions that took no time
 AGENTS = ("paper/mcts", "paper/mcts:value=false", "paper/rule", "random", "paper/greedy", "greedy", "planner")
 # Value in fire, flood and wind, without perception: Zhou et al. 2024, docs/benchmark.md section 4.1
 PAPER = {
@@ -45,7 +45,7 @@ in percent, with 95 % bootstrap intervals over episodes. "Reachable": the same V
 can get at (`hazard-ms scenes reach`) alone. "No path": of the walks to such targets, those that failed since there was
 no path. "Stuck": episodes that ended early, after 100 decisions in a row that took no time, mostly walks to where there
 is no path, which an agent asks for again and again. The paper's Value is that of its own test scenes, in its simulator,
-with a person as the agent. Written at
+with a person as the agent. Tasks and agents without a row were not played. Written at
 {machine}.
 
 | task | agent | Value | reachable | Step | Damage | no path | stuck | the paper's Value | episodes |
@@ -93,7 +93,7 @@ def row(task: str, agent: str, results: Sequence[EpisodeResult], reach: dict[str
 
 
 def page() -> str:
-    """Rows of all agents, and how far `paper/mcts` is above each of the paper's others, paired by episode."""
+    """Rows of all agents, and the differences between those that the paper has, paired by episode."""
     rows, apart = "", ""
     for task, place in PLACES.items():
         played = results_in(RAW / task) if (RAW / task).is_dir() else []
@@ -101,7 +101,7 @@ def page() -> str:
         reach = at_reach(place) if played else {}
         rows += "".join(row(task, agent, results, reach) for agent, results in by.items() if results)
         values = {agent: {(r.seed, r.scene): r.tally.value for r in results} for agent, results in by.items()}
-        for one, other in ((a, b) for a in PAPER for b in PAPER if list(PAPER).index(a) < list(PAPER).index(b)):
+        for one, other in itertools.combinations(PAPER, 2):
             if values[one] and values[other]:
                 apart += f"- {task}: {one} less {other}: {words(difference(values[one], values[other]))}\n"
     return f"{rows}\nDifferences in Value, paired by episode:\n\n{apart}"

@@ -26,6 +26,7 @@ from hazard_ms.registry.version import __version__
 
 FORMAT = 2  # goes up when a field changes its meaning
 BROKEN = "simulation error"  # how an episode ends if its simulation breaks
+STUCK = "too many decisions"  # how it ends after 100 in a row that took no time
 ERROR, TOO_SLOW, DIED = "error", "too slow", "worker died"
 FAILED = (ERROR, TOO_SLOW, DIED)  # how an episode ends that its agent, or the process playing it, did not finish
 PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "warp-lang", "numpy")  # whose versions can change an episode

@@ -13,7 +13,7 @@ from hazard_ms.agents.thinking import OFF, frames_of, seconds_of
 from hazard_ms.evaluation.hashes import EVERY, extended
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.options import EpisodeOptions
-from hazard_ms.evaluation.result import BROKEN, DecisionRecord, EpisodeResult, Link, Played, file_hashes
+from hazard_ms.evaluation.result import BROKEN, STUCK, DecisionRecord, EpisodeResult, Link, Played, file_hashes
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.skills.actions import wait
@@ -108,7 +108,7 @@ class Runner:
                 return self._reason(action, info)
             idle = idle + 1 if following.frame == decision.frame else 0
             decision = following
-        return "too many decisions"
+        return STUCK
 
     def _frame(self, action: LowLevel) -> None:
         if self.env.frame % EVERY == 0:

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
+from typing import Any
+
 import numpy as np
+import pytest
 
 from hazard_ms.skills import failures
-from hazard_ms.skills.motor.grasping import APART, HOPELESS, pick_up
-from hazard_ms.skills.motor.reaching import arm_way
+from hazard_ms.skills.context import LowLevel, Stage
+from hazard_ms.skills.motor import grasping
+from hazard_ms.skills.motor.grasping import APART, ELSEWHERE, HOPELESS, pick_up
+from hazard_ms.skills.motor.reaching import Way, arm_way
 from tests.worlds.arena import Arena, Box
 from tests.worlds.skill_room import horizontal, walk
 
@@ -65,5 +71,26 @@ def test_what_was_in_the_way_unseen_is_gone_round() -> None:
         result = arena.run(pick_up(arena.stage, arena.index("can")))
         assert result.ok and arena.looks > 0
         assert np.hypot(*arena.agent.base()[:2]) > APART
+    finally:
+        arena.close()
+
+
+def test_who_went_a_long_way_to_a_better_place_does_not_go_round_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As before, but `_first_way` takes the frames of a long way to a better place."""
+    first = grasping._first_way
+
+    def far(stage: Stage, *rest: Any) -> Generator[LowLevel, None, tuple[Way | None, int]]:
+        for _ in range(ELSEWHERE):
+            yield stage.act()
+        way, moved = yield from first(stage, *rest)
+        return way, moved + ELSEWHERE
+
+    monkeypatch.setattr(grasping, "_first_way", far)
+    arena = Arena(SCREENED)
+    try:
+        arena.map._firm[:] = 0.0
+        result = arena.run(pick_up(arena.stage, arena.index("can")))
+        assert not result.ok and ELSEWHERE < result.frames < 2 * ELSEWHERE + LITTLE
+        assert np.hypot(*arena.agent.base()[:2]) < APART
     finally:
         arena.close()

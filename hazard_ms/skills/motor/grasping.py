@@ -37,7 +37,7 @@ RISK = 12.0  # frames that each such point of a way that is not clean costs beyo
 NO_WAY = 250.0  # cost of a pick-up to which there is no way: as that of one that fails, and of the next [frames] [ours]
 TRIES = 2  # number of postures that are tried
 GIVE_UP = 20  # frames after which no other posture is tried from the same place [ours]
-ELSEWHERE = 60  # frames after which nothing is tried from another place, either [ours]
+ELSEWHERE = 60  # frames, those to a first better place included, after which nothing is tried from another one [ours]
 APART = 0.15  # distance of that place from the first [m] [ours]
 CHASES = 5  # number of times that the arm is led to where a moving thing will be [ours]
 GIVE_UP_CHASE = 45  # frames after which neither that nor another way is tried [ours]
@@ -115,7 +115,7 @@ def _take(stage: Stage, index: int) -> Skill:
         if len(tried) == TRIES or used > (GIVE_UP if chases == 0 else GIVE_UP_CHASE):
             break
         way = arm_way_where_it_will_be(stage, index, tried, drift)
-    again = stage.held != index and 0 < used <= ELSEWHERE and not chases
+    again = stage.held != index and used > 0 and used + moved <= ELSEWHERE and not chases
     if used:
         used += (yield from fold(stage, place)).frames
     if again:

@@ -3,8 +3,9 @@
 With `tables` alone it plays nothing.
 
 Every agent plays the 25 scenes of each task's split `test` once, and the agents that are compared with `planner` play
-them three times with Fetch, six times in floods, where they are closer to one another; raw results go to build/results, from where `hazard-ms report` and `hazard-ms regret` can
-read them. Rescues of people, played with `hazard-ms serve --folder build/results/SWEEP/people`, become a row `human`.
+them three times with Fetch, six times in floods, where they are closer to one another; raw results go to build/results,
+from where `hazard-ms report` and `hazard-ms regret` can read them. Rescues of people, played with
+`hazard-ms serve --folder build/results/SWEEP/people`, become a row `human`.
 README.md and scores.csv beside this file are written anew. Episodes in scores.csv that this machine has no raw results
 of stay in the tables, as long as all their columns are there: delete the rows of a sweep whose agents or skills have
 changed. Sweeps without any raw results here stay as they are.

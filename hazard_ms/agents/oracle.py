@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.base import PrivilegedAgent
-from hazard_ms.agents.search.memory import ELSEWHERE, SAME_AGAIN
+from hazard_ms.agents.search.memory import ELSEWHERE, SAME_AGAIN, after
 from hazard_ms.agents.search.outlook import SPREAD
 from hazard_ms.agents.search.walks import detours
 from hazard_ms.agents.truth import Truth
@@ -36,7 +36,6 @@ NEAR = 0.2  # beyond where a walk arrives, from which it reaches for a thing wit
 NEAR_CART = 0.7  # beyond where a walk arrives, from which a drop drives on while the arm unfolds [m] [ours]
 PROGRESS = 0.2  # a walk that got it this far is not a failure [m]
 GIVE_UP = 3  # failures after which a target is left for the end [ours]
-AGAIN = 0.7  # chance of a pick-up after one that failed, begun elsewhere: 9 of 12 in 75 episodes of honest agents
 CART_FAILURES = 3  # after which a cart is no longer used [ours]
 FADING = 2e-4  # share of a target's value that is at risk in each frame until it is safe: skills fail [ours]
 MOVED = 0.2  # a thing that will be met farther than this from where it is now is moving [m] [ours]
@@ -167,7 +166,7 @@ class Oracle(PrivilegedAgent):
         """The chance that it gets hold of a thing, as a share of that of a first attempt."""
         missed = self._attempts.missed.get(name)
         here = missed is not None and float(np.hypot(*np.subtract(missed, decision.agent_position))) < ELSEWHERE
-        return AGAIN ** self._attempts.failures.get(name, 0) * (SAME_AGAIN if here and name != self._goal else 1.0)
+        return after(self._attempts.failures.get(name, 0)) * (SAME_AGAIN if here and name != self._goal else 1.0)
 
     def _cart(self, decision: Decision, planned: int) -> int:
         """The cart that it is on its way to, so that it does not waver, else the planned one; indices along B."""

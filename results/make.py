@@ -20,13 +20,14 @@ from typing import Any
 
 from hazard_ms.evaluation.choices import HUMAN
 from hazard_ms.evaluation.comparison.folders import title as settings
-from hazard_ms.evaluation.comparison.summary import interval
+from hazard_ms.evaluation.comparison.summary import ORACLE, interval
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.robots import robot_class
 from hazard_ms.sketch.bound import bound
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.spec.checks import one_of
 from hazard_ms.tasks import task_of
+from results.plans import between
 from results.rows import COLUMNS, Row, group, merged, read, row_of, whole
 from results.tables import COMMAND, HERE, TASKS, evaluate, machine, results_in
 
@@ -95,6 +96,8 @@ def table(sweep: str) -> tuple[str, list[Row]]:
     lines += section(group(settings(results[0]), rows))
     limits = {row["seed"]: row["bound"] for row in rows}
     lines.append(f"\nNo agent can exceed {100 * sum(limits.values()) / len(limits):.1f} on average (the bound).")
+    if oracle := [r for r in results if r.agent == ORACLE]:
+        lines.append(f"\n{between(TASKS[task], robot, oracle)}")
     if robot == "fetch":
         lines += fidelity(sweep)
     return "\n".join(lines) + "\n", rows

@@ -28,7 +28,7 @@ Made by `./run python results/language_models.py`. `scripted` is a rule that rea
 over HTTP as a language model does: it shows how little of what `greedy` knows is lost in prompt and parser.
 `SmolLM2-135M` is a real model, small enough for one core; one episode of each task says that it runs, and nothing of
 how well it decides.
-Values are in percent, with 95 % bootstrap intervals over episodes, the difference paired by episode; counts are sums
+Values are in percent, with 95 % bootstrap intervals over scenes, the difference paired by episode; counts are sums
 over episodes, and tokens means per call.
 
 """

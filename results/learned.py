@@ -36,7 +36,7 @@ HEAD = """# Learned policies
 
 Made by `./run python results/learned.py`. Each policy learned in the sketch, in scenes that belong to no split, and
 then played the 25 scenes of its task's split `test` in the simulator, once or three times. Values are in percent, with
-95 % bootstrap intervals over episodes, differences paired by episode. "Sketch" is the mean Value in 24 scenes of the
+95 % bootstrap intervals over scenes, differences paired by episode. "Sketch" is the mean Value in 24 scenes of the
 sketch that chose the best moment of the training, beside that of `greedy` in the same scenes. Policies `rl` and
 `rl_paper` learned before landmarks in the sketch were as in the simulator. The package brings the policies in bold: of
 each task and kind the one that is best in the sketch. A dash: not played. `rl_paper` learned from the paper's six

@@ -2,10 +2,10 @@
 
 With `tables` alone it plays nothing.
 
-Every agent plays the 25 scenes of each task's split `test` once, and the agents that are compared with `planner` play
-them three times with Fetch, six times in floods, where they are closer to one another; raw results go to build/results,
-from where `hazard-ms report` and `hazard-ms regret` can read them. Rescues of people, played with
-`hazard-ms serve --folder build/results/SWEEP/people`, become a row `human`.
+Every agent plays the 25 scenes of each task's split `test` once, and in wind, where chance decides more, the agents
+that are compared with `planner` play them three times with Fetch; raw results go to build/results, from where
+`hazard-ms report` and `hazard-ms regret` can read them. Rescues of people, played with
+`hazard-ms serve --folder build/results/SWEEP/people`, become a row `human`. More scenes: results/splits.py.
 README.md and scores.csv beside this file are written anew. Episodes in scores.csv that this machine has no raw results
 of stay in the tables, as long as all their columns are there: delete the rows of a sweep whose agents or skills have
 changed. Sweeps without any raw results here stay as they are.
@@ -36,7 +36,7 @@ MAIN = ("greedy", "mcts", "planner", "oracle")
 ALL = (*MAIN, "random", "rule", "oracle:known=true", "paper/greedy", "paper/rule", "paper/mcts")
 COMPARED = ("greedy", "mcts", "planner")
 SCENES = 25  # episodes of an agent
-SEEDS = {"fire": 75, "flood": 150, "wind": 75}  # and of those that are compared
+OFTEN = {"wind-fetch": 75}  # and of those that are compared
 SWEEPS = {f"{task}-{robot}": ALL if robot == "fetch" else MAIN for robot in ("fetch", "g1") for task in TASKS}
 PEOPLE = "people"  # folder beside raw results: those of people
 PLAYED = "played.txt"  # beside raw results: the commits and machines that they were played on, one a line
@@ -49,7 +49,7 @@ def play(sweep: str) -> None:
     note, here = RAW / sweep / PLAYED, machine()
     before = note.read_text(encoding="utf-8").splitlines() if note.exists() else []
     note.write_text("".join(f"{line}\n" for line in dict.fromkeys([*before, here])), encoding="utf-8")
-    for agents, episodes in ((SWEEPS[sweep], SCENES), *(((COMPARED, SEEDS[task]),) if robot == "fetch" else ())):
+    for agents, episodes in ((SWEEPS[sweep], SCENES), (COMPARED, OFTEN.get(sweep, SCENES))):
         options = ["-r", robot, "--split", "test", "--episodes", str(episodes), "--workers", "2"]
         evaluate(task, RAW / sweep, *options, "--agents", *agents, check=False)
 

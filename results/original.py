@@ -41,7 +41,7 @@ HEAD = """# The original's scenes
 
 Made by `./run python results/original.py FOLDER`: of the scenes that the original published, every third room and every
 third street, 25 of each, imported with `hazard-ms scenes import`; preset `shipped`, Fetch, one episode each. Values are
-in percent, with 95 % bootstrap intervals over episodes. "Reachable": the same Value, counted on targets that the robot
+in percent, with 95 % bootstrap intervals over scenes. "Reachable": the same Value, counted on targets that the robot
 can get at (`hazard-ms scenes reach`) alone. "No path": of the walks to such targets, those that failed since there was
 no path. "Stuck": episodes that ended early, after 100 decisions in a row that took no time, mostly walks to where there
 is no path, which an agent asks for again and again. The paper's Value is that of its own test scenes, in its simulator,

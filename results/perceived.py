@@ -35,7 +35,7 @@ HEAD = """# With perception
 
 Made by `./run python results/perceived.py`. Agents see through `--perception small`: segmentation is withheld, things
 are found by the package's detector and followed by tracks of our own. 25 scenes of `test`, Fetch, presets `paper`.
-Values are in percent, with 95 % bootstrap intervals over episodes; "less the truth" is the difference from the same
+Values are in percent, with 95 % bootstrap intervals over scenes; "less the truth" is the difference from the same
 agent that is told what its camera sees, paired by episode (results/README.md). A dash: not played. Written at
 {machine}.
 
@@ -70,7 +70,7 @@ def row(task: str, agent: str, results: list[EpisodeResult]) -> str:
     """The row of an agent in a task."""
     own = {(r.seed, r.scene): r.tally.value for r in results}
     truth = told(task, agent)
-    every = scores([r.tally for r in results])
+    every = scores([r.tally for r in results], [r.scene for r in results])
     step, damage = (every[name].mean for name in ("step", "damage"))
     less = words(difference(own, truth)) if set(own) & set(truth) else "-"
     cells = [words(value_of(results)), less, "-" if step is None else f"{step:.0f}"]

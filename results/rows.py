@@ -75,7 +75,8 @@ def group(settings: str, rows: Sequence[Row]) -> dict[str, Any]:
 
 def _agent(rows: Sequence[Row], own: Mapping[Episode, float], best: Mapping[Episode, float] | None) -> dict[str, Any]:
     tallies = [Tally(r["value"], 1.0, r["rescued"], r["rescued_damaged"], r["last_rescue"]) for r in rows]
-    made: dict[str, Any] = {name: dataclasses.asdict(score) for name, score in scores(tallies).items()}
+    found = scores(tallies, [r["scene"] for r in rows])
+    made: dict[str, Any] = {name: dataclasses.asdict(score) for name, score in found.items()}
     if best is not None:
         made["regret"] = dataclasses.asdict(regret(own, best))
     counts = {name: sum(row[name] for row in rows) for name in ("rescued", "targets")}

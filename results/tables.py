@@ -29,7 +29,7 @@ def results_in(folder: Path) -> list[EpisodeResult]:
 
 def value_of(results: Sequence[EpisodeResult]) -> Score:
     """The score Value of `results`, 0 to 1."""
-    return scores([result.tally for result in results])["value"]
+    return scores([result.tally for result in results], [result.scene for result in results])["value"]
 
 
 def percent(score: Score) -> tuple[float, float, float]:

@@ -1,4 +1,4 @@
-"""The scores of the HAZARD challenge over episodes (docs/benchmark.md 4), each with a bootstrap interval over episodes.
+"""The scores of the HAZARD challenge over episodes (docs/benchmark.md 4), each with a bootstrap interval over scenes.
 
     Value  = mean over episodes of  value rescued / value of all targets at the start;  a target rescued damaged counts
            half
@@ -7,6 +7,9 @@
 
 Value and Damage are shares, 0 to 1; the paper prints them times 100. Read Step only beside Value: rescuing 1 of 15
 quickly looks good in Step.
+
+Episodes in one scene are alike: where neither task nor agent draws by chance they are even equal, whatever their seeds.
+The bootstrap therefore draws scenes, each with all of its episodes, and only in a single scene its episodes.
 """
 
 from __future__ import annotations
@@ -79,7 +82,7 @@ class Tally:
 
 @dataclass(frozen=True)
 class Score:
-    """A score and its 95 % interval over episodes; None where it is undefined."""
+    """A score and its 95 % interval over scenes; None where it is undefined."""
 
     mean: float | None
     low: float | None
@@ -106,28 +109,43 @@ def damage(tallies: Sequence[Tally]) -> float | None:
 SCORES: dict[str, Callable[[Sequence[Tally]], float | None]] = {"value": value, "step": step, "damage": damage}
 
 
-def scores(tallies: Sequence[Tally], seed: int = 0, resamples: int = RESAMPLES) -> dict[str, Score]:
-    """Value, Step and Damage of episodes; `seed` is that of the bootstrap. Raises ValueError for no episodes."""
+def scores(
+    tallies: Sequence[Tally], scenes: Sequence[str] | None = None, seed: int = 0, resamples: int = RESAMPLES
+) -> dict[str, Score]:
+    """Value, Step and Damage of episodes; `seed` is that of the bootstrap.
+
+    `scenes`: that of each episode, None for one of its own each. Raises ValueError for no episodes, and unless there
+    are as many scenes.
+    """
     if not tallies:
         raise ValueError("tallies must be those of at least one episode, got none")
-    chosen = np.random.default_rng(seed).integers(len(tallies), size=(resamples, len(tallies)))
-    drawn = _resampled(tallies, chosen)
+    parts = np.array([(t.value, t.last_rescue, t.rescued_damaged, t.rescued, 1.0) for t in tallies], np.float64)
+    worth, last, damaged, rescued, count = resampled(parts, scenes, seed, resamples).T
+    with np.errstate(invalid="ignore", divide="ignore"):
+        drawn = {
+            "value": worth / count,
+            "step": np.where(rescued > 0, last / rescued, np.nan),
+            "damage": np.where(rescued > 0, damaged / rescued, np.nan),
+        }
     return {name: interval(compute(tallies), drawn[name]) for name, compute in SCORES.items()}
 
 
-def _resampled(tallies: Sequence[Tally], chosen: NDArray[np.int64]) -> dict[str, NDArray[np.float64]]:
-    """Each score of each resample of episodes, `chosen` [R, N]: [R]; NaN where nothing was rescued."""
+def resampled(
+    parts: NDArray[np.float64], scenes: Sequence[str] | None, seed: int, resamples: int = RESAMPLES
+) -> NDArray[np.float64]:
+    """The sums over each resample, [R, C], of what N episodes add to C of them, `parts` [N, C], in units of their own.
 
-    def column(name: str) -> NDArray[np.float64]:
-        return np.array([getattr(t, name) for t in tallies], dtype=np.float64)[chosen]
-
-    rescued = column("rescued").sum(1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return {
-            "value": column("value").mean(1),
-            "step": np.where(rescued > 0, column("last_rescue").sum(1) / rescued, np.nan),
-            "damage": np.where(rescued > 0, column("rescued_damaged").sum(1) / rescued, np.nan),
-        }
+    Scenes are drawn, each with all of its episodes; `scenes` is that of each episode, [N], None for one of its own
+    each. Of a single scene episodes are drawn. Raises ValueError unless there are N scenes.
+    """
+    own = np.arange(len(parts))
+    if scenes is not None and len(scenes) != len(parts):
+        raise ValueError(f"scenes must be {len(parts)}, one for each episode, got {len(scenes)}")
+    of = own if scenes is None or len(set(scenes)) == 1 else np.unique(np.asarray(scenes), return_inverse=True)[1]
+    count = int(of.max()) + 1
+    chosen = np.random.default_rng(seed).integers(count, size=(resamples, count))
+    columns = (np.bincount(of, weights=column, minlength=count) for column in parts.T)
+    return np.stack([column[chosen].sum(1) for column in columns], axis=-1)
 
 
 def interval(mean: float | None, drawn: NDArray[np.float64]) -> Score:

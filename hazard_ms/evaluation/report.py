@@ -45,7 +45,7 @@ def score_line(agent: str, results: Sequence[EpisodeResult]) -> str:
     """The scores of one agent, Value and Damage in per cent, Step in frames."""
     if not results:
         return f"{agent:16s} no results"
-    found = scores([r.tally for r in results])
+    found = scores([r.tally for r in results], [r.scene for r in results])
     saved = sum(r.tally.rescued for r in results)
     targets = sum(len(r.targets) for r in results)
     seconds = sum(r.wall_seconds for r in results) / len(results)

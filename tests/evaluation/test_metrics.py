@@ -75,6 +75,15 @@ def test_interval_of_a_ratio_pools_before_dividing() -> None:
     assert (made.mean, made.low, made.high) == (pytest.approx(175), pytest.approx(100), pytest.approx(200))
 
 
+def test_more_seeds_in_the_same_scenes_are_no_more_evidence() -> None:
+    """Episodes at value 1 and at 0 in 100 scenes, four times each: the resampled mean is Binomial(100, 1/2) / 100."""
+    full, empty = Tally.of([fate(1, 10)]), Tally.of([fate(1, None)])
+    scenes = [f"park/{n:02d}" for n in range(100)]
+    made = scores([full, empty] * 200, scenes * 4)["value"]
+    assert (made.mean, made.low, made.high) == (0.5, pytest.approx(0.40, abs=0.011), pytest.approx(0.60, abs=0.011))
+    assert scores([full, empty] * 50, scenes)["value"] == made
+
+
 def test_same_seed_same_interval() -> None:
     episodes = [FIRST, SECOND, THIRD] * 4
     assert scores(episodes, seed=3, resamples=500) == scores(episodes, seed=3, resamples=500)
@@ -88,6 +97,8 @@ def test_contradictions_are_refused() -> None:
         Tally.of([])
     with pytest.raises(ValueError, match="episode, got none"):
         scores([])
+    with pytest.raises(ValueError, match="scenes must be 3, one for each episode, got 2"):
+        scores([FIRST] * 3, ["a", "b"])
 
 
 def test_a_result_survives_its_file(tmp_path: Path) -> None:

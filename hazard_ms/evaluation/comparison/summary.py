@@ -43,7 +43,8 @@ def summary(group: Group) -> dict[str, Any]:
 def _agent(group: Group, agent: str) -> dict[str, Any]:
     results = [kept.result for kept in group.agents[agent].values()]
     tallies = [result.tally for result in results]
-    made: dict[str, Any] = {name: dataclasses.asdict(score) for name, score in scores(tallies).items()}
+    found = scores(tallies, [result.scene for result in results])
+    made: dict[str, Any] = {name: dataclasses.asdict(score) for name, score in found.items()}
     if ORACLE in group.agents:
         made["regret"] = dataclasses.asdict(regret(group.values(agent), group.values(ORACLE)))
     lost = losses(group.agents[agent].values())

@@ -12,7 +12,7 @@ from hazard_ms.evaluation.metrics import Score
 
 
 def played(*values: float) -> dict[Episode, float]:
-    return {(seed, "kitchen_b/00"): value for seed, value in enumerate(values)}
+    return {(seed, f"kitchen_b/{seed:02d}"): value for seed, value in enumerate(values)}
 
 
 def numbers(score: Score) -> list[float]:
@@ -44,7 +44,7 @@ def test_how_hard_episodes_are_cancels_out() -> None:
 
 
 def test_only_common_episodes_count() -> None:
-    first, second = played(0.9, 0.5, 0.1), {(1, "kitchen_b/00"): 0.4, (1, "kitchen_b/01"): 0.0, (7, "x"): 1.0}
+    first, second = played(0.9, 0.5, 0.1), {(1, "kitchen_b/01"): 0.4, (1, "kitchen_b/00"): 0.0, (7, "x"): 1.0}
     assert numbers(difference(first, second)) == pytest.approx([0.1, 0.1, 0.1])
     assert numbers(regret(first, second)) == pytest.approx([-0.25, -0.25, -0.25])
 
@@ -54,6 +54,32 @@ def test_without_common_episodes_or_rescues_of_the_oracle_there_is_no_number() -
     assert difference(played(0.5), {(9, "park/00"): 0.5}) == nothing == difference({}, {})
     assert regret(played(0.5), {(9, "park/00"): 0.5}) == nothing == regret(played(0.5, 0.2), played(0.0, 0.0))
     assert numbers(regret(played(0.5, 0.0), played(1.0, 0.0)))[0] == 0.5  # resamples without the first are left out
+
+
+def test_more_seeds_in_the_same_scenes_are_no_more_evidence() -> None:
+    """Four equal episodes in each of 25 scenes: the intervals are those of one in each."""
+    draw = np.random.default_rng(4)
+    first, second = played(*draw.random(25)), played(*draw.random(25))
+
+    def repeated(once: dict[Episode, float]) -> dict[Episode, float]:
+        return {(seed + 25 * k, scene): value for (seed, scene), value in once.items() for k in range(4)}
+
+    for score in (difference, regret):
+        assert numbers(score(repeated(first), repeated(second))) == pytest.approx(numbers(score(first, second)))
+
+
+def test_scenes_are_drawn_with_all_their_episodes() -> None:
+    """Two scenes, with three episodes at 0.1 and one at -0.3: resamples have means of 0.1, 0 and -0.3."""
+    first = {(0, "a"): 0.1, (1, "a"): 0.1, (2, "a"): 0.1, (3, "b"): 0.2}
+    second = {(0, "a"): 0.0, (1, "a"): 0.0, (2, "a"): 0.0, (3, "b"): 0.5}
+    assert numbers(difference(first, second)) == pytest.approx([0.0, -0.3, 0.1])
+
+
+def test_in_a_single_scene_episodes_are_drawn() -> None:
+    one, other = (
+        {(seed, "park/00"): value for seed, value in enumerate(values)} for values in ((0.6, 0.2), (0.5, 0.5))
+    )
+    assert numbers(difference(one, other)) == pytest.approx([-0.1, -0.3, 0.1])
 
 
 def test_the_interval_is_as_wide_as_the_formula_for_means_says() -> None:

@@ -18,6 +18,7 @@ from hazard_ms.spec import SceneSpec
 
 DRIFT = 0.5  # targets that get no farther than this before the limit are taken to rest [m] [ours]
 TURNING = TURN * np.pi / 2 + SETTLE  # frames of a walk that are not spent on its length: a right angle [ours]
+ANY_WAY = 1e6  # longer than any way [m]
 DETOUR = 1.1  # length of ways in the open over that of straight lines [ours]
 
 
@@ -88,10 +89,12 @@ class RescueScene:
             walk = straight_line(WALK * DETOUR)
             moving = MovingTravel(future.frames[near:], ways[near:], np.asarray(outset.place), walk, rest)
             return moving, WALK * ARRIVED - TURNING
-        places = np.concatenate([ways[near], rest, np.asarray(outset.place)[None]])
-        goals, edges = places[:-1], self.edges[np.concatenate([targets, carts])]
-        table = np.zeros((len(places), len(places)))
-        table[:-1, :-1] = self.ways.frames(goals[:, None], goals[None], edge=edges)
-        table[-1, :-1] = self.ways.frames(places[-1:], goals, heading=outset.heading, edge=edges)
+        goals, edges = np.concatenate([ways[near], rest]), self.edges[np.concatenate([targets, carts])]
+        here = np.asarray(outset.place, np.float64)[None]
+        # where the robot stands, and faces, who has walked to each goal from here: not always on its next way's side
+        first, ends = self.ways.route(here, goals, edges), self.ways.along(here, goals, ANY_WAY, edges)
+        table = np.zeros((len(goals) + 1, len(goals) + 1))
+        table[:-1, :-1] = self.ways.frames(ends[:, None], goals[None], first.last[:, None], edges)
+        table[-1, :-1] = first.frames(outset.heading)
         np.fill_diagonal(table, 0.0)
         return StaticTravel(table, len(carts)), 0.0

@@ -26,7 +26,7 @@ REST = PICK + SCENE.bag  # frames of a rescue without its walk
 NEAR = 0.5 + 0.02**0.5  # from the middle of a box at which a walk arrives [m]
 END = (1500.0,)  # the last frame of an episode
 ONE = 62 * (4 - NEAR) + 3 + REST  # frames of the first rescue
-BOTH = ONE + 62 * (8 - NEAR) + 3 + REST
+BOTH = ONE + 62 * (8 - 2 * NEAR) + 30 + 3 + REST  # it stands before LEFT, and turns round
 ROUND = 14  # frames by which ways over cells of 0.1 m differ from straight lines
 
 

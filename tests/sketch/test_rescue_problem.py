@@ -24,6 +24,19 @@ def met(spec: SceneSpec, speed: float) -> float:
     return frame
 
 
+def test_the_next_walk_begins_where_the_one_before_it_ended() -> None:
+    """Boxes 4 m, 8 m and 1 m ahead: the robot stands 0.6 m before the first one and faces it.
+
+    To the second one it goes 4 m, past the first, and to the third one it turns round, 30 frames, and goes 1.8 m.
+    """
+    spec = hall(4.0, 8.0, 1.0)
+    scene = RescueScene(spec, "fetch", HazardFetch.build.radius, 1500)
+    problem = scene.problem(future(spec), np.arange(3), np.ones(3), np.zeros(0, np.int64), HERE)
+    ahead, behind = (frame for frame, _ in problem.travel.meetings((0, 0), 0.0, [1, 2]))
+    assert ahead == pytest.approx(62 * 4.0 + 3, abs=13)
+    assert behind == pytest.approx(30 + 62 * 1.8 + 3, abs=13)
+
+
 @pytest.mark.parametrize("speed", [0.0, SPEED])
 def test_what_floats_in_a_room_is_reached_round_walls(speed: float) -> None:
     """The box is 3 m from the start behind a wall whose doorway begins 1.9 m to the side: at least 4.8 m of way."""

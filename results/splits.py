@@ -28,8 +28,8 @@ HEAD = """# The planner on every split that nobody trains on
 Made by `./run python results/splits.py`: the scenes of the splits `test`, `new_objects`, `large` and `hard`
 ([benchmark.md](../docs/benchmark.md)), physics `paper`, Fetch, one episode in each scene; those of `test` are the first
 25 seeds of [the tables of all agents](README.md). Value in percent, with 95 % bootstrap intervals over scenes;
-differences are paired by scene. In `all`, every scene counts the same. `splits.csv` has every episode. Written at
-{machine}.
+differences are paired by scene. In `all of these`, every scene counts the same. A task has no line for a split that
+has none of its scenes, or that was not played by all three. `splits.csv` has every episode. Written at {machine}.
 
 | task | split | scenes | planner | greedy | mcts | planner less greedy | planner less mcts |
 |---|---|---|---|---|---|---|---|
@@ -94,10 +94,11 @@ def main(wanted: Sequence[str]) -> None:
         every += rows
         once = [row for row in read(HERE / "scores.csv", task, "fetch") if int(row["seed"]) < SCENES]
         by = {split: scenes(task, split) for split in (TEST, *OTHERS)}
-        lines = [line(task, split, [*once, *rows], names) for split, names in by.items()]
-        text += "".join(lines)
-        if all(lines[number] for number, names in enumerate(by.values()) if names):
-            text += line(task, "all", [*once, *rows], [name for names in by.values() for name in names])
+        lines = {split: line(task, split, [*once, *rows], names) for split, names in by.items()}
+        played = [split for split, told in lines.items() if told]
+        text += "".join(lines.values())
+        if len(played) > 1:
+            text += line(task, "all of these", [*once, *rows], [name for split in played for name in by[split]])
     with FILE.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS_HERE, lineterminator="\n")
         writer.writeheader()

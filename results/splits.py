@@ -59,7 +59,8 @@ def rows_of(task: str) -> list[Row]:
     """The rows of splits.csv of a task: those of before, and those of the raw results here."""
     made = [row_of(task, "fetch", result, float("nan")) for result in results_in(RAW / task)]
     now = [{name: row[name] for name in COLUMNS_HERE} for row in made]
-    return merged(read(FILE, task, "fetch"), now)
+    before = [{**row, "seed": int(row["seed"])} for row in read(FILE, task, "fetch")]
+    return merged(before, now)
 
 
 def values(rows: Sequence[Row], agent: str, chosen: Sequence[str]) -> dict[Episode, float]:

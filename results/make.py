@@ -49,7 +49,7 @@ def play(sweep: str) -> None:
     note, here = RAW / sweep / PLAYED, machine()
     before = note.read_text(encoding="utf-8").splitlines() if note.exists() else []
     note.write_text("".join(f"{line}\n" for line in dict.fromkeys([*before, here])), encoding="utf-8")
-    for agents, episodes in ((SWEEPS[sweep], SCENES), (COMPARED, OFTEN.get(sweep, SCENES))):
+    for agents, episodes in ((SWEEPS[sweep], SCENES), *(((COMPARED, OFTEN[sweep]),) if sweep in OFTEN else ())):
         options = ["-r", robot, "--split", "test", "--episodes", str(episodes), "--workers", "2"]
         evaluate(task, RAW / sweep, *options, "--agents", *agents, check=False)
 

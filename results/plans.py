@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hazard_ms.agents.oracle import BEAM, MOST_LABELS
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.planning.orienteering import solve
 from hazard_ms.robots import robot_class
@@ -14,8 +15,6 @@ from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.decision import PICK_UP
 from hazard_ms.skills.failures import UNREACHABLE
 from hazard_ms.tasks import task_of
-
-MOST_LABELS, BEAM = 20_000, 2_000  # of the exact search, and of a layer beyond it: as many as the oracle's
 
 
 def planned(env_id: str, robot: str, result: EpisodeResult) -> float:

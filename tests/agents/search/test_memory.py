@@ -61,7 +61,7 @@ def test_a_second_try_is_worth_half_from_elsewhere_and_hardly_any_from_there() -
 
 
 def test_a_third_try_hardly_ever_works() -> None:
-    """A tenth, measured: 3 of 45, where of first ones 1,205 of 1,449 worked."""
+    """A tenth at most, measured: 2 of 46, where of first ones 91 % worked."""
     ground, memory, pick = looked(), Memory(0), Action(PICK_UP, "a")
     for chance in (1 / 2, 1 / 10, 1 / 10):
         memory.chose(ground.decision(), pick)

@@ -13,7 +13,7 @@ PICTURES_SHARE = 10  # frames for one picture: pictures take that much longer [o
 FEWEST_PICTURES = 3  # of which a median is taken [ours]
 OTHERS = ("stock",)  # what frames and resets can be compared with
 GPU_TASKS = ("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1")
-GPU_PARTS = ("tests", "state", "pictures", "comparison", "waits")  # as bench.gpu.report names them; tests compare them
+GPU_PARTS = ("tests", "laws", "looks", "state", "pictures", "comparison", "waits")  # those of bench.gpu.report
 
 
 def bench(
@@ -106,26 +106,28 @@ def gpu_check(
 ) -> int:
     """Check an NVIDIA GPU and measure it: tests, rates of batches, differences from the CPU, waits of the host.
 
-    Writes a page in Markdown that grows with every part. Ends with 1 without a GPU, and if a part failed.
+    Writes a page in Markdown that grows with every part. Ends with 1 without a GPU, and if a part failed. Tests, laws
+    and looks need no PhysX on the GPU.
 
     Args:
         env_id: Tasks to measure.
-        parts: Some of tests, state, pictures, comparison, waits; all if not given.
+        parts: Some of tests, laws, looks, state, pictures, comparison, waits; all if not given.
         most: Largest number of environments in a batch; 1, 4, 16, 64, 256, 1,024, 4,096 are measured up to it.
         budget: Time that one measurement may take [s]; a table ends at the first number that takes longer.
         seed: Seed of episodes and actions.
         output: The page.
     """
-    from hazard_ms.bench.gpu.needs import missing
+    from hazard_ms.bench.gpu.needs import missing, without_physx
 
     if lack := missing():
         what = "runs the tests marked gpu, and measures batches of environments on a GPU"
         print(f"hazard-ms gpu-check {what}; this machine lacks {lack}", file=sys.stderr)
         return 1
-    from hazard_ms.bench.gpu.report import SIZES, report
+    from hazard_ms.bench.gpu.report import PHYSX, SIZES, report
 
     sizes = [size for size in SIZES if size <= most]
-    return int(report(output, env_id, parts, sizes, budget, seed) > 0)
+    lack = without_physx() if any(part in PHYSX for part in parts) else ""
+    return int(report(output, env_id, parts, sizes, budget, seed, lack=lack) > 0)
 
 
 def danger(env_id: Annotated[tuple[str, ...], flag("-e")] = (), scenes: int = 25) -> int:

@@ -8,6 +8,7 @@ import numpy as np
 import torch
 from mani_skill.envs.sapien_env import BaseEnv
 from mani_skill.sensors.camera import CameraConfig
+from mani_skill.utils.common import to_tensor
 from mani_skill.utils.structs.types import SimConfig
 from torch import Tensor
 
@@ -151,6 +152,9 @@ class BuiltEnv(BaseEnv):
         self.agent.controller.reset()  # commands that go on from the last one go on from here
         self.scene._reset_mask[:] = True
         self.episode.see(self.agent)
+
+    def _get_obs_sensor_data(self, *asked: Any, **named: Any) -> Any:
+        return to_tensor(super()._get_obs_sensor_data(*asked, **named), self.device)  # a GPU may have drawn it
 
     @property
     def hand(self) -> Hand:

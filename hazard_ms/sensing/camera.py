@@ -63,11 +63,12 @@ def _firsts(size: int, count: int, like: Tensor) -> Tensor:
 def relabel(segmentation: Tensor, label_of: Tensor) -> Tensor:
     """Labels, int64 [E, H, W], of a renderer's `segmentation`, [E, H, W] or [E, H, W, 1].
 
-    `label_of` [E, S] holds the label of each of the renderer's ids. Raises ValueError for ids outside of 0 to S - 1.
+    `label_of` [E, S] holds the label of each of the renderer's ids; the labels are where it is, whatever device has
+    drawn. Raises ValueError for ids outside of 0 to S - 1.
     """
     if segmentation.ndim == 4:
         segmentation = segmentation[..., 0]
-    index = segmentation.long()
+    index = segmentation.to(label_of.device).long()
     highest = label_of.shape[1] - 1
     if int(index.max()) > highest or int(index.min()) < 0:
         raise ValueError(

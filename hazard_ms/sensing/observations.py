@@ -102,7 +102,10 @@ class Observer:
 
     def _textures(self, **wanted: bool) -> dict[str, Tensor]:
         every = dict.fromkeys(("rgb", "depth", "position", "segmentation", "normal", "albedo"), False)
-        return self.camera.get_obs(**{**every, **wanted})
+        seen = self.camera.get_obs(**{**every, **wanted})
+        return {
+            name: image.to(self.labels.device) for name, image in seen.items()
+        }  # a GPU may draw what a CPU simulates
 
     def look(self) -> tuple[Tensor, View]:
         """One look of the first environment's head camera: its image [H, W, 3], uint8, and the view for the map."""

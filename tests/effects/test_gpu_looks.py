@@ -14,6 +14,7 @@ import torch
 
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.bench.effects import go_on
+from hazard_ms.bench.gpu.needs import without_physx
 from tests.worlds.watching import SEED, TASKS
 
 pytestmark = pytest.mark.render
@@ -28,6 +29,8 @@ LABELS = ("segmentation", "depth")
     [pytest.param(1, "cpu", marks=pytest.mark.long), pytest.param(4, "gpu", marks=pytest.mark.gpu)],
 )
 def test_a_batch_shows_its_hazards_over_the_same_labels(env_id: str, count: int, simulator: str) -> None:
+    if simulator == "gpu" and without_physx():
+        pytest.skip(without_physx())
     shown, plain = (pictures(env_id, effects, count, simulator) for effects in ("full", "off"))
     for name in LABELS:
         np.testing.assert_array_equal(shown[name], plain[name], err_msg=name)
@@ -38,6 +41,8 @@ def test_a_batch_shows_its_hazards_over_the_same_labels(env_id: str, count: int,
 @pytest.mark.gpu
 @pytest.mark.parametrize("env_id", TASKS)
 def test_an_environment_of_a_batch_looks_like_one_alone(env_id: str) -> None:
+    if without_physx():
+        pytest.skip(without_physx())
     batch, alone = (pictures(env_id, "full", count, "gpu")["rgb"][0].astype(float) for count in (4, 1))
     assert np.abs(batch - alone).mean() < 2.0
 

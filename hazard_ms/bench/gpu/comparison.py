@@ -47,8 +47,13 @@ def quantities(base: Any) -> Course:
 
     The name of each ends with its unit.
     """
-    made = {BODIES: base.world.position[base.world.exists], JOINTS: base.agent.robot.get_qpos()}
-    for name, part in base.episode.parts.items():
+    return {**records(base.episode), JOINTS: base.agent.robot.get_qpos().cpu().numpy()}
+
+
+def records(episode: Any) -> Course:
+    """Places of the bodies, and all that hazards, damage, rescue and hand of an `episode` keep, [...] each."""
+    made = {BODIES: episode.world.position[episode.world.exists]}
+    for name, part in episode.parts.items():
         units = {f.name: f.metadata["unit"] for f in dataclasses.fields(part)}
         for field, value in part.save().items():
             made[f"{name}: {field}" + (f" [{units[field]}]" if units[field] else "")] = value
@@ -84,8 +89,8 @@ def difference(a: NDArray[Any], b: NDArray[Any]) -> float:
 def differences_table(a: Mapping[str, NDArray[Any]], b: Mapping[str, NDArray[Any]]) -> str:
     """A row for each quantity that differs anywhere, a column for each number of frames; then how many never differ.
 
-    Arrays have their own shapes, [...]. Places of bodies and joints have a row in any case. Raises ValueError for
-    courses of different quantities or frames.
+    Arrays have their own shapes, [...]. Places of bodies and, if there are any, joints have a row in any case. Raises
+    ValueError for courses of different quantities or frames.
     """
     if set(a) != set(b):
         raise ValueError(f"both courses must have the same quantities, got a difference in {sorted(set(a) ^ set(b))}")

@@ -36,6 +36,23 @@ def waits_job(**keywords: Any) -> Any:
     return waits(**keywords)
 
 
+def laws_job(**keywords: Any) -> Any:
+    """See `hazard_ms.bench.gpu.laws.laws`."""
+    from hazard_ms.bench.gpu.laws import laws
+
+    return laws(**keywords)
+
+
+def looks_job(file: str, **keywords: Any) -> Any:
+    """See `hazard_ms.bench.gpu.looks.looks`, whose pictures go into `file`."""
+    from hazard_ms.bench.gpu.comparison import keep
+    from hazard_ms.bench.gpu.looks import looks
+
+    spans, pictures = looks(**keywords)
+    keep(Path(file), pictures)
+    return spans
+
+
 def physics_job() -> Any:
     """Let SAPIEN turn to the GPU, for which it downloads a library once."""
     from sapien import physx
@@ -48,6 +65,8 @@ JOBS: dict[str, Callable[..., Any]] = {
     "rate": rate_job,
     "course": course_job,
     "waits": waits_job,
+    "laws": laws_job,
+    "looks": looks_job,
     "physics": physics_job,
 }
 

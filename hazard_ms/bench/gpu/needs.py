@@ -1,7 +1,8 @@
-"""Asks whether anything can be simulated on a GPU of this machine, and what is missing for it."""
+"""Asks what can be done on a GPU of this machine, and what is missing for it."""
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 DRIVER = Path("/dev/nvidiactl")  # which NVIDIA's driver makes
@@ -9,9 +10,9 @@ PHYSICS_BUDGET = 600.0  # for SAPIEN's download [s] [ours]
 
 
 def missing(driver: Path = DRIVER) -> str:
-    """Say in a line what this machine lacks to simulate on a GPU; empty if nothing.
+    """Say in a line what this machine lacks to compute on a GPU; empty if nothing.
 
-    `driver`: a file that exists where there is a GPU. The quick questions come first.
+    `driver`: a file that exists where there is a GPU.
     """
     if not driver.exists():
         return f"an NVIDIA GPU with its driver (there is no {driver})"
@@ -19,6 +20,12 @@ def missing(driver: Path = DRIVER) -> str:
 
     if not torch.cuda.is_available():
         return f"a GPU that torch {torch.__version__} can use (see nvidia-smi and hazard-ms doctor)"
+    return ""
+
+
+@cache
+def without_physx() -> str:
+    """Say in a line why nothing can be simulated on the GPU, which must be there; empty if it can."""
     from hazard_ms.bench.gpu.apart import StoppedError, apart
 
     try:

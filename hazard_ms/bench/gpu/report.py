@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -11,6 +12,8 @@ from typing import Any
 from hazard_ms.bench.gpu.apart import StoppedError, apart
 from hazard_ms.bench.gpu.comparison import CHECKED, differences_table, kept
 from hazard_ms.bench.gpu.gpu_tests import gpu_tests
+from hazard_ms.bench.gpu.laws import COMPARED
+from hazard_ms.bench.gpu.looks import SIDES, compare, looks_row, looks_table
 from hazard_ms.bench.gpu.rates import FRAMES, PICTURES, SIDE, STATE, WARM_UP, Rate, growth, rates_table
 from hazard_ms.bench.gpu.waits import waits_table
 from hazard_ms.evaluation.options import EnvOptions
@@ -21,7 +24,9 @@ from hazard_ms.spec.checks import one_of
 SIZES = (1, 4, 16, 64, 256, 1024, 4096)  # environments of a batch
 MOST_DRAWN = 256  # environments that draw [ours]
 WAITING = 16  # environments of the batch whose waits are counted [ours]
-PARTS = ("tests", "state", "pictures", "comparison", "waits")
+PARTS = ("tests", "laws", "looks", "state", "pictures", "comparison", "waits")
+PHYSX = ("state", "pictures", "comparison", "waits")  # which simulate on the GPU
+LAWS = ("paper", "realistic")  # presets whose laws are measured: the third has the equations of the first
 HEAD = """---
 orphan: true
 ---
@@ -72,11 +77,13 @@ def report(
     budget: float = 300.0,
     seed: int = 0,
     simulator: str = "gpu",
+    lack: str = "",
 ) -> int:
     """Measure the `parts` for all tasks, write the page `output`; return how many of them failed.
 
-    Every measurement may take `budget` seconds; batches have `sizes` environments, in rising order. Raises ValueError
-    for unknown names, numbers that are not allowed, and a page that cannot be written.
+    Every measurement may take `budget` seconds; batches have `sizes` environments, in rising order. `lack`: why nothing
+    can be simulated on the GPU; the parts that do so then fail at once. Raises ValueError for unknown names, numbers
+    that are not allowed, and a page that cannot be written.
     """
     for env_id in env_ids:
         EnvOptions(env_id).check()
@@ -91,14 +98,20 @@ def report(
     page.add(f"Preset paper, seed {seed}. A measurement may take {budget:g} s, the start of its process included.")
     makers: dict[str, Callable[[], None]] = {
         "tests": partial(_tests, page),
+        "laws": partial(_laws, page, env_ids, sizes),
+        "looks": partial(_looks, page, env_ids),
         "state": partial(_rates, page, env_ids, STATE, sizes),
         "pictures": partial(_rates, page, env_ids, PICTURES, [n for n in sizes if n <= MOST_DRAWN]),
         "comparison": partial(_comparison, page, env_ids),
         "waits": partial(_waits, page, env_ids, min(WAITING, max(sizes))),
     }
+    out = [part for part in PARTS if part in parts and part in PHYSX and lack]
     for part, make in makers.items():
-        if part in parts:
+        if part in parts and part not in out:
             make()
+    if out:
+        page.faults += len(out)
+        page.add(f"**Left out**: {', '.join(out)}. This machine lacks {lack}.")
     return page.faults
 
 
@@ -129,6 +142,70 @@ def _rates(page: Page, env_ids: Sequence[str], obs_mode: str, sizes: Sequence[in
             page.stopped(stopped)
 
 
+def _laws(page: Page, env_ids: Sequence[str], sizes: Sequence[int]) -> None:
+    page.add("## The hazards of many environments, without a simulator")
+    page.add(
+        "Each in a scene of its own, in which nobody acts and nothing moves: hazards, forces before each physics step, "
+        f"damage. Wall time, means of {FRAMES} frames after {WARM_UP}. Then {COMPARED} of them beside the same on the "
+        "CPU, and twice on the GPU: largest differences after as many frames; of whole numbers and masks, how many "
+        "entries differ. Waits are those of the host for the GPU that torch warns of."
+    )
+    for env_id, physics in itertools.product(env_ids, LAWS):
+        page.add(f"### {env_id}, {physics}, hazards alone")
+        words = {"env_id": env_id, "physics": physics, "sizes": list(sizes), "simulator": page.simulator}
+        try:
+            found = page.measured("laws", **words)
+        except StoppedError as error:
+            page.stopped(StoppedError(f"{env_id}, {physics}: {error}", error.limit))
+            continue
+        page.add(rates_table([Rate(**made) for made in found["rates"]]))
+        for title, differences in found["differences"].items():
+            page.add(f"{title}:\n\n{differences}")
+        page.add(f"{sum(found['waits'].values()):.2f} waits a frame.")
+        if found["waits"]:
+            page.add(waits_table(found["waits"]))
+
+
+def _pair(page: Page, job: str, pair: tuple[str, str], **words: Any) -> str:
+    """The table of differences of two courses that `job` records, one on each simulator of the `pair`."""
+    with tempfile.TemporaryDirectory() as folder:
+        files = [Path(folder) / f"{k}.npz" for k in range(2)]
+        for file, simulator in zip(files, pair, strict=True):
+            page.measured(job, file=str(file), simulator=simulator, checked=CHECKED, **words)
+        return differences_table(*map(kept, files))
+
+
+def _looks(page: Page, env_ids: Sequence[str]) -> None:
+    page.add("## One environment, simulated on the CPU and drawn on the GPU")
+    page.add(
+        "Median times of a look of the head camera (rgb, depth, segmentation) while the hazard goes on, and how it "
+        "differs from the same look drawn on the CPU."
+    )
+    rows: list[list[str]] = []
+    for env_id in env_ids:
+        try:
+            rows += _task_looks(page, env_id)
+        except StoppedError as error:
+            page.stopped(StoppedError(f"{env_id}: {error}", error.limit))
+    if rows:
+        page.add(looks_table(rows))
+
+
+def _task_looks(page: Page, env_id: str) -> list[list[str]]:
+    """The rows of a task, one for each size. Where the CPU cannot draw, there is nothing to compare with."""
+    with tempfile.TemporaryDirectory() as folder:
+        files = [Path(folder) / f"{k}.npz" for k in range(2)]
+        words = {"env_id": env_id, "sides": list(SIDES)}
+        here = page.measured("looks", file=str(files[0]), renderer=page.simulator, **words)
+        try:
+            there = page.measured("looks", file=str(files[1]), renderer="cpu", **words)
+        except StoppedError as error:
+            page.add(f"Nothing to compare {env_id} with, since the CPU drew nothing: {error}.")
+            return [looks_row(env_id, side, span, None, None) for side, span in zip(SIDES, here, strict=True)]
+        gpu, cpu = map(kept, files)
+        return [looks_row(env_id, side, here[k], there[k], compare(side, gpu, cpu)) for k, side in enumerate(SIDES)]
+
+
 def _comparison(page: Page, env_ids: Sequence[str]) -> None:
     page.add("## One environment beside the same on the CPU")
     page.add(
@@ -137,15 +214,10 @@ def _comparison(page: Page, env_ids: Sequence[str]) -> None:
     )
     for env_id, (title, pair) in _each(env_ids, page.simulator):
         page.add(f"### {env_id}, {title}")
-        with tempfile.TemporaryDirectory() as folder:
-            files = [Path(folder) / f"{k}.npz" for k in range(2)]
-            try:
-                for file, simulator in zip(files, pair, strict=True):
-                    words = {"env_id": env_id, "simulator": simulator, "checked": CHECKED}
-                    page.measured("course", file=str(file), **words)
-                page.add(differences_table(*map(kept, files)))
-            except StoppedError as error:
-                page.stopped(StoppedError(f"{env_id}: {error}", error.limit))
+        try:
+            page.add(_pair(page, "course", pair, env_id=env_id))
+        except StoppedError as error:
+            page.stopped(StoppedError(f"{env_id}: {error}", error.limit))
 
 
 def _each(env_ids: Sequence[str], simulator: str) -> Iterator[tuple[str, tuple[str, tuple[str, str]]]]:

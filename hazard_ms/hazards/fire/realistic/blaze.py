@@ -212,7 +212,9 @@ class Blaze(Hazard):
     @staticmethod
     def _chest(world: World) -> Tensor:
         """Place where the agent feels heat [m], [E, 1, 3], world frame."""
-        return (world.agent_position + world.agent_position.new_tensor([0.0, 0.0, CHEST]))[:, None]
+        place = world.agent_position.clone()
+        place[:, 2] += CHEST
+        return place[:, None]
 
     def damaged(self, state: BlazeState, world: World) -> Tensor:
         return state.status != NORMAL

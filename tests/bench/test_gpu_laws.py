@@ -1,0 +1,79 @@
+"""The hazards of a batch on a GPU, without a simulator: as on the CPU, and as alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hazard_ms.bench.gpu.laws import DEVICES, course, laws, rate
+from hazard_ms.cli.bench import GPU_TASKS
+from hazard_ms.hazards.presets import PRESETS
+from hazard_ms.sketch.recording import record
+from hazard_ms.sketch.rescues.resting import SPLIT, Batch
+from hazard_ms.tasks import task_of
+
+CHECKED = (0, 1, 30)
+ROUNDING = 1e-6  # of what is below one, in its own unit
+ON_GPU = pytest.param("gpu", marks=pytest.mark.gpu)
+
+
+@pytest.mark.parametrize("simulator", ["cpu", ON_GPU])
+@pytest.mark.parametrize("physics", PRESETS)
+@pytest.mark.parametrize("env_id", GPU_TASKS)
+def test_an_environment_of_a_batch_is_as_alone(env_id: str, physics: str, simulator: str) -> None:
+    """Bit for bit: no number depends on how many others there are."""
+    several, alone = (course(env_id, count, simulator, physics, CHECKED) for count in (3, 1))
+    compared = 0
+    for name, numbers in alone.items():
+        if numbers.shape[:1] == (1,) and numbers.shape[1:] == several[name].shape[1:]:
+            np.testing.assert_array_equal(several[name][:1], numbers, err_msg=name)
+            compared += 1
+    assert compared > len(CHECKED)
+
+
+@pytest.mark.gpu
+@pytest.mark.parametrize("physics", PRESETS)
+@pytest.mark.parametrize("env_id", GPU_TASKS)
+def test_a_gpu_agrees_with_the_cpu(env_id: str, physics: str) -> None:
+    """But for rounding, of which the remainders of compensated sums consist."""
+    gpu, cpu = (course(env_id, 8, simulator, physics, CHECKED) for simulator in ("gpu", "cpu"))
+    assert set(gpu) == set(cpu)
+    for name, numbers in cpu.items():
+        if numbers.dtype.kind == "f":
+            scale = float(np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0))
+            np.testing.assert_allclose(gpu[name], numbers, rtol=1e-3, atol=max(1e-4 * scale, ROUNDING), err_msg=name)
+        else:
+            assert (gpu[name] != numbers).sum() <= 1e-3 * numbers.size, name
+
+
+def test_a_fire_of_a_batch_is_the_fire_of_a_recorded_timeline() -> None:
+    """A recording of the same scene and seed, in which nobody acts, has the same flames and temperatures."""
+    task = task_of("HazardFire-v1", "paper")
+    spec, frames = task.build(tuple(task.scenes(SPLIT))[1]), 90
+    (line,) = record(task, "paper", (spec,), (1,), frames)
+    batch = Batch("HazardFire-v1", 2, "cpu", "paper")
+    for _ in range(frames):
+        batch.step()
+    things = len(spec.things)
+    levels = batch.episode.levels(batch.episode.world.position)[1, :, :things].numpy()
+    np.testing.assert_allclose(levels, line.levels[-1].astype(np.float32), rtol=1e-3)
+    assert levels.max() > 25.0
+
+
+def test_things_rest_while_they_are_pushed() -> None:
+    batch = Batch("HazardWind-v1", 2, "cpu", "paper")
+    before = batch.episode.world.position.clone()
+    for _ in range(30):
+        batch.step()
+    assert (batch.episode.world.position == before).all()
+    assert batch.handles.force.abs().max() > 0.0
+
+
+def test_a_measurement_has_rates_differences_and_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("hazard_ms.bench.gpu.laws.COMPARED", 2)
+    found = laws("HazardFire-v1", "paper", (1, 2), "cpu")
+    assert [made["num_envs"] for made in found["rates"]] == [1, 2]
+    assert list(found["differences"]) == ["cpu and cpu", "cpu twice"] and found["waits"] == {}
+    assert all("quantities." in text for text in found["differences"].values())
+    assert rate("HazardFire-v1", 2, "cpu", "paper", frames=2).step > 0.0
+    assert set(DEVICES) == {"cpu", "gpu"}

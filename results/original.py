@@ -42,10 +42,11 @@ HEAD = """# The original's scenes
 Made by `./run python results/original.py FOLDER`: of the scenes that the original published, every third room and every
 third street, 25 of each, imported with `hazard-ms scenes import`; preset `shipped`, Fetch, one episode each. Values are
 in percent, with 95 % bootstrap intervals over scenes. "Reachable": the same Value, counted on targets that the robot
-can get at (`hazard-ms scenes reach`) alone. "No path": of the walks to such targets, those that failed since there was
-no path. "Stuck": episodes that ended early, after 100 decisions in a row that took no time, mostly walks to where there
-is no path, which an agent asks for again and again. The paper's Value is that of its own test scenes, in its simulator,
-with a person as the agent. Tasks and agents without a row were not played. Written at
+can get at (`hazard-ms scenes reach`) alone. "No path": of the walks to such targets, those that failed since there
+was no path; a walk that is asked for again in the same frame is the same walk. "Stuck": episodes that ended early,
+after 100 decisions in a row that took no time, mostly walks to where there is no path, which an agent asks for again
+and again. The paper's Value is that of its own test scenes, in its simulator, with a person as the agent. Tasks and
+agents without a row were not played. Written at
 {machine}.
 
 | task | agent | Value | reachable | Step | Damage | no path | stuck | the paper's Value | episodes |
@@ -81,8 +82,9 @@ def row(task: str, agent: str, results: Sequence[EpisodeResult], reach: dict[str
     every = scores([result.tally for result in results])
     fates = [[fate for fate in r.targets if fate.name in reach[r.scene]] for r in results]
     got = scores([Tally.of(each) for each in fates if each])["value"]
-    walks = [d for r in results for d in r.decisions if d.verb == WALK_TO and d.target in reach[r.scene]]
-    lost = sum(walk.reason == NO_PATH for walk in walks)
+    asked = [(r, d) for r in results for d in r.decisions if d.verb == WALK_TO and d.target in reach[r.scene]]
+    walks = {(r.seed, r.scene, d.target, d.frame): d.reason for r, d in asked}  # asked for again at once is one walk
+    lost = sum(reason == NO_PATH for reason in walks.values())
     step, damage = every["step"].mean, every["damage"].mean
     cells = [words(value_of(results)), words(got), "-" if step is None else f"{step:.0f}"]
     cells += ["-" if damage is None or task == "wind" else f"{100 * damage:.1f}", f"{lost} of {len(walks)}"]

@@ -119,7 +119,10 @@ def fidelity(sweep: str) -> list[str]:
 
 
 def section(group: dict[str, Any]) -> list[str]:
-    """The table of a group as `hazard-ms report` tells it, and the differences from `planner`; people are one row."""
+    """The table of a group as `hazard-ms report` tells it, and differences from `planner`; people are one row.
+
+    The oracle's differences from `mcts` and `greedy` say how far above these an agent could get.
+    """
     lines = [f"{group['settings']}.\n", "| agent | Value | Step | Damage | regret | rescued | episodes |"]
     lines.append("|---|---|---|---|---|---|---|")
     for name, agent in sorted(group["agents"].items(), key=lambda item: -item[1]["value"]["mean"]):
@@ -132,6 +135,8 @@ def section(group: dict[str, Any]) -> list[str]:
         if pair["agent"] == "planner" and pair["other"] != "random":
             common = f" on {pair['episodes']} episodes" if pair["other"] == HUMAN else ""
             lines.append(f"- planner less {pair['other']}: {interval(pair['value'])}{common}")
+        if pair["agent"] == ORACLE and pair["other"] in ("mcts", "greedy"):
+            lines.append(f"- {ORACLE} less {pair['other']}: {interval(pair['value'])}")
     return lines
 
 

@@ -13,6 +13,7 @@ from hazard_ms.bench.gpu import rates, report, waits
 from hazard_ms.bench.gpu.apart import StoppedError, complaints, failure, run
 from hazard_ms.bench.gpu.comparison import BODIES, JOINTS, course, difference, differences_table, keep, kept
 from hazard_ms.bench.gpu.gpu_tests import gpu_tests
+from hazard_ms.bench.gpu.looks import SIDES, compare, looks_row, looks_table
 from hazard_ms.bench.gpu.needs import DRIVER, missing
 from hazard_ms.cli.__main__ import main
 from hazard_ms.cli.bench import GPU_PARTS, GPU_TASKS
@@ -217,3 +218,42 @@ def test_tests_of_a_gpu_are_run_and_told(tmp_path: Path) -> None:
     said, passed = gpu_tests(tmp_path)
     assert not passed and "SKIPPED [1] tests/test_it.py" in said and "1 passed, 1 skipped" in said
     assert gpu_tests(tmp_path / "elsewhere")[1] is False
+
+
+def test_what_needs_physx_is_left_out_without_it_and_counts_as_failed(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    assert report.report(page, ("HazardWind-v1",), ("state", "waits"), (1,), simulator="cpu", lack="a file") == 2
+    assert "**Left out**: state, waits. This machine lacks a file." in page.read_text(encoding="utf-8")
+
+
+def test_pictures_are_compared_pixel_by_pixel_and_beyond_outlines() -> None:
+    """Of 64 labels two change: one at an outline, where its neighbour has it, and one in the middle of a thing."""
+    shape = (8, 8, 1)
+    labels, depth, colours = np.ones(shape, np.int16), np.full(shape, 1500, np.int16), np.zeros((8, 8, 3), np.uint8)
+    labels[:, 4:] = 2
+    a = {"4/rgb": colours, "4/depth": depth, "4/segmentation": labels}
+    b = {name: numbers.copy() for name, numbers in a.items()}
+    b["4/segmentation"][2, 4], b["4/segmentation"][6, 1] = 1, 9
+    b["4/depth"][0, :2, 0] = (1502, 1503)  # 2 mm do not count
+    b["4/rgb"][0, 0] = 192
+    found = compare(4, a, b)
+    assert (found.labels, found.beyond, found.depths, found.colour) == (2 / 64, 1 / 64, 1 / 64, 192 / 64)
+    below, above = ({**a, "4/depth": np.full(shape, mm, np.int16)} for mm in (32_767, 32_768 - 65_536))
+    assert compare(4, below, above).depths == 0.0  # 32.767 m and 32.768 m
+    assert cells(looks_table([looks_row("HazardFire-v1", 4, 0.01, 0.02, found)]))[0][1:] == [
+        *("4", "10.0", "20.0"),
+        *("3.125", "1.562", "1.562", "3.00"),
+    ]
+    assert cells(looks_table([looks_row("HazardFire-v1", 4, 0.01, None, None)]))[0][3:] == ["none"] * 5
+
+
+@pytest.mark.long
+@pytest.mark.render
+def test_a_report_has_hazards_alone_and_looks(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    assert report.report(page, ("HazardWind-v1",), ("laws", "looks"), (1, 2), simulator="cpu") == 0
+    text = page.read_text(encoding="utf-8")
+    assert text.count("waits a frame.") == 2 and "0.00 waits a frame." in text
+    looks = [row for row in cells(text[text.index("drawn on the GPU") :]) if row[0] == "HazardWind-v1"]
+    assert [row[1] for row in looks] == [str(side) for side in SIDES]
+    assert {cell for row in looks for cell in row[4:]} == {"0.000", "0.00"}

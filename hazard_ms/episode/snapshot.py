@@ -40,9 +40,8 @@ def restore(episode: Episode, saved: dict[str, Any], rows: Tensor) -> None:
     for name, part in episode.parts.items():
         shapes = {k: v.shape[1:] for k, v in part.save().items()}
         part.restore({k: v.reshape(len(rows), *shapes[k]) for k, v in saved[name].items()}, rows)
-    chance, words = world.chance, saved["chance"]["seed"]
-    chance.seed[rows] = words[:, 0] + words[:, 1] * WORD
-    chance.frame[rows] = saved["chance"]["frame"][:, 0]
+    words = saved["chance"]["seed"]
+    world.chance.restart(rows, words[:, 0] + words[:, 1] * WORD, saved["chance"]["frame"][:, 0])
     episode.sim_error[rows] = False  # only states of a sound simulation are restored
     world.safe[rows] = episode.rescue.safe[rows]
     world.away[rows] = episode.rescue.safe[rows] & episode.safe_place.carried

@@ -30,20 +30,36 @@ def _mixed_index(count: int, device: torch.device) -> Tensor:
 
 
 class Chance:
-    """Random numbers of E environments. All of its state is `seed` [E] and `frame` [E], both int64."""
+    """Random numbers of E environments. All of its state is `seed` [E] and `frame` [E], both int64.
+
+    On a GPU the host counts frames, too, so that it need not wait to know what is due.
+    """
 
     def __init__(self, num_envs: int, device: torch.device | str = "cpu") -> None:
         self.seed = torch.zeros(num_envs, dtype=torch.int64, device=device)
         self.frame = torch.zeros(num_envs, dtype=torch.int64, device=device)
+        self._on_host = None if self.frame.device.type == "cpu" else torch.zeros(num_envs, dtype=torch.int64)
 
-    def restart(self, rows: Tensor, seeds: Tensor) -> None:
-        """Begin new episodes with `seeds` [R] in the R environments `rows` [R]."""
+    def restart(self, rows: Tensor, seeds: Tensor, frames: Tensor | int = 0) -> None:
+        """Begin episodes with `seeds` [R] in the R environments `rows` [R], or go on with them after `frames` [R]."""
         self.seed[rows] = seeds.to(self.seed)
-        self.frame[rows] = 0
+        self.frame[rows] = frames
+        if self._on_host is not None:
+            self._on_host[rows.cpu()] = frames.cpu() if isinstance(frames, Tensor) else frames
 
     def tick(self) -> None:
         """Count one frame, after which all draws are new."""
         self.frame += 1
+        if self._on_host is not None:
+            self._on_host += 1
+
+    def due(self, every: int) -> Tensor | None:
+        """The environments in which it is time for what happens `every` so many frames, bool [E]; None for none."""
+        counted = self.frame if self._on_host is None else self._on_host
+        now = counted % every == 0
+        if not bool(now.any()):
+            return None
+        return now if self._on_host is None else self.frame % every == 0
 
     def uniform(self, stream: str, *shape: int) -> Tensor:
         """Uniform random numbers in (0, 1), [E, *shape], float32. Two streams of different names are independent."""

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+from torch.utils._python_dispatch import TorchDispatchMode
 
 from hazard_ms.bench.gpu.laws import DEVICES, course, laws, rate
 from hazard_ms.cli.bench import GPU_TASKS
+from hazard_ms.hazards.fire import coupling, fire
+from hazard_ms.hazards.fire.realistic import blaze, front
 from hazard_ms.hazards.presets import PRESETS
 from hazard_ms.sketch.recording import record
 from hazard_ms.sketch.rescues.resting import SPLIT, Batch
@@ -77,3 +82,31 @@ def test_a_measurement_has_rates_differences_and_waits(monkeypatch: pytest.Monke
     assert all("quantities." in text for text in found["differences"].values())
     assert rate("HazardFire-v1", 2, "cpu", "paper", frames=2).step > 0.0
     assert set(DEVICES) == {"cpu", "gpu"}
+
+
+class Operations(TorchDispatchMode):
+    """Counts the operations of torch."""
+
+    count = 0
+
+    def __torch_dispatch__(self, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
+        self.count += 1
+        return func(*args, **(kwargs or {}))
+
+
+@pytest.mark.parametrize("physics", ["paper", "realistic"])
+def test_where_nobody_may_ask_a_device_frames_in_which_nothing_is_due_start_few_operations(
+    physics: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on a GPU, where each operation takes the host's time, whatever it does."""
+    for module in (fire, coupling, blaze, front):
+        monkeypatch.setattr(module, "none_set", lambda mask: False)
+    batch = Batch("HazardFire-v1", 4, "cpu", physics)
+    counts = []
+    for _ in range(10):
+        with Operations() as found:
+            batch.step()
+        counts.append(found.count)
+    warm = [count for frame, count in enumerate(counts, start=1) if frame % 5 == 0]
+    idle = [count for frame, count in enumerate(counts, start=1) if frame % 5]
+    assert max(idle) < min(warm) / 2, counts

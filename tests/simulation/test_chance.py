@@ -117,3 +117,23 @@ def test_normal_moments() -> None:
     assert (draws**3).mean().item() == pytest.approx(0.0, abs=5 * math.sqrt(15 / SAMPLES))
     assert (draws**4).mean().item() == pytest.approx(3.0, abs=5 * math.sqrt(96 / SAMPLES))
     assert (draws.abs() > 1.96).double().mean().item() == pytest.approx(0.05, abs=5 * math.sqrt(0.0475 / SAMPLES))
+
+
+@pytest.mark.parametrize("device", ["cpu", "meta", pytest.param("cuda", marks=pytest.mark.gpu)])
+def test_what_is_due_is_known_without_a_device(device: str) -> None:
+    """A meta tensor holds no numbers: whoever asked it would fail, as whoever asks a GPU waits."""
+    made, counts = Chance(3, device), [0, 0, 0]
+    for frame in range(60):
+        if frame == 7:
+            made.restart(torch.tensor([1]), torch.tensor([5]))
+            counts[1] = 0
+        if frame == 31:
+            made.restart(torch.tensor([0, 2]), torch.tensor([6, 7]), torch.tensor([12, 4]))
+            counts[0], counts[2] = 12, 4
+        for every in (1, 5, 10):
+            due = made.due(every)
+            assert (due is not None) == any(count % every == 0 for count in counts), (frame, every)
+            if due is not None and device != "meta":
+                assert due.tolist() == [count % every == 0 for count in counts] and due.device.type == device
+        made.tick()
+        counts = [count + 1 for count in counts]

@@ -78,13 +78,13 @@ class Fire(Hazard):
     @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
     def advance(self, state: FireState, world: World, dt: float) -> None:
         coupling.drench(state, world)
-        due = world.frame % self.heat_every == 0
-        if none_set(due):
+        due = world.chance.due(self.heat_every)
+        if due is None:
             return  # nor is anything to spread, see __post_init__
         self._warm(state, world, due)
         self._burn(state, world, due)
-        due = world.frame % spread.EVERY == 0
-        if not none_set(due):
+        due = world.chance.due(spread.EVERY)
+        if due is not None:
             self._spread(state, world, due)
 
     def _warm(self, state: FireState, world: World, due: Tensor) -> None:

@@ -124,8 +124,8 @@ class Blaze(Hazard):
     @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
     def advance(self, state: BlazeState, world: World, dt: float) -> None:
         coupling.drench(state, world)
-        due = world.frame % self.every == 0
-        if not none_set(due):
+        due = world.chance.due(self.every)
+        if due is not None:
             waiting = {} if none_set(~due) else {name: getattr(state, name).clone() for name in HEATED}
             self._heat(state, world, dt * self.time_scale * self.every)
             for name, before in waiting.items():

@@ -13,7 +13,7 @@ from hazard_ms.bench.gpu import rates, report, waits
 from hazard_ms.bench.gpu.apart import StoppedError, complaints, failure, run
 from hazard_ms.bench.gpu.comparison import BODIES, JOINTS, course, difference, differences_table, keep, kept
 from hazard_ms.bench.gpu.gpu_tests import gpu_tests
-from hazard_ms.bench.gpu.looks import SIDES, compare, looks_row, looks_table
+from hazard_ms.bench.gpu.looks import SIDES
 from hazard_ms.bench.gpu.needs import DRIVER, missing
 from hazard_ms.cli.__main__ import main
 from hazard_ms.cli.bench import GPU_PARTS, GPU_TASKS
@@ -224,27 +224,6 @@ def test_what_needs_physx_is_left_out_without_it_and_counts_as_failed(tmp_path: 
     page = tmp_path / "page.md"
     assert report.report(page, ("HazardWind-v1",), ("state", "waits"), (1,), simulator="cpu", lack="a file") == 2
     assert "**Left out**: state, waits. This machine lacks a file." in page.read_text(encoding="utf-8")
-
-
-def test_pictures_are_compared_pixel_by_pixel_and_beyond_outlines() -> None:
-    """Of 64 labels two change: one at an outline, where its neighbour has it, and one in the middle of a thing."""
-    shape = (8, 8, 1)
-    labels, depth, colours = np.ones(shape, np.int16), np.full(shape, 1500, np.int16), np.zeros((8, 8, 3), np.uint8)
-    labels[:, 4:] = 2
-    a = {"4/rgb": colours, "4/depth": depth, "4/segmentation": labels}
-    b = {name: numbers.copy() for name, numbers in a.items()}
-    b["4/segmentation"][2, 4], b["4/segmentation"][6, 1] = 1, 9
-    b["4/depth"][0, :2, 0] = (1502, 1503)  # 2 mm do not count
-    b["4/rgb"][0, 0] = 192
-    found = compare(4, a, b)
-    assert (found.labels, found.beyond, found.depths, found.colour) == (2 / 64, 1 / 64, 1 / 64, 192 / 64)
-    below, above = ({**a, "4/depth": np.full(shape, mm, np.int16)} for mm in (32_767, 32_768 - 65_536))
-    assert compare(4, below, above).depths == 0.0  # 32.767 m and 32.768 m
-    assert cells(looks_table([looks_row("HazardFire-v1", 4, 0.01, 0.02, found)]))[0][1:] == [
-        *("4", "10.0", "20.0"),
-        *("3.125", "1.562", "1.562", "3.00"),
-    ]
-    assert cells(looks_table([looks_row("HazardFire-v1", 4, 0.01, None, None)]))[0][3:] == ["none"] * 5
 
 
 @pytest.mark.long

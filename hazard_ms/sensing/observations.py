@@ -103,9 +103,8 @@ class Observer:
     def _textures(self, **wanted: bool) -> dict[str, Tensor]:
         every = dict.fromkeys(("rgb", "depth", "position", "segmentation", "normal", "albedo"), False)
         seen = self.camera.get_obs(**{**every, **wanted})
-        return {
-            name: image.to(self.labels.device) for name, image in seen.items()
-        }  # a GPU may draw what a CPU simulates
+        # a GPU may have drawn what a CPU simulates
+        return {name: image.to(self.labels.device) for name, image in seen.items()}
 
     def look(self) -> tuple[Tensor, View]:
         """One look of the first environment's head camera: its image [H, W, 3], uint8, and the view for the map."""

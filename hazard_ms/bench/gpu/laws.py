@@ -10,7 +10,7 @@ from typing import Any
 import torch
 
 from hazard_ms.bench.gpu.comparison import CHECKED, Course, differences_table, records
-from hazard_ms.bench.gpu.rates import FRAMES, WARM_UP, Rate, memory, settle
+from hazard_ms.bench.gpu.rates import FRAMES, WARM_UP, Rate, memory, pace, settle
 from hazard_ms.bench.gpu.waits import FRAMES as COUNTED
 from hazard_ms.bench.gpu.waits import counted
 from hazard_ms.sketch.rescues.resting import Batch
@@ -20,9 +20,10 @@ DEVICES = {"gpu": "cuda", "cpu": "cpu"}  # as torch calls them
 
 
 def laws(env_id: str, physics: str, sizes: Sequence[int], simulator: str, seed: int = 0) -> dict[str, Any]:
-    """Measure and compare the hazards of a task: "rates", "differences" and "waits", as JSON can hold them.
+    """Measure and compare the hazards of a task: all as JSON can hold it.
 
-    rates: the fields of a Rate for each number of environments in `sizes`, up to the first that exhausts the memory;
+    rates: the fields of a Rate for each number of environments in `sizes`, up to the first that exhausts the memory,
+    which is too_many, None if none does;
     differences: by title, the table of the differences of COMPARED environments on `simulator` from others; waits: by
     place, how often in a frame the host waits for the GPU [-], as torch warns of it.
     """
@@ -33,13 +34,14 @@ def laws(env_id: str, physics: str, sizes: Sequence[int], simulator: str, seed: 
         for title, other in others.items()
     }
     places = waits(env_id, COMPARED, simulator, physics, seed)
-    rates = []
+    rates, too_many = [], None
     for size in sizes:
         try:
             rates.append(dataclasses.asdict(rate(env_id, size, simulator, physics, seed=seed)))
         except torch.OutOfMemoryError:
+            too_many = size
             break
-    return {"rates": rates, "differences": differences, "waits": places}
+    return {"rates": rates, "too_many": too_many, "differences": differences, "waits": places}
 
 
 def rate(env_id: str, num_envs: int, simulator: str, physics: str, frames: int = FRAMES, seed: int = 0) -> Rate:
@@ -48,14 +50,7 @@ def rate(env_id: str, num_envs: int, simulator: str, physics: str, frames: int =
     batch = Batch(env_id, num_envs, DEVICES[simulator], physics, seed)
     settle()
     start = time.perf_counter() - begun
-    for _ in range(WARM_UP):
-        batch.step()
-    settle()
-    begun = time.perf_counter()
-    for _ in range(frames):
-        batch.step()
-    settle()
-    return Rate(num_envs, (time.perf_counter() - begun) / frames, start, memory())
+    return Rate(num_envs, pace([batch.step] * (WARM_UP + frames)), start, memory())
 
 
 def course(

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import gymnasium as gym
@@ -54,16 +55,21 @@ def rate(env_id: str, num_envs: int, obs_mode: str, simulator: str, frames: int 
         actions = motions(env, WARM_UP + frames, seed)
         settle()
         start = time.perf_counter() - begun
-        for action in actions[:WARM_UP]:
-            env.step(action)
-        settle()
-        begun = time.perf_counter()
-        for action in actions[WARM_UP:]:
-            env.step(action)
-        settle()
-        return Rate(num_envs, (time.perf_counter() - begun) / frames, start, memory())
+        return Rate(num_envs, pace([partial(env.step, action) for action in actions]), start, memory())
     finally:
         env.close()
+
+
+def pace(steps: Sequence[Callable[[], object]]) -> float:
+    """The mean wall time of the `steps` after the first WARM_UP, when the GPU, if there is one, has done them [s]."""
+    for step in steps[:WARM_UP]:
+        step()
+    settle()
+    begun = time.perf_counter()
+    for step in steps[WARM_UP:]:
+        step()
+    settle()
+    return (time.perf_counter() - begun) / (len(steps) - WARM_UP)
 
 
 def batch(env_id: str, num_envs: int, obs_mode: str, simulator: str) -> gym.Env:

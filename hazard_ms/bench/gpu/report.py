@@ -105,10 +105,9 @@ def report(
         "comparison": partial(_comparison, page, env_ids),
         "waits": partial(_waits, page, env_ids, min(WAITING, max(sizes))),
     }
-    out = [part for part in PARTS if part in parts and part in PHYSX and lack]
-    for part, make in makers.items():
-        if part in parts and part not in out:
-            make()
+    out = [part for part in PHYSX if part in parts and lack]
+    for part in (part for part in makers if part in parts and part not in out):
+        makers[part]()
     if out:
         page.faults += len(out)
         page.add(f"**Left out**: {', '.join(out)}. This machine lacks {lack}.")
@@ -159,11 +158,12 @@ def _laws(page: Page, env_ids: Sequence[str], sizes: Sequence[int]) -> None:
             page.stopped(StoppedError(f"{env_id}, {physics}: {error}", error.limit))
             continue
         page.add(rates_table([Rate(**made) for made in found["rates"]]))
+        if found["too_many"]:
+            page.stopped(StoppedError(f"a batch of {found['too_many']:,}: the memory is exhausted", limit=True))
         for title, differences in found["differences"].items():
             page.add(f"{title}:\n\n{differences}")
-        page.add(f"{sum(found['waits'].values()):.2f} waits a frame.")
-        if found["waits"]:
-            page.add(waits_table(found["waits"]))
+        places = found["waits"]
+        page.add(f"{sum(places.values()):.2f} waits a frame." + (f"\n\n{waits_table(places)}" if places else ""))
 
 
 def _pair(page: Page, job: str, pair: tuple[str, str], **words: Any) -> str:

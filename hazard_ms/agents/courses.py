@@ -25,7 +25,7 @@ from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.sketch.timeline import Timeline
-from hazard_ms.sketch.travel.ways import WALK
+from hazard_ms.sketch.travel.ways import SETTLE, WALK
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action
 from hazard_ms.skills.motor.walking import ARRIVED, MIDPOINT, WALK_FRAMES
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
@@ -135,11 +135,10 @@ class Courses:
         if action.verb in (WALK_TO, WALK_ONE_STEP):
             return self._walked(state, index, action.verb == WALK_ONE_STEP, future)
         if action.verb == PICK_UP:
-            away = self._away(state, index, future)
+            away, pick = self._away(state, index, future), self._pick(index, state.frame, future)
             if state.holding is not None or index not in state.left or away > MOST_REACH:
                 return state
-            nearer = WALK * max(0.0, away - ARRIVED - self._scene.edges[index])
-            return replace(self._later(state, self._pick(index, state.frame, future) + nearer), holding=index)
+            return replace(self._later(self._turned(state, index, future), pick), holding=index)
         if action.verb != DROP or state.holding is None:
             return state
         if not self._carts:
@@ -176,8 +175,21 @@ class Courses:
         most = min(whole, WALK_FRAMES, max(whole - (metres - MIDPOINT) * WALK, 0.0) if one_step else whole)
         gone = max(0.0, metres - (whole - most) / WALK)
         x, y = ways.along(place, goal, metres + 1.0 if most == whole else gone, edge)
-        heading = float(route.last) if most == whole else None
-        return replace(self._later(state, most), place=(float(x), float(y)), heading=heading)
+        heading = route.last if most == whole else ways.route(np.array([x, y]), goal, edge).first  # it faces the rest
+        return replace(self._later(state, most), place=(float(x), float(y)), heading=float(heading))
+
+    def _turned(self, state: State, index: int, future: Timeline) -> State:
+        """The state once the base has turned to the thing `index` and come as near to it as `walk_to` does."""
+        goal, edge = future.position_at(state.frame)[index, :2].astype(np.float64), self._scene.edges[index]
+        place = np.array(state.place)
+        route = self._scene.ways.route(place, goal, edge)
+        if not np.isfinite(route.metres):
+            return state
+        if self._away(state, index, future) <= ARRIVED + edge:
+            route = route._replace(metres=np.float64(0.0))
+        frames = max(0.0, float(route.frames(state.heading)) - SETTLE)
+        x, y = self._scene.ways.along(place, goal, route.metres, edge)
+        return replace(self._later(state, frames), place=(float(x), float(y)), heading=float(route.last))
 
     def _later(self, state: State, frames: float) -> State:
         return replace(state, frame=state.frame + round(frames))

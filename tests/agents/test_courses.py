@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import pytest
 
@@ -57,8 +58,8 @@ def test_the_wrong_target_first_costs_what_comes_too_late(
 
 
 def test_a_walk_that_can_still_be_turned_back_costs_its_frames_alone() -> None:
-    """After 100 frames on the way to RIGHT, LEFT is 97 / 62 m farther away: 200 frames later than without."""
-    limit = ONE + 200 + ROUND
+    """After 100 frames on the way to RIGHT, LEFT is 97 / 62 m farther away, and behind: 200 frames and half a turn."""
+    limit = ONE + 200 + 30 + ROUND
     assert worth(Action(WALK_TO, RIGHT), limit) == 5.0
     assert worth(Action(WALK_TO, RIGHT), limit - 3 * ROUND) == 1.0
 
@@ -85,6 +86,20 @@ def test_walks_end_after_a_hundred_frames_or_a_metre() -> None:
     assert step.frame == pytest.approx(62 + 3, abs=4) and step.place[0] == pytest.approx(5.0, abs=0.1)
     assert there.frame == pytest.approx(62 * (1 - NEAR) + 3, abs=7)
     assert there.place[0] == pytest.approx(2 + NEAR, abs=0.15)
+
+
+def test_a_walk_that_is_cut_short_faces_the_rest_of_its_way() -> None:
+    west, east = after(Action(WALK_TO, LEFT)), after(Action(WALK_ONE_STEP, RIGHT))
+    assert west.heading is not None and abs(west.heading) == pytest.approx(math.pi, abs=0.1)
+    assert east.heading == pytest.approx(0.0, abs=0.1)
+
+
+def test_a_pick_up_turns_to_its_target_and_comes_nearer_first() -> None:
+    away = dataclasses.replace(START, place=(3.6, 3.0), heading=0.0)  # 1.6 m east of LEFT, and it looks east
+    held = after(Action(PICK_UP, LEFT), away)
+    assert held.holding == 0 and held.heading is not None and abs(held.heading) == pytest.approx(math.pi, abs=0.1)
+    assert held.frame == pytest.approx(30 + 62 * (1.6 - NEAR) + PICK, abs=7)
+    assert held.place[0] == pytest.approx(2 + NEAR, abs=0.15)
 
 
 def test_a_target_is_taken_where_it_is_near_and_put_away_where_it_counts() -> None:

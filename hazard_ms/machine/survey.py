@@ -16,6 +16,7 @@ from pathlib import Path
 
 MANIFEST_VARIABLES = ("VK_DRIVER_FILES", "VK_ICD_FILENAMES")  # these replace the folders; the first that is set counts
 MANIFEST_FOLDERS = ("etc/vulkan/icd.d", "usr/local/share/vulkan/icd.d", "usr/share/vulkan/icd.d")
+LAVAPIPE = "libvulkan_lvp"  # the library of Mesa's driver that draws on the CPU
 LISTING_TIMEOUT = 20.0  # [s] for ldconfig and nvidia-smi
 
 
@@ -110,6 +111,16 @@ def manifest_paths(root: Path, environ: Mapping[str, str]) -> list[Path]:
     for place in places:
         files += sorted(place.glob("*.json")) if place.is_dir() else [place]
     return files
+
+
+def without_gpu(root: Path = Path("/"), environ: Mapping[str, str] | None = None) -> dict[str, str]:
+    """The variables under which a process sees no other Vulkan driver than lavapipe, which draws on the CPU.
+
+    SAPIEN draws on a GPU where it sees one, also for render_backend="cpu". Empty if there is no lavapipe.
+    """
+    paths = manifest_paths(root, os.environ if environ is None else environ)
+    found = [str(path) for path in paths if LAVAPIPE in read_manifest(path, frozenset()).library]
+    return {name: ":".join(found) for name in MANIFEST_VARIABLES} if found else {}
 
 
 def read_manifest(path: Path, libraries: frozenset[str]) -> Manifest:

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from hazard_ms.machine.files import write
+from hazard_ms.machine.survey import without_gpu
 
 
 def rate_job(**keywords: Any) -> Any:
@@ -43,12 +45,16 @@ def laws_job(**keywords: Any) -> Any:
     return laws(**keywords)
 
 
-def looks_job(file: str, **keywords: Any) -> Any:
-    """See `hazard_ms.bench.gpu.looks.looks`, whose pictures go into `file`."""
+def looks_job(file: str, renderer: str, **keywords: Any) -> Any:
+    """See `hazard_ms.bench.gpu.looks.looks`, whose pictures go into `file`. For the CPU the GPU is hidden."""
+    if renderer == "cpu":
+        if not (variables := without_gpu()):
+            raise ValueError("lavapipe must be there to draw on the CPU, got other Vulkan drivers only")
+        os.environ.update(variables)
     from hazard_ms.bench.gpu.comparison import keep
     from hazard_ms.bench.gpu.looks import looks
 
-    spans, pictures = looks(**keywords)
+    spans, pictures = looks(renderer=renderer, **keywords)
     keep(Path(file), pictures)
     return spans
 

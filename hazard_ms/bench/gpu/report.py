@@ -181,14 +181,11 @@ def _looks(page: Page, env_ids: Sequence[str]) -> None:
         "Median times of a look of the head camera (rgb, depth, segmentation) while the hazard goes on, and how it "
         "differs from the same look drawn on the CPU."
     )
-    rows: list[list[str]] = []
     for env_id in env_ids:
         try:
-            rows += _task_looks(page, env_id)
+            page.add(looks_table(_task_looks(page, env_id)))
         except StoppedError as error:
             page.stopped(StoppedError(f"{env_id}: {error}", error.limit))
-    if rows:
-        page.add(looks_table(rows))
 
 
 def _task_looks(page: Page, env_id: str) -> list[list[str]]:

@@ -26,7 +26,7 @@ def test_a_variable_replaces_the_folders_of_the_system(tmp_path: Path) -> None:
 def test_a_process_sees_no_driver_but_lavapipe(tmp_path: Path) -> None:
     folder = tmp_path / "usr/share/vulkan/icd.d"
     folder.mkdir(parents=True)
-    libraries = {"lvp_icd.x86_64": "/usr/lib/libvulkan_lvp.so", "nvidia_icd": "libGLX_nvidia.so.0", "radeon": "libvk.so"}
+    libraries = {"lvp_icd.x86_64": "/usr/lib/libvulkan_lvp.so", "nvidia_icd": "libGLX_nvidia.so.0", "amd": "libvk.so"}
     for name, library in libraries.items():
         (folder / f"{name}.json").write_text(json.dumps({"ICD": {"library_path": library}}))
     own = str(folder / "lvp_icd.x86_64.json")

@@ -30,7 +30,7 @@ from hazard_ms.hazards.fire.declared import TELLS_OF_BLAZE, TEMPERATURE, ignites
 from hazard_ms.hazards.fire.fire import begin_flames
 from hazard_ms.hazards.fire.fire_state import BURNING, NORMAL, lit
 from hazard_ms.hazards.fire.realistic import (
-    burning,
+    burners,
     front,
     fuels,
     kindling,
@@ -46,9 +46,6 @@ from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
 from hazard_ms.spec.severity import SEVERITIES, USUAL
 
-CELL_AREA = spread.STEP**2  # area of a cell of the floor [m^2]
-CELL_RELEASE = CELL_AREA * fuels.AS_GOODS  # of one that burns [kW]
-CELL_WIDTH = math.sqrt(4.0 * CELL_AREA / math.pi)  # diameter of a disc of the same area [m]
 ESTABLISHED = 60.0  # age of the fires with which a scene begins [s] [ours]
 FLOOR_SOOT = fuels.MATERIALS["wood"].soot / fuels.MATERIALS["wood"].combustion  # of burning floor, per heat [kg/kJ]
 UPDATE = 1 / 6  # unit in which pictures count the age of flames on things: 5 frames of the original [s]
@@ -116,7 +113,7 @@ class Blaze(Hazard):
         state.free[rows, :, middle, middle] = False
         state.floor_temperature[rows] = self.room_temperature
         each = self.first_release / first.sum(1, keepdim=True).clamp(min=1)
-        state.flame_peak[rows] = torch.where(first, each, CELL_RELEASE)
+        state.flame_peak[rows] = torch.where(first, each, burners.CELL_RELEASE)
         state.flame_age[rows] = torch.where(first, ESTABLISHED, 0.0)
         kindling.describe_rooms(state, world, rows)
         kindling.describe_things(state, world, rows)
@@ -144,21 +141,7 @@ class Blaze(Hazard):
 
     def _fires(self, state: BlazeState, world: World) -> radiation.Fires:
         """The fires of each environment: B things, then F flames on the floor."""
-        there = world.exists & ~world.safe & (state.status == BURNING)
-        things = there.float() if none_set(there) else burning.release(state.course, state.burn_age) * there
-        first = state.flame_peak > CELL_RELEASE
-        share = torch.where(first, state.flame_peak / self.first_release, 1.0)  # of the fires at the start together
-        flames = torch.minimum(burning.t_squared(self.growth * share, state.flame_age), state.flame_peak)
-        flames = flames * lit(state, world.frame)
-        base = world.base_of(world.position, world.rotation, world.extent)
-        own = (4.0 / math.pi * world.extent[..., 0] * world.extent[..., 1]).sqrt()
-        width = torch.where(first, self.first_base * share.sqrt(), CELL_WIDTH)
-        return radiation.Fires(
-            torch.cat([base, state.flame_place], 1),
-            torch.cat([things, flames], 1),
-            torch.cat([burning.radiant(state.curve, self.radiant), torch.full_like(flames, self.radiant)], 1),
-            torch.cat([own, width], 1),
-        )
+        return burners.fires(state, world, self.growth, self.first_release, self.first_base, self.radiant)
 
     def _smoke(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> radiation.Fires:
         """Advance the smoke by `step` seconds of fire; returns the fires as far as they have oxygen."""

@@ -64,7 +64,7 @@ def measured(curve: Tensor, age: Tensor) -> Tensor:
 
     It is straight between the knots, and 0 outside of them.
     """
-    times, powers, _ = _tables(age.device)
+    times, powers, _ = tables(age.device)
     row = curve.clamp(min=0)
     after = torch.searchsorted(times[row], age[..., None], right=True).clamp(1, times.shape[1] - 1)
     before = after - 1
@@ -77,16 +77,16 @@ def measured(curve: Tensor, age: Tensor) -> Tensor:
 
 def lasting(curve: Tensor) -> Tensor:
     """Time [s], [...], at which the rows `curve`, [...], of CURVES end."""
-    return _tables(curve.device)[0][curve.clamp(min=0)][..., -1]
+    return tables(curve.device)[0][curve.clamp(min=0)][..., -1]
 
 
 def radiant(curve: Tensor, otherwise: float) -> Tensor:
     """Share of their heat, [...], that fires of the rows `curve`, [...], of CURVES radiate; `otherwise` for row -1."""
-    return torch.where(curve >= 0, _tables(curve.device)[2][curve.clamp(min=0)], otherwise)
+    return torch.where(curve >= 0, tables(curve.device)[2][curve.clamp(min=0)], otherwise)
 
 
 @functools.lru_cache(maxsize=4)
-def _tables(device: torch.device) -> tuple[Tensor, Tensor, Tensor]:
+def tables(device: torch.device) -> tuple[Tensor, Tensor, Tensor]:
     """Times [s] and powers [kW] of all curves, [C, K], the last knot repeated as needed; their radiant shares, [C]."""
     longest = max(len(c.knots) for c in CURVES.values())
     rows = [[*c.knots, *[c.knots[-1]] * (longest - len(c.knots))] for c in CURVES.values()]

@@ -55,6 +55,16 @@ class Fires(NamedTuple):
     diameter: Tensor  # diameter of the base [m], [E, M]
 
 
+def alight(fires: Fires) -> tuple[Fires, Tensor]:
+    """The fires that give off heat in any environment, and their numbers [-], [M]; at least one, on a GPU all."""
+    everything = torch.arange(fires.power.shape[1], device=fires.power.device)
+    if fires.power.is_cuda:
+        return fires, everything
+    found = everything[(fires.power > 0).any(0)]
+    found = found if len(found) else everything[:1]
+    return Fires(*(v.index_select(1, found) for v in fires)), found
+
+
 def in_blocks(work: Callable[..., Tensor], fires: Fires, points: Tensor, *more: Tensor) -> Tensor:
     """The result of `work` on fires, `points` [m], [E, P, 3], and `more`, [E, ...], as if on all environments at once.
 

@@ -12,7 +12,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
-from hazard_ms.hazards.fire.realistic.radiation import AIR, GRAVITY, KELVIN, Fires, in_blocks, to_power
+from hazard_ms.hazards.fire.realistic.radiation import AIR, GRAVITY, KELVIN, Fires, alight, in_blocks, to_power
 from hazard_ms.hazards.fire.realistic.twozone import balance, zones
 from hazard_ms.simulation.world import World
 
@@ -71,7 +71,7 @@ def above(fires: Fires, points: Tensor, room: float) -> Tensor:
 
     It is 0 outside of all plumes.
     """
-    return in_blocks(partial(_above, room), fires, points)
+    return in_blocks(partial(_above, room), alight(fires)[0], points)
 
 
 def _above(room: float, fires: Fires, points: Tensor) -> Tensor:

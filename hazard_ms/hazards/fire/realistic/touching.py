@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import torch
 from torch import Tensor
 
@@ -18,19 +20,21 @@ def touched(fires: radiation.Fires, world: World, ceiling: Tensor) -> Tensor:
 
     Things are boxes along the axes, flames stand upright below the `ceiling` [m], [E].
     """
-    return radiation.in_blocks(_touched, fires, world.position, floor.half_spans(world.rotation, world.extent), ceiling)
+    hot, number = radiation.alight(fires)
+    half = floor.half_spans(world.rotation, world.extent)
+    return radiation.in_blocks(partial(_touched, number), hot, world.position, half, ceiling)
 
 
-def _touched(fires: radiation.Fires, position: Tensor, half: Tensor, ceiling: Tensor) -> Tensor:
+def _touched(number: Tensor, fires: radiation.Fires, position: Tensor, half: Tensor, ceiling: Tensor) -> Tensor:
+    """As `touched`, by fires of which those with a `number`, [M], below B are things."""
     bodies = half.shape[1]
-    cells = half.new_full((*fires.power[:, bodies:].shape, 2), spread.STEP / 2)
-    reach = torch.cat([half[..., :2], cells], 1)  # [E, M, 2]
+    own, thing = number.clamp(max=bodies - 1), number < bodies
+    reach = torch.where(thing[:, None], half[:, own, :2], spread.STEP / 2)  # [E, M, 2]
     top = fires.place[..., 2] + torch.minimum(radiation.flame_length(fires.power, fires.diameter), ceiling[:, None])
-    top = torch.cat([torch.maximum(top[:, :bodies], (position + half)[..., 2]), top[:, bodies:]], 1)
+    top = torch.where(thing, torch.maximum(top, (position + half)[:, own, 2]), top)
     gap = (fires.place[:, :, None, :2] - position[:, None, :, :2]).abs()
     beside = (gap <= (reach[:, :, None] + half[:, None, :, :2] + LEAN)).all(-1)
     low, high = (position - half)[..., 2], (position + half)[..., 2]
     level = (low[:, None] <= top[..., None]) & (high[:, None] >= fires.place[..., None, 2])
-    near = beside & level & (fires.power > 0)[..., None]
-    near[:, :bodies].diagonal(dim1=1, dim2=2).fill_(False)
-    return near.any(1)
+    other = number[:, None] != torch.arange(bodies, device=number.device)
+    return (beside & level & (fires.power > 0)[..., None] & other).any(1)

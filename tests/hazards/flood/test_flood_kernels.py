@@ -58,7 +58,8 @@ def test_any_body_in_any_attitude(shape: int, half: tuple, turn: tuple, height: 
     found = wet(a, q, level, tuple(tilt), shape)
     assert float(found.fraction[0]) == pytest.approx(volume / whole, abs=0.02)
     if volume > 0.1 * whole:
-        assert np.abs(found.arm[0].numpy() - middle).max() < 0.06 * np.linalg.norm(a)
+        near = 0.06 * max(1.0, 0.2 * whole / volume)  # the less is wet, the more what is missed shifts its middle
+        assert np.abs(found.arm[0].numpy() - middle).max() < near * np.linalg.norm(a)
 
 
 @settings(max_examples=100, deadline=None)

@@ -25,7 +25,7 @@ from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
-from hazard_ms.skills.failures import NO_PATH
+from hazard_ms.skills.failures import NO_PATH, UNREACHABLE
 from hazard_ms.skills.motor.walking import ARRIVED, MIDPOINT
 from hazard_ms.skills.options.landmarks import landmarks
 from hazard_ms.skills.options.macros import Macro, play
@@ -208,8 +208,9 @@ class Oracle(PrivilegedAgent):
         moved = float(np.hypot(*np.subtract(decision.agent_position, start)))
         if action.target is None or (action.verb in (WALK_TO, WALK_ONE_STEP) and moved > PROGRESS):
             return
+        at_once = decision.last_result.reason == UNREACHABLE and not decision.last_result.frames  # as it would be again
         failures = self._attempts.failures
-        failures[action.target] = failures.get(action.target, 0) + 1
+        failures[action.target] = failures.get(action.target, 0) + (GIVE_UP if at_once else 1)
         self._attempts.missed[action.target] = decision.agent_position
         self._goal = None
 

@@ -89,7 +89,8 @@ def test_walks_end_after_a_hundred_frames_or_a_metre() -> None:
 
 
 def test_a_walk_that_is_cut_short_faces_the_rest_of_its_way() -> None:
-    west, east = after(Action(WALK_TO, LEFT)), after(Action(WALK_ONE_STEP, RIGHT))
+    before = dataclasses.replace(START, heading=1.0)
+    west, east = after(Action(WALK_TO, LEFT), before), after(Action(WALK_ONE_STEP, RIGHT), before)
     assert west.heading is not None and abs(west.heading) == pytest.approx(math.pi, abs=0.1)
     assert east.heading == pytest.approx(0.0, abs=0.1)
 

@@ -19,6 +19,8 @@ from hazard_ms.episode.records import Damage, Rescue
 from hazard_ms.episode.safe_places import BAG, Drop
 from hazard_ms.episode.watchdog import FlightRecorder, Limits
 from hazard_ms.hazards.base import Hazard, Push, State, none_set
+from hazard_ms.kernels.bodies import Bodies
+from hazard_ms.kernels.pushing import free_only
 from hazard_ms.robots.robot import Robot
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SafePlace
@@ -84,9 +86,12 @@ class Episode:
         given = (h.force(self.states[h.name], world, dt) for h in self._pushers)
         made: list[Push] = [p for p in given if p is not None]
         if made:
-            torques = [p.torque for p in made if p.torque is not None]
-            live = (world.movable & ~(world.safe | world.held))[..., None]
-            world.push(_sum([p.force for p in made]) * live, _sum(torques) * live if torques else None)
+            force, torques = _sum([p.force for p in made]), [p.torque for p in made if p.torque is not None]
+            torque = _sum(torques) if torques else force
+            kept = world.launches.results(free_only, force, torque)
+            bodies = world.launches.struct(Bodies, world)
+            world.launches.run(free_only, tuple(world.exists.shape), bodies, force, torque, *kept)
+            world.push(kept[0], kept[1] if torques else None)
 
     def watch(self, qpos: Tensor) -> None:
         """Mark environments whose simulation broke, and write their last states; `qpos` [rad], [E, J]: joints."""
@@ -156,7 +161,7 @@ class Episode:
 
 def _sum(parts: list[Tensor]) -> Tensor:
     """The sum of one or several pushes, [E, B, 3], in their unit."""
-    return parts[0] if len(parts) == 1 else torch.stack(parts).sum(0)
+    return (parts[0] if len(parts) == 1 else torch.stack(parts).sum(0)).contiguous()
 
 
 def shared_fields(

@@ -21,6 +21,7 @@ import warp as wp
 from torch import Tensor
 
 from hazard_ms.kernels.compiled import cache, verified, writable
+from hazard_ms.kernels.structs import Argument, Filled, alike, another
 from hazard_ms.machine.progress import slow
 
 # Options of Warp that every module of kernels sets
@@ -29,8 +30,6 @@ OPTIONS = {"enable_backward": False, "fuse_fp": False}
 CPU_BLOCK, GPU_BLOCK = 1, 256  # threads of a block: Warp's own choices, which name the folder of a compiled module
 
 _loaded: set[tuple[wp.Kernel, str]] = set()  # kernels that have been launched on a device
-
-Argument = Any  # a tensor, a number or a struct from `Launches.struct`
 
 
 class Launches:
@@ -45,7 +44,7 @@ class Launches:
         self._made: dict[wp.Kernel, _Recorded] = {}
         self._results: dict[wp.Kernel, tuple[Tensor, ...]] = {}
         self._once: dict[tuple[wp.Kernel, torch.Size, torch.device], tuple[Tensor, ...]] = {}
-        self._structs: dict[wp.Struct, _Filled] = {}
+        self._structs: dict[wp.Struct, Filled] = {}
 
     def __reduce__(self) -> tuple[type[Launches], tuple[()]]:
         """A copy starts with nothing recorded."""
@@ -82,7 +81,7 @@ class Launches:
         """
         filled = self._structs.get(kind)
         if filled is None:
-            filled = self._structs[kind] = _Filled(kind)
+            filled = self._structs[kind] = Filled(kind)
         return filled.by(source)
 
     def run(self, kernel: wp.Kernel, size: tuple[int, ...], *arguments: Argument) -> None:
@@ -117,8 +116,8 @@ class _Recorded:
         launch = self._launch
         if not all(map(operator.is_, self._known, arguments)):
             for k, (before, now) in enumerate(zip(self._known, arguments, strict=True)):
-                if _another(before, now):
-                    if _alike(before, now):
+                if another(before, now):
+                    if alike(before, now):
                         launch.params[k + 1].data = now.data_ptr()
                     else:
                         launch.set_param_at_index(k, now)
@@ -131,63 +130,6 @@ class _Recorded:
             launch.hooks.forward(ctypes.byref(launch.bounds), ctypes.byref(self._packed))
         else:
             launch.launch(stream=_stream(launch.device))
-
-
-class _Filled:
-    """A struct and the values that it was filled with, which are kept alive."""
-
-    def __init__(self, kind: wp.Struct) -> None:
-        self._kind = kind
-        self._read: Callable[[object], tuple[Argument, ...]] = operator.attrgetter(*kind.vars)
-        self._values: tuple[Argument, ...] = ()
-        self._struct: Any = None
-
-    def by(self, source: object) -> Any:
-        """The struct with the values of `source`; another struct if they are others than before."""
-        values = self._read(source)
-        if self._struct is None:
-            self._struct = self._filled(values)
-        elif not all(map(operator.is_, self._values, values)):
-            others = [k for k, pair in enumerate(zip(self._values, values, strict=True)) if _another(*pair)]
-            if all(_alike(self._values[k], values[k]) for k in others):
-                self._struct = self._pointed(others, values) if others else self._struct
-            else:
-                self._struct = self._filled(values)
-        self._values = values
-        return self._struct
-
-    def _filled(self, values: tuple[Argument, ...]) -> Any:
-        made = self._kind()
-        for (name, field), value in zip(self._kind.vars.items(), values, strict=True):
-            tensor = isinstance(value, Tensor)
-            setattr(made, name, wp.from_torch(value, dtype=field.type.dtype) if tensor else value)
-        return made
-
-    def _pointed(self, others: list[int], values: tuple[Argument, ...]) -> Any:
-        """The same struct as another object, with the memory of `values` in the fields `others`: a tenth of the time.
-
-        Both have the same content from now on: nobody keeps the one of before.
-        """
-        made = object.__new__(type(self._struct))
-        made.__dict__.update(self._struct.__dict__)
-        names = list(self._kind.vars)
-        for k in others:
-            getattr(made.__ctype__(), names[k]).data = values[k].data_ptr()
-            made.__dict__[names[k]] = values[k]  # not the array of before, which would keep its memory
-        return made
-
-
-def _another(before: Argument, now: Argument) -> bool:
-    """Whether an argument is another tensor or struct, or a number of another value."""
-    return before is not now and (not isinstance(now, float | int) or before != now)
-
-
-def _alike(before: Argument, now: Argument) -> bool:
-    """Whether two arguments are tensors that differ in nothing but where their numbers are."""
-    if not (isinstance(before, Tensor) and isinstance(now, Tensor)):
-        return False
-    same = before.dtype == now.dtype and before.device == now.device
-    return same and before.shape == now.shape and before.stride() == now.stride()
 
 
 def of_environments(points: Tensor, count: int) -> Tensor:

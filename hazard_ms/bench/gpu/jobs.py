@@ -46,7 +46,10 @@ def laws_job(**keywords: Any) -> Any:
 
 
 def looks_job(file: str, renderer: str, **keywords: Any) -> Any:
-    """See `hazard_ms.bench.gpu.looks.looks`, whose pictures go into `file`. For the CPU the GPU is hidden."""
+    """See `hazard_ms.bench.gpu.looks.looks`, whose pictures go into `file`. For the CPU the GPU is hidden.
+
+    Raises ValueError where only the GPU can draw.
+    """
     if renderer == "cpu":
         if not (variables := without_gpu()):
             raise ValueError("lavapipe must be there to draw on the CPU, got other Vulkan drivers only")

@@ -54,7 +54,7 @@ class Burners:
 
 @wp.struct
 class Curves:
-    """Measured curves: knots [s], [kW], [C, K], and the share of their heat that they radiate, [C]."""
+    """Measured curves: knots [s], [kW], [R, N], and the share of their heat that they radiate, [R]."""
 
     times: wp.array2d(dtype=float)
     powers: wp.array2d(dtype=float)

@@ -87,7 +87,7 @@ def radiant(curve: Tensor, otherwise: float) -> Tensor:
 
 @functools.lru_cache(maxsize=4)
 def tables(device: torch.device) -> tuple[Tensor, Tensor, Tensor]:
-    """Times [s] and powers [kW] of all curves, [C, K], the last knot repeated as needed; their radiant shares, [C]."""
+    """Times [s] and powers [kW] of R curves, [R, N], the last knot repeated as needed; their radiant shares, [R]."""
     longest = max(len(c.knots) for c in CURVES.values())
     rows = [[*c.knots, *[c.knots[-1]] * (longest - len(c.knots))] for c in CURVES.values()]
     table = torch.tensor(rows, device=device)

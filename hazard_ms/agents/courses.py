@@ -25,8 +25,9 @@ from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.sketch.timeline import Timeline
-from hazard_ms.sketch.travel.ways import SETTLE, WALK
+from hazard_ms.sketch.travel.ways import SETTLE, TURN, WALK
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action
+from hazard_ms.skills.motor.motion import wrap
 from hazard_ms.skills.motor.walking import ARRIVED, MIDPOINT, WALK_FRAMES
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
 
@@ -183,10 +184,10 @@ class Courses:
         goal, edge = future.position_at(state.frame)[index, :2].astype(np.float64), self._scene.edges[index]
         place = np.array(state.place)
         route = self._scene.ways.route(place, goal, edge)
-        if not np.isfinite(route.metres):
-            return state
-        if self._away(state, index, future) <= ARRIVED + edge:
-            route = route._replace(metres=np.float64(0.0))
+        if not np.isfinite(route.metres) or self._away(state, index, future) <= ARRIVED + edge:  # it only turns
+            facing = float(np.arctan2(*(goal - place)[::-1]))
+            turn = 0.0 if state.heading is None else abs(wrap(facing - state.heading))
+            return replace(self._later(state, TURN * turn), heading=facing)
         frames = max(0.0, float(route.frames(state.heading)) - SETTLE)
         x, y = self._scene.ways.along(place, goal, route.metres, edge)
         return replace(self._later(state, frames), place=(float(x), float(y)), heading=float(route.last))

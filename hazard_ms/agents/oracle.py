@@ -208,7 +208,7 @@ class Oracle(PrivilegedAgent):
         moved = float(np.hypot(*np.subtract(decision.agent_position, start)))
         if action.target is None or (action.verb in (WALK_TO, WALK_ONE_STEP) and moved > PROGRESS):
             return
-        at_once = decision.last_result.reason == UNREACHABLE and not decision.last_result.frames  # as it would be again
+        at_once = decision.last_result.reason == UNREACHABLE and not decision.last_result.frames  # untried
         failures = self._attempts.failures
         failures[action.target] = failures.get(action.target, 0) + (GIVE_UP if at_once else 1)
         self._attempts.missed[action.target] = decision.agent_position

@@ -86,10 +86,10 @@ class Episode:
         given = (h.force(self.states[h.name], world, dt) for h in self._pushers)
         made: list[Push] = [p for p in given if p is not None]
         if made:
-            force, torques = _sum([p.force for p in made]), [p.torque for p in made if p.torque is not None]
-            torque = _sum(torques) if torques else force
+            torques, bodies = [p.torque for p in made if p.torque is not None], world.launches.struct(Bodies, world)
+            force = _sum([p.force for p in made], world.position)
+            torque = _sum(torques, world.position) if torques else force
             kept = world.launches.results(free_only, force, torque)
-            bodies = world.launches.struct(Bodies, world)
             world.launches.run(free_only, tuple(world.exists.shape), bodies, force, torque, *kept)
             world.push(kept[0], kept[1] if torques else None)
 
@@ -159,9 +159,10 @@ class Episode:
         return velocity
 
 
-def _sum(parts: list[Tensor]) -> Tensor:
-    """The sum of one or several pushes, [E, B, 3], in their unit."""
-    return (parts[0] if len(parts) == 1 else torch.stack(parts).sum(0)).contiguous()
+def _sum(parts: list[Tensor], like: Tensor) -> Tensor:
+    """The sum of one or several pushes, [E, B, 3] as `like`, in their unit."""
+    total = parts[0] if len(parts) == 1 else torch.stack(parts).sum(0)
+    return total.detach().to(like.dtype).expand_as(like).contiguous()
 
 
 def shared_fields(

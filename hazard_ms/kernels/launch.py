@@ -76,8 +76,8 @@ class Launches:
     def struct(self, kind: wp.Struct, source: object) -> Any:
         """The struct `kind`, filled with the attributes of `source` that have the names of its fields.
 
-        It is filled once, and anew when an attribute has become another tensor or number; arrays share the tensors'
-        memory. One struct is kept per kind, so give each kind one source.
+        Arrays share the tensors' memory. It holds until the next call for its `kind`: then it is pointed at tensors
+        that took the place of others, or filled anew for other numbers and shapes. So give each kind one source.
         """
         filled = self._structs.get(kind)
         if filled is None:

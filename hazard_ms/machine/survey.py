@@ -116,11 +116,15 @@ def manifest_paths(root: Path, environ: Mapping[str, str]) -> list[Path]:
 def without_gpu(root: Path = Path("/"), environ: Mapping[str, str] | None = None) -> dict[str, str]:
     """The variables under which a process sees no other Vulkan driver than lavapipe, which draws on the CPU.
 
-    SAPIEN draws on a GPU where it sees one, also for render_backend="cpu". Empty if there is no lavapipe.
+    SAPIEN draws on a GPU where it sees one, also for render_backend="cpu". Lavapipe is looked for among the drivers
+    that the loader reads now, then in the system's folders. Empty if there is none.
     """
-    paths = manifest_paths(root, os.environ if environ is None else environ)
-    found = [str(path) for path in paths if LAVAPIPE in read_manifest(path, frozenset()).library]
-    return {name: ":".join(found) for name in MANIFEST_VARIABLES} if found else {}
+    for variables in (os.environ if environ is None else environ, {}):
+        paths = manifest_paths(root, variables)
+        found = [str(path) for path in paths if LAVAPIPE in read_manifest(path, frozenset()).library]
+        if found:
+            return {name: ":".join(found) for name in MANIFEST_VARIABLES}
+    return {}
 
 
 def read_manifest(path: Path, libraries: frozenset[str]) -> Manifest:

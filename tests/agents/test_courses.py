@@ -101,6 +101,10 @@ def test_a_pick_up_turns_to_its_target_and_comes_nearer_first() -> None:
     assert held.holding == 0 and held.heading is not None and abs(held.heading) == pytest.approx(math.pi, abs=0.1)
     assert held.frame == pytest.approx(30 + 62 * (1.6 - NEAR) + PICK, abs=7)
     assert held.place[0] == pytest.approx(2 + NEAR, abs=0.15)
+    near = dataclasses.replace(START, place=(2.0, 3.5), heading=0.0)  # 0.5 m north of LEFT: only a quarter turn is due
+    turned = after(Action(PICK_UP, LEFT), near)
+    assert turned.place == near.place and turned.heading == pytest.approx(-math.pi / 2)
+    assert turned.frame == round(15) + round(PICK)
 
 
 def test_a_target_is_taken_where_it_is_near_and_put_away_where_it_counts() -> None:

@@ -11,6 +11,7 @@ import pytest
 
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.agents.base import Agent, PrivilegedAgent, agent
+from hazard_ms.agents.oracle import ROUNDS
 from hazard_ms.agents.truth import Truth
 from hazard_ms.evaluation.metrics import Tally
 from hazard_ms.evaluation.runner import Runner, fates
@@ -18,8 +19,10 @@ from hazard_ms.registry import AGENTS, load
 from hazard_ms.sketch.bound import bound
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import EXPLORE, STOP, WALK_TO, Action, Decision
+from hazard_ms.skills.context import Skill
+from hazard_ms.skills.decision import EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.failures import UNREACHABLE
 from hazard_ms.spec import AgentStart, Body, Room, SceneSpec, Task
 from hazard_ms.tasks.fire import hazard_fire
 from tests.worlds.playground import brief
@@ -152,6 +155,31 @@ def test_everything_in_a_small_room_is_rescued(known: bool, room: SkillEnv) -> N
     assert played.ended == "all rescued" and all(fate.rescued for fate in fates(room))
     looked = [record.verb for record in played.decisions].count(EXPLORE)
     assert looked == (1 if known else 0)
+
+
+@pytest.mark.render
+def test_what_fails_at_once_is_left_for_the_end(room: SkillEnv, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is tried once, again when all else is done, and once more: it would fail as often as it is tried."""
+    oracle, run, verbs = agent("oracle"), room.run, list[tuple[str, str | None]]()
+    act = oracle.act
+
+    def noted(decision: Decision) -> Action:
+        action = act(decision)
+        verbs.append((action.verb, action.target))
+        return action
+
+    def failing(doing: Skill) -> Result:
+        if verbs[-1] != (PICK_UP, "ahead"):
+            return run(doing)
+        doing.close()
+        return Result(False, UNREACHABLE)
+
+    monkeypatch.setattr(oracle, "act", noted)
+    monkeypatch.setattr(room, "run", failing)
+    Runner(room, oracle).run(0)
+    tries = [k for k, verb in enumerate(verbs) if verb == (PICK_UP, "ahead")]
+    others = [k for k, verb in enumerate(verbs) if verb[0] == PICK_UP and verb[1] != "ahead"]
+    assert len(tries) == 1 + ROUNDS and len(others) == 2 and all(tries[0] < k < tries[1] for k in others)
 
 
 @pytest.mark.render

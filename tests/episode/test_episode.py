@@ -12,7 +12,7 @@ import torch
 
 from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.safe_places import CART
-from hazard_ms.hazards.base import Hazard, State
+from hazard_ms.hazards.base import Hazard, Push, State
 from hazard_ms.hazards.fire.fire import Fire
 from hazard_ms.simulation.world import World
 from tests.worlds.fire_worlds import room_world
@@ -84,6 +84,24 @@ def test_forces_add_up_and_are_sent_once_to_what_is_free() -> None:
     force, torque = simulator.of("push")[0]
     assert force[0].tolist() == [[0.0] * 3, [0.0] * 3, [0.0, 0.0, 2.0], [0.0] * 3]
     assert torque[0].tolist() == [[0.0] * 3, [0.0] * 3, [0.0, 0.0, 0.5], [0.0] * 3]
+
+
+@pytest.mark.parametrize("shape", [(1, 1, 3), (3, 1, 3), (1, 4, 3), (4, 3)])
+@pytest.mark.parametrize("dtype", [torch.float32, torch.float64])
+def test_a_push_may_have_fewer_numbers_that_hold_for_all(shape: tuple[int, ...], dtype: torch.dtype) -> None:
+    """1 N on every body of three environments, by a hazard that says so once."""
+
+    class Shove(Lift):
+        def force(self, state: State, world: World, dt: float) -> Push:
+            return Push(torch.ones(shape, dtype=dtype), 2 * torch.ones(shape, dtype=dtype))
+
+    world, simulator = books(copies=3), Simulator()
+    episode = begun(world, Shove(), handles=simulator)
+    world.held[:, 0] = True
+    episode.push(1 / 120)
+    force, torque = simulator.of("push")[-1]
+    free = world.movable & ~world.held
+    assert torch.equal(force, free[..., None].expand(3, 4, 3).float()) and torch.equal(torque, 2 * force)
 
 
 def test_hazards_without_forces_cost_no_reading() -> None:

@@ -101,6 +101,18 @@ def test_a_struct_keeps_its_tensors_alive() -> None:
     assert made.tolist() == [5.0, 7.0] and len(noise) == 100
 
 
+def test_a_struct_is_pointed_at_other_tensors_before_and_after_its_first_launch() -> None:
+    launches, made = Launches(), torch.zeros(2)
+    source = types.SimpleNamespace(factor=2.0, given=torch.tensor([1.0, 2.0]))
+    launches.struct(Scaled, source)
+    for numbers in ([3.0, 4.0], [5.0, 6.0], [7.0, 8.0, 9.0], [1.0, 1.0]):
+        source.given = torch.tensor(numbers)
+        gc.collect()
+        noise = [torch.full((2,), -1.0) for _ in range(100)]  # would take the place of what is freed
+        launches.run(scale_struct, (2,), launches.struct(Scaled, source), made)
+        assert made.tolist() == [2.0 * n for n in numbers[:2]] and len(noise) == 100
+
+
 def test_a_launch_without_any_array_is_refused() -> None:
     with pytest.raises(ValueError, match="arguments must hold at least one tensor, got none"):
         Launches().run(scale, (1, 1), 2.0)

@@ -31,4 +31,6 @@ def test_a_process_sees_no_driver_but_lavapipe(tmp_path: Path) -> None:
         (folder / f"{name}.json").write_text(json.dumps({"ICD": {"library_path": library}}))
     own = str(folder / "lvp_icd.x86_64.json")
     assert without_gpu(tmp_path, {}) == {"VK_DRIVER_FILES": own, "VK_ICD_FILENAMES": own}
-    assert without_gpu(tmp_path, {"VK_DRIVER_FILES": str(folder / "nvidia_icd.json")}) == {}
+    assert without_gpu(tmp_path, {"VK_DRIVER_FILES": str(folder / "nvidia_icd.json")})["VK_DRIVER_FILES"] == own
+    (folder / "lvp_icd.x86_64.json").unlink()
+    assert without_gpu(tmp_path, {}) == {}

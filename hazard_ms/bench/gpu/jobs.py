@@ -48,11 +48,11 @@ def laws_job(**keywords: Any) -> Any:
 def looks_job(file: str, renderer: str, **keywords: Any) -> Any:
     """See `hazard_ms.bench.gpu.looks.looks`, whose pictures go into `file`. For the CPU the GPU is hidden.
 
-    Raises ValueError where only the GPU can draw.
+    Raises ValueError where nothing can draw on the CPU.
     """
     if renderer == "cpu":
         if not (variables := without_gpu()):
-            raise ValueError("lavapipe must be there to draw on the CPU, got other Vulkan drivers only")
+            raise ValueError("lavapipe must be installed to draw on the CPU, found no such Vulkan driver")
         os.environ.update(variables)
     from hazard_ms.bench.gpu.comparison import keep
     from hazard_ms.bench.gpu.looks import looks

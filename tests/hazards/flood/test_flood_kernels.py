@@ -56,7 +56,7 @@ def test_any_body_in_any_attitude(shape: int, half: tuple, turn: tuple, height: 
     share = volume / polyhedra.solid(corners)[0]
     found = wet(a, q, 0.7 * height * size, tuple(tilt), shape)
     assert float(found.fraction[0]) == pytest.approx(share, abs=0.02)
-    if share > 0.1:  # what is missed shifts the middle of little by more
+    if share > 0.1:  # the less is wet, the more an error in volume shifts its middle
         assert np.abs(found.arm[0].numpy() - middle).max() < max(0.06, 0.012 / share) * size
 
 

@@ -1,18 +1,15 @@
 """The fires of a realistic fire: what gives off how much heat, and where (Warp, one thread per fire).
 
-Fires are the things that burn, and the flames on the floor. The laws are those of `.burning`, in single precision and,
-but for the turning of boxes, bit for bit.
+Fires are the things that burn, and the flames on the floor. The laws are those of `.burning`, in single precision, and
+give the same bits. Diameters have correctly rounded square roots, which torch's are not on all processors.
 """
 
 from __future__ import annotations
 
-import functools
 import math
-from typing import NamedTuple
 
 import torch
 import warp as wp
-from torch import Tensor
 
 from hazard_ms.hazards.fire import spread
 from hazard_ms.hazards.fire.fire_state import BURNING
@@ -61,12 +58,6 @@ class Curves:
     shares: wp.array(dtype=float)
 
 
-class _Curves(NamedTuple):
-    times: Tensor
-    powers: Tensor
-    shares: Tensor
-
-
 @wp.func
 def t_squared(growth: float, age: float) -> float:
     """Heat release [kW] of a fire that grows with `growth` [kW/s^2], at `age` [s], see `burning.t_squared`."""
@@ -87,7 +78,7 @@ def measured(curves: Curves, row: int, age: float) -> float:
     low, high = curves.powers[row, after - 1], curves.powers[row, after]
     share = (age - start) / wp.max(end - start, TINY)
     base = low
-    if share >= 0.5:  # from the nearer knot, rounded once, as torch.lerp does
+    if share >= 0.5:  # from the nearer knot, as torch.lerp does
         base = high
         share = share - 1.0
     return float(wp.float64(share) * wp.float64(high - low) + wp.float64(base))
@@ -108,7 +99,7 @@ def released(burners: Burners, curves: Curves, e: int, b: int) -> float:
 @wp.kernel
 def burn(
     frame: wp.array(dtype=wp.int64),
-    growth: float,
+    floor_growth: float,
     first_release: float,
     first_base: float,
     radiant: float,
@@ -121,8 +112,8 @@ def burn(
 ):
     """Set `power` [kW], the `share` of it that is radiated, and the `diameter` of the base [m] of every fire.
 
-    `growth` [kW/s^2] and `first_release` [kW] are those of all fires of the start together, `first_base` [m] is that of
-    one which gives off so much; `radiant`: the share that is radiated where no measurement tells.
+    `floor_growth` [kW/s^2] and `first_release` [kW] are those of all fires of the start together, `first_base` [m] is
+    that of one which gives off so much; `radiant`: the share that is radiated where no measurement tells.
     """
     e, m = wp.tid()
     things = bodies.exists.shape[1]
@@ -145,7 +136,7 @@ def burn(
             wide = first_base * wp.sqrt(part)
         diameter[e, m] = wide
         if burners.flame_cell[e, f] >= wp.int64(0) and burners.flame_birth[e, f] <= frame[e]:
-            heat = wp.min(t_squared(growth * part, burners.flame_age[e, f]), most)
+            heat = wp.min(t_squared(floor_growth * part, burners.flame_age[e, f]), most)
     power[e, m] = heat
 
 
@@ -159,13 +150,8 @@ def fires(
     structs = (
         world.launches.struct(Bodies, world),
         world.launches.struct(Burners, state),
-        world.launches.struct(Curves, _curves(place.device)),
+        world.launches.struct(Curves, burning.tables(place.device)),
     )
     numbers = (growth, first_release, first_base, radiant)
     world.launches.run(burn, tuple(power.shape), world.frame, *numbers, *structs, power, share, diameter)
     return Fires(place, power, share, diameter)
-
-
-@functools.lru_cache(maxsize=4)
-def _curves(device: torch.device) -> _Curves:
-    return _Curves(*burning.tables(device))

@@ -4,7 +4,8 @@
 
 A t^2 fire uses up the energy of the thing. Its peak is the release per area times the exposed area, unless the energy
 does not last until then. Time is since ignition. All functions are exact, so nothing depends on the length of a frame.
-Sources of the numbers: hazard_ms.hazards.fire.realistic.fuels.
+Sources of the numbers: hazard_ms.hazards.fire.realistic.fuels. Fires themselves are worked out by `.burners`, a kernel
+with the same laws: a test holds it to these, bit for bit.
 """
 
 from __future__ import annotations
@@ -85,13 +86,21 @@ def radiant(curve: Tensor, otherwise: float) -> Tensor:
     return torch.where(curve >= 0, tables(curve.device)[2][curve.clamp(min=0)], otherwise)
 
 
+class Tables(NamedTuple):
+    """R measured curves, with N knots each: the last one is repeated as needed."""
+
+    times: Tensor  # [s], [R, N]
+    powers: Tensor  # [kW], [R, N]
+    shares: Tensor  # of the heat that is radiated, [R]
+
+
 @functools.lru_cache(maxsize=4)
-def tables(device: torch.device) -> tuple[Tensor, Tensor, Tensor]:
-    """Times [s] and powers [kW] of R curves, [R, N], the last knot repeated as needed; their radiant shares, [R]."""
+def tables(device: torch.device) -> Tables:
+    """The measured curves: times [s] and powers [kW], [R, N], and radiant shares, [R]."""
     longest = max(len(c.knots) for c in CURVES.values())
     rows = [[*c.knots, *[c.knots[-1]] * (longest - len(c.knots))] for c in CURVES.values()]
     table = torch.tensor(rows, device=device)
-    return (
+    return Tables(
         table[..., 0].contiguous(),
         table[..., 1].contiguous(),
         torch.tensor([c.radiant for c in CURVES.values()], device=device),

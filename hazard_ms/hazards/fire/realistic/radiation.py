@@ -56,7 +56,7 @@ class Fires(NamedTuple):
 
 
 def alight(fires: Fires) -> tuple[Fires, Tensor]:
-    """The fires that give off heat in any environment, and their numbers [-], [M]; at least one, on a GPU all."""
+    """The L fires that give off heat in any environment, and their numbers [-], [L]; at least one, on a GPU all."""
     everything = torch.arange(fires.power.shape[1], device=fires.power.device)
     if fires.power.is_cuda:
         return fires, everything

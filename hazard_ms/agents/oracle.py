@@ -9,11 +9,10 @@ to know.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.agents.attempts import Attempts
 from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.agents.search.memory import ELSEWHERE, SAME_AGAIN, after
 from hazard_ms.agents.search.outlook import SPREAD
@@ -21,6 +20,7 @@ from hazard_ms.agents.search.walks import detours
 from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import PlannedRescue, soonest
+from hazard_ms.sensing.target_table import Target
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
@@ -44,17 +44,6 @@ ENCLOSED = 2  # targets to which there is no path, from which it is the robot th
 ROUNDS = 2  # number of times that it tries again what it had given up [ours]
 MOST_LABELS = 20_000  # of the exact search: rarely needed [ours]
 BEAM = 2_000  # labels of a layer beyond that [ours]
-
-
-@dataclass
-class Attempts:
-    """The failures and searches of an episode so far."""
-
-    failures: dict[str, int] = field(default_factory=dict)  # by name of the thing
-    missed: dict[str, tuple[float, float]] = field(default_factory=dict)  # where it stood at the last failure [m]
-    rounds: int = 0  # times that what was given up was tried again
-    visits: dict[str, int] = field(default_factory=dict)  # of landmarks in search
-    looked: bool = False  # around, in search
 
 
 class Oracle(PrivilegedAgent):
@@ -131,7 +120,7 @@ class Oracle(PrivilegedAgent):
         """The first step of the best plan, with indices along B for targets; None where nothing can be rescued."""
         names = decision.names
         targets = [t for t in decision.targets if t.held or self._considered(t.name, t.index, truth, GIVE_UP)]
-        targets = [t for t in targets if not t.rescued]
+        targets = [t for t in targets if not t.rescued and (t.held or not self._in_vain(t, decision, truth))]
         carts = [c for c in self._carts if self._considered(names[c], int(c), truth, CART_FAILURES)]
         if not targets or (decision.containers and not len(carts)):
             return None
@@ -180,6 +169,17 @@ class Oracle(PrivilegedAgent):
         """Whether a thing is part of the plan: it failed fewer than `most` times and, if that counts, it is known."""
         return truth.knows(index) and self._attempts.failures.get(name, 0) < most
 
+    def _in_vain(self, target: Target, decision: Decision, truth: Truth) -> bool:
+        """Whether reaching for a target failed at once, and neither it nor the robot has moved since."""
+        before, now = self._attempts.in_vain.get(target.name), self._places(decision, truth, target.index)
+        if before is not None and float(np.abs(np.subtract(now, before)).max()) > MOVED:
+            del self._attempts.in_vain[target.name]
+        return target.name in self._attempts.in_vain
+
+    def _places(self, decision: Decision, truth: Truth, index: int) -> tuple[float, ...]:
+        """Where the robot and a thing are [m]."""
+        return (*decision.agent_position, *truth.position(index)[:2].tolist())
+
     def _is_near(self, decision: Decision, truth: Truth, index: int, ahead: float = 0.0) -> bool:
         """Whether to reach for a thing from `ahead` [m] of here: a walk has arrived, or soon would; nothing failed."""
         away = float(np.hypot(*(truth.position(index)[:2] - decision.agent_position)))
@@ -208,9 +208,9 @@ class Oracle(PrivilegedAgent):
         moved = float(np.hypot(*np.subtract(decision.agent_position, start)))
         if action.target is None or (action.verb in (WALK_TO, WALK_ONE_STEP) and moved > PROGRESS):
             return
-        at_once = decision.last_result.reason == UNREACHABLE and not decision.last_result.frames  # untried
-        failures = self._attempts.failures
-        failures[action.target] = failures.get(action.target, 0) + (GIVE_UP if at_once else 1)
+        self._attempts.failures[action.target] = self._attempts.failures.get(action.target, 0) + 1
+        if decision.last_result.reason == UNREACHABLE and not decision.last_result.frames:
+            self._attempts.in_vain[action.target] = self._places(decision, truth, decision.index(action.target))
         self._attempts.missed[action.target] = decision.agent_position
         self._goal = None
 
@@ -221,7 +221,7 @@ class Oracle(PrivilegedAgent):
         if self._only_known and (action := self._searched(decision)) is not None:
             return action
         if self._attempts.failures and self._attempts.rounds < ROUNDS:
-            self._attempts = Attempts(rounds=self._attempts.rounds + 1, looked=True)
+            self._attempts = Attempts(rounds=self._attempts.rounds + 1, looked=True, in_vain=self._attempts.in_vain)
             if self._only_known:
                 return self._say("try again what was given up", Action(EXPLORE))
             return self._choose(decision, truth)

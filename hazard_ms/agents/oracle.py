@@ -20,7 +20,6 @@ from hazard_ms.agents.search.walks import detours
 from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import PlannedRescue, soonest
-from hazard_ms.sensing.target_table import Target
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
@@ -79,6 +78,7 @@ class Oracle(PrivilegedAgent):
         if self._before is None:  # not earlier: who records the episode begins with the map of an honest agent
             self._truth.furnish()
         self._judge(decision, self._truth)
+        self._attempts.in_vain = self._in_vain(decision, self._truth)
         action = Action(EXPLORE) if self._enclosed(decision) else self._choose(decision, self._truth)
         self._before = (action, decision.agent_position)
         self._truth.reveal()
@@ -120,7 +120,7 @@ class Oracle(PrivilegedAgent):
         """The first step of the best plan, with indices along B for targets; None where nothing can be rescued."""
         names = decision.names
         targets = [t for t in decision.targets if t.held or self._considered(t.name, t.index, truth, GIVE_UP)]
-        targets = [t for t in targets if not t.rescued and (t.held or not self._in_vain(t, decision, truth))]
+        targets = [t for t in targets if not t.rescued and (t.held or t.name not in self._attempts.in_vain)]
         carts = [c for c in self._carts if self._considered(names[c], int(c), truth, CART_FAILURES)]
         if not targets or (decision.containers and not len(carts)):
             return None
@@ -169,16 +169,14 @@ class Oracle(PrivilegedAgent):
         """Whether a thing is part of the plan: it failed fewer than `most` times and, if that counts, it is known."""
         return truth.knows(index) and self._attempts.failures.get(name, 0) < most
 
-    def _in_vain(self, target: Target, decision: Decision, truth: Truth) -> bool:
-        """Whether reaching for a target failed at once, and neither it nor the robot has moved since."""
-        before, now = self._attempts.in_vain.get(target.name), self._places(decision, truth, target.index)
-        if before is not None and float(np.abs(np.subtract(now, before)).max()) > MOVED:
-            del self._attempts.in_vain[target.name]
-        return target.name in self._attempts.in_vain
+    def _in_vain(self, decision: Decision, truth: Truth) -> dict[str, tuple[float, ...]]:
+        """The targets for which reaching failed at once, and where, if neither they nor the robot moved since."""
+        gaps = {n: np.subtract(self._places(decision, truth, n), at) for n, at in self._attempts.in_vain.items()}
+        return {n: self._attempts.in_vain[n] for n, gap in gaps.items() if float(np.abs(gap).max()) <= MOVED}
 
-    def _places(self, decision: Decision, truth: Truth, index: int) -> tuple[float, ...]:
+    def _places(self, decision: Decision, truth: Truth, name: str) -> tuple[float, ...]:
         """Where the robot and a thing are [m]."""
-        return (*decision.agent_position, *truth.position(index)[:2].tolist())
+        return (*decision.agent_position, *truth.position(decision.index(name))[:2].tolist())
 
     def _is_near(self, decision: Decision, truth: Truth, index: int, ahead: float = 0.0) -> bool:
         """Whether to reach for a thing from `ahead` [m] of here: a walk has arrived, or soon would; nothing failed."""
@@ -210,7 +208,7 @@ class Oracle(PrivilegedAgent):
             return
         self._attempts.failures[action.target] = self._attempts.failures.get(action.target, 0) + 1
         if decision.last_result.reason == UNREACHABLE and not decision.last_result.frames:
-            self._attempts.in_vain[action.target] = self._places(decision, truth, decision.index(action.target))
+            self._attempts.in_vain[action.target] = self._places(decision, truth, action.target)
         self._attempts.missed[action.target] = decision.agent_position
         self._goal = None
 

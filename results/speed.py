@@ -37,12 +37,12 @@ GPU = """## On a GPU
 - `waits`: the lines at which the host waits for the GPU, and how often in a frame (`torch.cuda.set_sync_debug_mode`).
 
 The last four need PhysX for GPUs. **They have not been run yet**: the one GPU so far, an H200, was on a machine without
-network. There 4,096 fires of `paper` went on at 4.8 million frames a second of all together, floods at 3.5 and winds at
-6.0 million (`realistic`: 264,000, 65,000 and 2.8 million), without a wait of the host; 64 of each agreed with the CPU
+network. There 4,096 fires of `paper` went on at 4.9 million frames a second of all together, floods at 3.8 and winds at
+6.8 million (`realistic`: 267,000, 65,000 and 3.7 million), without a wait of the host; 64 of each agreed with the CPU
 to within rounding and were the same bit for bit when repeated (page `gpu`). A single environment on a machine with a
 GPU is simulated on the CPU and drawn on the GPU: its episodes are those of any other machine, bit for bit. A look took
-7 to 16 ms there and 63 to 125 ms on its CPU; labels differed in at most 0.002 % of the pixels, at outlines, and depth
-by more than 2 mm in 0.006 %, in the open in up to 1 %.
+6 to 11 ms there and 34 to 116 ms on its CPU; labels differed in at most 0.002 % of the pixels, at outlines, and depth
+by more than 2 mm in 0.006 %, in the open in up to 1 %: the ground far away, by up to 0.2 % of the distance.
 
 Where SAPIEN sees a GPU, it draws on it also for `render_backend="cpu"`. To draw on the CPU there, let it see no other
 driver: `VK_DRIVER_FILES=/usr/share/vulkan/icd.d/lvp_icd.x86_64.json`, or wherever lavapipe's file is.

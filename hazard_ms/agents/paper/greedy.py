@@ -1,31 +1,54 @@
-"""The paper's greedy agent as its code has it: the option of the lowest cost over value, and nothing else.
+"""The paper's greedy agent as its code has it: the option of the highest cost over value, and nothing else.
 
-It neither stays with a target nor gives one up, and its only search is to look around where it stands.
+The paper says that Greedy takes the lowest cost. Its code takes the highest (`GreedyAgent.select_child` of
+policy/fire_flood_heuristic.py, commit 9c003f8, in the original's repository), which is why it is last in the paper's
+tables: it goes to what is far away and of little value, and looks around wherever a walk would cost less than that. It
+neither stays with a target nor gives one up, and its only search is to look around where it stands.
 """
 
 from __future__ import annotations
 
+import numpy as np
+
 from hazard_ms.agents.base import Agent
-from hazard_ms.agents.paper.memory import Memory, predicted_value
+from hazard_ms.agents.paper.memory import Memory, predicted_value, wetted_value
+from hazard_ms.agents.paper.view import HERE, Option, View
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import Action, Decision
+from hazard_ms.skills.decision import WALK_TO, Action, Decision
 
 
 class Greedy(Agent):
-    """Takes the option of the lowest cost over value, which is halved where the hazard's level, continued, harms it."""
+    """Takes the option of the highest cost over value, as the paper's code does, or of the lowest, as its text says."""
 
     colours = False
 
+    def __init__(self, lowest: bool = False) -> None:
+        """`lowest`: take the lowest cost, and halve the value of what a fire will burn, too, as the text has it.
+
+        The code compares the logarithm of a temperature with a temperature, so that it never expects a fire to burn
+        anything; in a flood it halves the value of what gets wet.
+        """
+        self._pick, self._worth = (min, predicted_value) if lowest else (max, wetted_value)
+        self._word = "lowest" if lowest else "highest"
+
     def reset(self, brief: Brief) -> None:
-        """Begin an episode. Nothing is random."""
+        """Begin an episode. Which of several equal options it takes is fixed by `brief.random_seed`."""
         self._memory = Memory(brief)
+        # "PGRE": not the stream of another agent with the same seed
+        self._chance = np.random.default_rng([brief.random_seed, 0x50475245])
 
     def act(self, decision: Decision) -> Action:
-        """The option of the lowest cost over value; of equal ones the first, looking around last."""
+        """The option of the highest (or lowest) cost over value; of equal ones any."""
         view = self._memory.view(decision)
-        values = self._memory.values(view, predicted_value)
+        values = self._memory.values(view, self._worth)
         options = self._memory.choices(view)
-        costs = [option.cost / values[option.thing] for option in options]
-        lowest = min(range(len(options)), key=lambda i: costs[i])
-        self.note = f"cost {costs[lowest]:.2f}, the lowest of {len(options)}"
-        return self._memory.action(view, options[lowest])
+        costs = [_cost(view, option) / values[option.thing] for option in options]
+        best = self._pick(costs)
+        equal = [option for option, cost in zip(options, costs, strict=True) if cost == best]
+        self.note = f"cost {best:.2f}, the {self._word} of {len(options)}"
+        return self._memory.action(view, equal[int(self._chance.integers(len(equal)))])
+
+
+def _cost(view: View, option: Option) -> float:
+    """The cost of an option; a walk that is tried again costs no more than any, unlike in the paper's tree search."""
+    return view.walks[HERE][option.thing].cost if option.verb == WALK_TO else option.cost

@@ -29,6 +29,14 @@ def predicted_value(target: Target, levels: dict[str, Pair]) -> float:
     return target.value * (DAMAGED_SHARE if lost else 1.0)
 
 
+def wetted_value(target: Target, levels: dict[str, Pair]) -> float:
+    """The value of `target`: half of it if water passes what damages it when its last change is repeated.
+
+    `levels` before and at the last sighting are given by the hazard's name: fire [C], flood [m].
+    """
+    return predicted_value(target, {name: pair for name, pair in levels.items() if name == "flood"})
+
+
 def changing_value(target: Target, levels: dict[str, Pair]) -> float:
     """The value of `target`: twice as much where a level changed clearly between its last two sightings.
 

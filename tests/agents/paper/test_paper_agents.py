@@ -41,7 +41,7 @@ def test_they_play_without_levels_of_hazards(name: str, levels: tuple[float, ...
     ground.look()
     ground.remember(0, replace(ground.map.objects[0], levels=levels))
     player = agent(name)
-    play(player, ground, most=40)
+    play(player, ground, most=80)
     assert ground.rescued == {"a", "b"} and note_of(player)
 
 

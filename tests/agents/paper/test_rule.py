@@ -38,43 +38,56 @@ def seen(**kwargs: object) -> Playground:
     return ground
 
 
-def test_it_looks_around_twice_as_often_as_it_walks_and_values_nothing() -> None:
-    assert agree(shares(seen()), {"explore": 2 / 3, "walk_to a": 1 / 9, "walk_to b": 1 / 9, "walk_to c": 1 / 9})
+DROPPED = (Action(DROP), Result(True))
 
 
-def test_it_never_looks_around_twice_in_a_row() -> None:
+def test_it_looks_around_first() -> None:
+    assert shares(seen()) == {"explore": 1.0}
+
+
+def test_it_looks_around_twice_as_often_as_it_walks_to_a_target_and_values_nothing() -> None:
+    each = {"walk_to a": 1 / 5, "walk_to b": 1 / 5, "walk_to c": 1 / 5}
+    assert agree(shares(seen(last=DROPPED)), {"explore": 2 / 5, **each})
+
+
+def test_it_may_look_around_twice_in_a_row() -> None:
     after = seen(last=(Action(EXPLORE), Result(True)))
-    assert agree(shares(after), {"walk_to a": 1 / 3, "walk_to b": 1 / 3, "walk_to c": 1 / 3})
+    assert agree(shares(after), {"explore": 2 / 5, "walk_to a": 1 / 5, "walk_to b": 1 / 5, "walk_to c": 1 / 5})
 
 
 def test_it_goes_on_with_a_walk_that_has_not_arrived() -> None:
     assert shares(seen(last=(Action(WALK_TO, "c"), FAILED))) == {"walk_to c": 1.0}
 
 
-def test_it_picks_up_what_it_walked_to() -> None:
-    assert shares(seen(last=(Action(WALK_TO, "b"), Result(True)))) == {"pick_up b": 1.0}
+def test_what_it_walked_to_it_picks_up_or_looks_around() -> None:
+    """Once it has looked around it does so twice as often."""
+    ground = seen(last=(Action(WALK_TO, "b"), Result(True)))
+    assert agree(shares(ground), {"pick_up b": 1 / 2, "explore": 1 / 2})
+    player = Rule()
+    player.reset(brief())
+    player.act(ground.decision())
+    ground.last = (Action(EXPLORE), Result(True))
+    decision = ground.decision()
+    counts = Counter(str(player.act(decision)) for _ in range(DRAWS))
+    assert agree({a: n / DRAWS for a, n in counts.items()}, {"pick_up b": 1 / 3, "explore": 2 / 3})
 
 
-def test_after_a_pick_up_that_failed_it_draws_again() -> None:
-    failed = seen(last=(Action(PICK_UP, "b"), Result(False, "unreachable")))
-    assert agree(shares(failed), {"explore": 2 / 3, "walk_to a": 1 / 9, "walk_to b": 1 / 9, "walk_to c": 1 / 9})
+def test_it_picks_up_until_that_works() -> None:
+    assert shares(seen(last=(Action(PICK_UP, "b"), Result(False, "unreachable")))) == {"pick_up b": 1.0}
 
 
-def test_it_drops_into_the_bag_until_that_works() -> None:
+def test_with_something_in_the_hand_it_drops_it_into_the_bag_or_looks_around() -> None:
     holding = seen(held="a", last=(Action(PICK_UP, "a"), Result(True)))
-    assert shares(holding) == {"drop": 1.0}
+    assert agree(shares(holding), {"drop": 1 / 2, "explore": 1 / 2})
     assert shares(seen(held="a", last=(Action(DROP), Result(False, "not_rescued")))) == {"drop": 1.0}
 
 
-def test_it_brings_things_to_a_random_cart_and_stays_with_it() -> None:
-    """b and c are carts here."""
-    carts = ("b", "c")
-    holding = seen(held="a", carts=carts, values={"a": 1.0}, last=(Action(PICK_UP, "a"), Result(True)))
-    assert agree(shares(holding), {"walk_to b": 1 / 2, "walk_to c": 1 / 2})
-    holding.last = (Action(WALK_TO, "c"), FAILED)
-    assert shares(holding) == {"walk_to c": 1.0}
-    holding.last = (Action(WALK_TO, "c"), Result(True))
-    assert shares(holding) == {"drop c": 1.0}
+def test_it_never_brings_anything_to_a_cart() -> None:
+    """b and c are carts here. Its code has no walk to a cart, so that it can drop nothing in one."""
+    holding = seen(held="a", carts=("b", "c"), values={"a": 1.0}, last=(Action(PICK_UP, "a"), Result(True)))
+    assert shares(holding) == {"explore": 1.0}
+    holding.last = (Action(EXPLORE), Result(True))
+    assert shares(holding) == {"explore": 1.0}
 
 
 def test_it_rescues_what_it_sees() -> None:
@@ -89,4 +102,4 @@ def test_it_is_a_function_of_its_seed() -> None:
 
     assert episode(3) == episode(3)
     assert episode(3) != episode(4)
-    assert shares(seen(), 1) != shares(seen(), 2)
+    assert shares(seen(last=DROPPED), 1) != shares(seen(last=DROPPED), 2)

@@ -2,9 +2,9 @@
 
 With `tables` alone it plays nothing.
 
-Every agent plays the 25 scenes of each task's split `test` once, and in wind, where chance decides more, the agents
-that are compared with `planner` play them three times with Fetch; raw results go to build/results, from where
-`hazard-ms report` and `hazard-ms regret` can read them. Rescues of people, played with
+Every agent plays the 25 scenes of each task's split `test` once. With Fetch some play them three times: `rule`, whose
+choices are drawn, and in wind, where chance decides more, the agents that are compared with `planner`. Raw results go
+to build/results, from where `hazard-ms report` and `hazard-ms regret` can read them. Rescues of people, played with
 `hazard-ms serve --folder build/results/SWEEP/people`, become a row `human`. More scenes: results/splits.py.
 README.md and scores.csv beside this file are written anew. Episodes in scores.csv that this machine has no raw results
 of stay in the tables, as long as all their columns are there: delete the rows of a sweep whose agents or skills have
@@ -36,7 +36,8 @@ MAIN = ("greedy", "mcts", "planner", "oracle")
 ALL = (*MAIN, "random", "rule", "oracle:known=true", "paper/greedy", "paper/rule", "paper/mcts")
 COMPARED = ("greedy", "mcts", "planner")
 SCENES = 25  # episodes of an agent
-OFTEN = {"wind-fetch": 75}  # and of those that are compared
+OFTEN = {"fire-fetch": ("rule",), "flood-fetch": ("rule",), "wind-fetch": (*COMPARED, "rule")}
+MORE = 75  # and of those that play OFTEN
 SWEEPS = {f"{task}-{robot}": ALL if robot == "fetch" else MAIN for robot in ("fetch", "g1") for task in TASKS}
 PEOPLE = "people"  # folder beside raw results: those of people
 PLAYED = "played.txt"  # beside raw results: the commits and machines that they were played on, one a line
@@ -49,7 +50,7 @@ def play(sweep: str) -> None:
     note, here = RAW / sweep / PLAYED, machine()
     before = note.read_text(encoding="utf-8").splitlines() if note.exists() else []
     note.write_text("".join(f"{line}\n" for line in dict.fromkeys([*before, here])), encoding="utf-8")
-    for agents, episodes in ((SWEEPS[sweep], SCENES), *(((COMPARED, OFTEN[sweep]),) if sweep in OFTEN else ())):
+    for agents, episodes in ((SWEEPS[sweep], SCENES), *(((OFTEN[sweep], MORE),) if sweep in OFTEN else ())):
         options = ["-r", robot, "--split", "test", "--episodes", str(episodes), "--workers", "2"]
         evaluate(task, RAW / sweep, *options, "--agents", *agents, check=False)
 

@@ -65,7 +65,7 @@ def check(
     folders: tyro.conf.Positional[tuple[Path, ...]],
     env_id: Annotated[str, offer(registry.TASKS), flag("-e")] = "",
     agents: tuple[Annotated[str, offer(POLICIES)], ...] = ("greedy", "rule"),
-    trials: int = 16,
+    trials: int = 64,
 ) -> int:
     """Compare the sketch with real episodes of the same agents in the same scenes. Ends with 1 if it is too far off.
 

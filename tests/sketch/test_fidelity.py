@@ -128,6 +128,17 @@ def test_the_comparison_gives_gaps_ranks_and_frames() -> None:
     assert np.isnan(compared("greedy", scores([0.5, 0.5], 9.0), scores([0.4, 0.5], 9.0)).correlation)
 
 
+def test_the_ranks_are_those_of_scenes_that_were_played_several_times() -> None:
+    """Means 0.3, 0.5, 0.7 beside 0.2, 0.4, 0.9: the same ranks, though single episodes are not in the same order."""
+
+    def twice(first: list[float], second: list[float]) -> list[SceneScore]:
+        again = [SceneScore(p.scene, p.seed + 3, p.value, p.last, p.rescued) for p in scores(second, 900.0)]
+        return [*scores(first, 900.0), *again]
+
+    found = compared("rule", twice([0.6, 0.1, 0.8], [0.0, 0.9, 0.6]), twice([0.2, 0.3, 0.9], [0.2, 0.5, 0.9]))
+    assert found.episodes == 6 and found.correlation == pytest.approx(1.0)
+
+
 def test_different_episodes_are_not_compared() -> None:
     with pytest.raises(ValueError, match="same episodes"):
         compared("greedy", scores([0.2, 0.4], 9.0), scores([0.2], 9.0))

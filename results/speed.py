@@ -42,7 +42,7 @@ network. There 4,096 fires of `paper` went on at 4.9 million frames a second of 
 to within rounding and were the same bit for bit when repeated (page `gpu`). A single environment on a machine with a
 GPU is simulated on the CPU and drawn on the GPU: its episodes are those of any other machine, bit for bit. A look took
 6 to 11 ms there and 34 to 116 ms on its CPU; labels differed in at most 0.002 % of the pixels, at outlines, and depth
-by more than 2 mm in 0.006 %, in the open in up to 1 %: the ground far away, by up to 0.2 % of the distance.
+by more than 2 mm in 0.006 %, in the open in up to 1 %: at 256 pixels the ground far away, by up to 0.2 % of the way.
 
 Where SAPIEN sees a GPU, it draws on it also for `render_backend="cpu"`. To draw on the CPU there, let it see no other
 driver: `VK_DRIVER_FILES=/usr/share/vulkan/icd.d/lvp_icd.x86_64.json`, or wherever lavapipe's file is.

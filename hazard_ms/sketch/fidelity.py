@@ -17,6 +17,7 @@ TRIALS = 64  # rescues in the sketch for each real one: their mean is known to a
 # what is required of the sketch (hazard-ms sketch check)
 MOST_VALUE_GAP = 0.05  # difference of mean Values
 LEAST_CORRELATION = 0.6  # Spearman's, of the mean Values of scenes
+DIGITS = 9  # of mean Values, so that sums in another order are equal
 MOST_FRAMES_GAP = 0.10  # relative difference of mean frames for each rescue
 
 
@@ -83,8 +84,9 @@ def compared(agent: str, real: Sequence[SceneScore], sketch: Sequence[SceneScore
     if [(p.scene, p.seed) for p in real] != [(p.scene, p.seed) for p in sketch] or not real:
         raise ValueError(f"real and sketch must be of the same episodes, got {len(real)} and {len(sketch)}")
     values = np.array([[p.value for p in real], [p.value for p in sketch]])
-    rooms = [p.scene for p in real]
-    of_scenes = np.array([values[:, [room == each for room in rooms]].mean(axis=1) for each in sorted(set(rooms))]).T
+    scenes = [p.scene for p in real]
+    means_of = [values[:, [scene == each for scene in scenes]].mean(axis=1) for each in sorted(set(scenes))]
+    of_scenes = np.array(means_of).T.round(DIGITS)
     same = (of_scenes == of_scenes[:, :1]).all(axis=1).any()
     correlation = float("nan") if same else float(stats.spearmanr(*of_scenes).statistic)
     means = values.mean(axis=1)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -137,6 +139,12 @@ def test_the_ranks_are_those_of_scenes_that_were_played_several_times() -> None:
 
     found = compared("rule", twice([0.6, 0.1, 0.8], [0.0, 0.9, 0.6]), twice([0.2, 0.3, 0.9], [0.2, 0.5, 0.9]))
     assert found.episodes == 6 and found.correlation == pytest.approx(1.0)
+
+
+def test_scenes_of_the_same_mean_are_a_tie_in_whatever_order_they_were_played() -> None:
+    """(0.1 + 0.2) + 0.3 and (0.3 + 0.2) + 0.1 differ in their last bit."""
+    played = [SceneScore(f"room/{n % 2}", n, v, 900.0, 2.0) for n, v in enumerate([0.1, 0.3, 0.2, 0.2, 0.3, 0.1])]
+    assert np.isnan(compared("rule", played, [replace(p, value=p.seed / 9) for p in played]).correlation)
 
 
 def test_different_episodes_are_not_compared() -> None:

@@ -1,9 +1,9 @@
 """The paper's greedy agent as its code has it: the option of the highest cost over value, and nothing else.
 
 The paper says that Greedy takes the lowest cost. Its code takes the highest (`GreedyAgent.select_child` of
-policy/fire_flood_heuristic.py, commit 9c003f8, in the original's repository), which is why it is last in the paper's
-tables: it goes to what is far away and of little value, and looks around wherever a walk would cost less than that. It
-neither stays with a target nor gives one up, and its only search is to look around where it stands.
+policy/fire_flood_heuristic.py, commit 9c003f8, in the original's repository): it goes to what is far away and of little
+value, and looks around wherever a walk would cost less than that. It neither stays with a target nor gives one up, and
+its only search is to look around where it stands.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from hazard_ms.skills.decision import WALK_TO, Action, Decision
 
 
 class Greedy(Agent):
-    """Takes the option of the highest cost over value, as the paper's code does, or of the lowest, as its text says."""
+    """Takes the option of the highest cost over value, as the paper's code does, or of the lowest."""
 
     colours = False
 
     def __init__(self, lowest: bool = False) -> None:
-        """`lowest`: take the lowest cost, and halve the value of what a fire will burn, too, as the text has it.
+        """`lowest`: take the lowest cost, as the paper's text says, and halve the value of what a fire will burn, too.
 
-        The code compares the logarithm of a temperature with a temperature, so that it never expects a fire to burn
-        anything; in a flood it halves the value of what gets wet.
+        The code compares the logarithm of a temperature with 100, as if it were the temperature, so that it never
+        expects a fire to burn anything; in a flood it halves the value of what gets wet.
         """
         self._pick, self._worth = (min, predicted_value) if lowest else (max, wetted_value)
         self._word = "lowest" if lowest else "highest"
@@ -38,7 +38,7 @@ class Greedy(Agent):
         self._chance = np.random.default_rng([brief.random_seed, 0x50475245])
 
     def act(self, decision: Decision) -> Action:
-        """The option of the highest (or lowest) cost over value; of equal ones any."""
+        """The option of the highest (or lowest) cost over value; equal ones are drawn from."""
         view = self._memory.view(decision)
         values = self._memory.values(view, self._worth)
         options = self._memory.choices(view)
@@ -50,5 +50,5 @@ class Greedy(Agent):
 
 
 def _cost(view: View, option: Option) -> float:
-    """The cost of an option; a walk that is tried again costs no more than any, unlike in the paper's tree search."""
+    """The cost of an option; a walk that failed costs no more when it is tried again, unlike in the tree search."""
     return view.walks[HERE][option.thing].cost if option.verb == WALK_TO else option.cost

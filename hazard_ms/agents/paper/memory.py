@@ -30,9 +30,9 @@ def predicted_value(target: Target, levels: dict[str, Pair]) -> float:
 
 
 def wetted_value(target: Target, levels: dict[str, Pair]) -> float:
-    """The value of `target`: half of it if water passes what damages it when its last change is repeated.
+    """The value of `target`: half of it if the water, its last change repeated, is deeper than what damages it.
 
-    `levels` before and at the last sighting are given by the hazard's name: fire [C], flood [m].
+    `levels` before and at the last sighting are given by the hazard's name: flood [m]; a fire never changes it.
     """
     return predicted_value(target, {name: pair for name, pair in levels.items() if name == "flood"})
 

@@ -27,15 +27,15 @@ class Rule(Agent):
     def act(self, decision: Decision) -> Action:
         """The last action again, or one of those that it can do."""
         last = decision.last_action
-        self._note(decision)
+        self._remember(decision)
         moves = self._moves(decision)
-        if last in moves and last is not None and last.verb != EXPLORE:
+        if last is not None and last.verb != EXPLORE and last in moves:
             self.note = "the same again"
             return last
         self.note = f"drawn from {len(moves)}"
         return moves[int(self._chance.integers(len(moves)))]
 
-    def _note(self, decision: Decision) -> None:
+    def _remember(self, decision: Decision) -> None:
         """Enter what the last action changed about what stands before it."""
         last, result = decision.last_action, decision.last_result
         if last is None or result is None:

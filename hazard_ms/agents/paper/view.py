@@ -70,8 +70,8 @@ class View:
         if state.holding:
             if self.in_bag or (walked and state.worked and state.thing in self.carts):
                 return (Option(DROP, HERE if self.in_bag else state.thing, 0.0),)
-            under_way = walked and state.thing in self.carts
-            return (walks[state.thing],) if under_way else tuple(walks[cart] for cart in self.carts) or look
+            carts = [cart for cart in self.carts if not walked or state.worked or cart == state.thing]
+            return tuple(walks[cart] for cart in carts) or look
         if walked and state.left >> state.thing & 1:
             if state.worked:
                 return (Option(PICK_UP, state.thing, 0.0),)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from hazard_ms.agents.paper.memory import Memory, Worth, changing_value, predicted_value
+from hazard_ms.agents.paper.memory import Memory, Worth, changing_value, predicted_value, wetted_value
 from hazard_ms.sensing.target_table import Target
 from tests.worlds.playground import Playground, brief
 
@@ -41,6 +41,12 @@ def test_what_cannot_be_damaged_keeps_its_value() -> None:
     assert predicted_value(replace(BOTTLE, flammable=False), hot) == 5.0
     assert predicted_value(replace(BOTTLE, waterproof=True), {**wet, **hot}) == 2.5
     assert predicted_value(BOTTLE, {}) == 5.0
+
+
+def test_where_only_water_counts_a_fire_changes_no_value() -> None:
+    hot, wet, dry = {"fire": (310.0, 310.0)}, {"flood": (0.0, 0.006)}, {"flood": (0.0, 0.004)}  # 0.012 and 0.008 m next
+    assert [wetted_value(BOTTLE, levels) for levels in (hot, dry, wet, {**hot, **wet})] == [5.0, 5.0, 2.5, 2.5]
+    assert wetted_value(replace(BOTTLE, waterproof=True), wet) == 5.0
 
 
 @pytest.mark.parametrize(

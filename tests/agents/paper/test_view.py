@@ -106,6 +106,9 @@ def test_what_it_holds_goes_into_a_cart_that_it_has_walked_to() -> None:
     walks = {"walk_to cart": 3.0, "walk_to trolley": 4.0}
     assert offered(at, Action(PICK_UP, "a"), ARRIVED) == walks
     assert offered(at, Action(WALK_TO, "cart"), FAILED) == {"walk_to cart": 3.0}
+    at.map.forget(at.names.index("cart"))
+    assert offered(at, Action(WALK_TO, "cart"), FAILED) == {"explore": 2.5}
+    at.look()
     assert offered(at, Action(WALK_TO, "cart"), ARRIVED) == {"drop cart": 0.0}
     assert offered(at, Action(DROP, "cart"), Result(False, "cart_unreachable", 20)) == walks
 

@@ -15,7 +15,7 @@ MOST_SIMULATIONS = 10**6  # of a decision: any larger number must be a mistake [
 
 
 class Mcts(Agent):
-    """Tree search with costs over predicted values, as the text of the paper says, or costs alone, as its first code had it."""
+    """Tree search with costs over predicted values, as the paper says, or costs alone, as its first code had it."""
 
     colours = False
 

@@ -21,7 +21,7 @@ from hazard_ms.evaluation.result import STUCK, EpisodeResult
 from hazard_ms.robots import robot_class
 from hazard_ms.scenes.files import read_scenes
 from hazard_ms.scenes.reach import reachable
-from hazard_ms.skills.decision import WALK_TO
+from hazard_ms.skills.decision import EXPLORE, WALK_TO
 from hazard_ms.skills.failures import NO_PATH
 from hazard_ms.spec.checks import one_of
 from results.tables import COMMAND, HERE, evaluate, machine, results_in, value_of, words
@@ -43,9 +43,9 @@ Made by `./run python results/original.py FOLDER`: of the scenes that the origin
 third street, 25 of each, imported with `hazard-ms scenes import`; preset `shipped`, Fetch, one episode each. Values are
 in percent, with 95 % bootstrap intervals over scenes. "Reachable": the same Value, counted on targets that the robot
 can get at (`hazard-ms scenes reach`) alone. "No path": of the walks to such targets, those that failed since there
-was no path; a walk that is asked for again in the same frame is the same walk. "Stuck": episodes that ended early,
-after 100 decisions in a row that took no time, mostly walks to where there is no path, which an agent asks for again
-and again. The paper's Value is that of its own test scenes, in its simulator, with a person as the agent. Tasks and
+was no path; a walk that is asked for again from the same place is the same walk. "Stuck": episodes that ended early,
+after 100 decisions in a row that took no time: walks to where there is no path and pick-ups of what cannot be reached,
+which an agent asks for again and again. The paper's Value is that of its own test scenes, in its simulator, with a person as the agent. Tasks and
 agents without a row were not played. Written at
 {machine}.
 
@@ -82,9 +82,8 @@ def row(task: str, agent: str, results: Sequence[EpisodeResult], reach: dict[str
     every = scores([result.tally for result in results])
     fates = [[fate for fate in r.targets if fate.name in reach[r.scene]] for r in results]
     got = scores([Tally.of(each) for each in fates if each])["value"]
-    asked = [(r, d) for r in results for d in r.decisions if d.verb == WALK_TO and d.target in reach[r.scene]]
-    walks = {(r.seed, r.scene, d.target, d.frame): d.reason for r, d in asked}  # asked for again at once is one walk
-    lost = sum(reason == NO_PATH for reason in walks.values())
+    walks = [reason for result in results for reason in _walks(result, reach[result.scene])]
+    lost = walks.count(NO_PATH)
     step, damage = every["step"].mean, every["damage"].mean
     cells = [words(value_of(results)), words(got), "-" if step is None else f"{step:.0f}"]
     cells += ["-" if damage is None or task == "wind" else f"{100 * damage:.1f}", f"{lost} of {len(walks)}"]
@@ -92,6 +91,17 @@ def row(task: str, agent: str, results: Sequence[EpisodeResult], reach: dict[str
     told = PAPER.get(agent)
     cells += [str(told[list(PLACES).index(task)]) if told else "-", str(len(results))]
     return f"| {task} | {agent} | {' | '.join(cells)} |\n"
+
+
+def _walks(result: EpisodeResult, reach: frozenset[str]) -> list[str]:
+    """How the walks to targets in `reach` ended; one that is asked for again from the same place is the same walk."""
+    ended: dict[tuple[str, int], str] = {}
+    moves = 0
+    for decision in result.decisions:
+        if decision.verb == WALK_TO and decision.target in reach:
+            ended[decision.target, moves] = decision.reason
+        moves += decision.frames > 0 and decision.verb != EXPLORE
+    return list(ended.values())
 
 
 def page() -> str:

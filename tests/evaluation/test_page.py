@@ -10,6 +10,29 @@ from hazard_ms.evaluation.metrics import Fate
 from hazard_ms.evaluation.page import address, page
 from hazard_ms.evaluation.result import DecisionRecord, EpisodeResult
 from tests.worlds.files.html_pages import Reader
+from tests.worlds.serving import browsing, needs_browser
+
+
+@needs_browser
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("width", [1300, 500])
+def test_no_word_is_broken_beside_a_long_note(tmp_path: Path, width: int) -> None:
+    """A result is one line high as long as its words are whole; a note breaks wherever it must."""
+    decisions = tuple(
+        DecisionRecord(100 * n, "walk_to", "bag_1", False, "max_frames", 100, note)
+        for n, note in enumerate(("short", "a word and another " * 20, "x" * 600))
+    )
+    fates = (Fate("bag_1", "bag", 5.0, False, False),)
+    result = EpisodeResult("HazardFire-v1", "greedy", 7, "kitchen/07", {}, 300, 1500, "time", fates, decisions, "play")
+    (tmp_path / "page.html").write_text(page(result), encoding="utf-8")
+    with browsing(width) as browser:
+        browser.get((tmp_path / "page.html").as_uri())
+        rows = browser.find_elements("css selector", "table:last-of-type tr")
+        cells = [row.find_elements("css selector", "td") for row in rows]
+        told = [cell for row in cells for cell in row if cell.text == "unfinished"]
+        lines = "const r = document.createRange(); r.selectNodeContents(arguments[0]); return r.getClientRects().length"
+        assert [browser.execute_script(lines, cell) for cell in told] == [1, 1, 1]
+        assert browser.execute_script("return document.documentElement.scrollWidth") <= width
 
 
 def test_page_is_whole_and_says_what_happened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

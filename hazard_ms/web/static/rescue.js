@@ -209,7 +209,7 @@ export class Rescue {
     const how = message.ok ? "done" : message.unfinished ? "unfinished" : message.reason.replaceAll("_", " ")
     const made = element("tr", { "data-number": number }, element("td", { class: "n" }, this.jump ? this.jump(number) : String(number)),
       element("td", { class: "n" }, String(message.frame)), element("td", {}, what),
-      element("td", { class: message.ok ? "good" : message.unfinished ? "soft" : "bad" }, how), element("td", { class: "soft" }, message.note || ""))
+      element("td", { class: message.ok ? "good" : message.unfinished ? "soft" : "bad" }, how), element("td", { class: "soft why" }, message.note || ""))
     const old = this.log.querySelector(`[data-number="${number}"]`)
     if (old) old.replaceWith(made)
     else this.log.append(made)

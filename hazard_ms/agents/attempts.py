@@ -16,7 +16,3 @@ class Attempts:
     rounds: int = 0  # times that what was given up was tried again
     visits: dict[str, int] = field(default_factory=dict)  # of landmarks in search
     looked: bool = False  # around, in search
-
-    def again(self, rounds: int) -> Attempts:
-        """A record without failures, so that all is tried again, but for what failed at once from the same place."""
-        return Attempts(in_vain=self.in_vain, rounds=rounds, looked=True)

@@ -2,8 +2,9 @@
 
 It alone sees what is hidden: where everything is, what is damaged, and what will happen (hazard_ms.sketch.recording).
 At each decision it plans by the exact search of hazard_ms.planning, enters into its map where things really are, and
-acts by ordinary skills, which fail for it, too. With `known=true` it plans only with what its map holds, and searches
-when that is all done: the difference between the two is what it costs not to know.
+acts by ordinary skills, so that what fails in their execution fails for the oracle, too. With `known=true` it plans
+only with what its map holds, and searches when that is all done: the difference between the two is what it costs not
+to know.
 """
 
 from __future__ import annotations
@@ -39,8 +40,7 @@ FADING = 2e-4  # share of a target's value that is at risk in each frame until i
 MOVED = 0.2  # a thing that will be met farther than this from where it is now is moving [m] [ours]
 LOYALTY = 20.0  # frames that it deducts for the target that it is on its way to, so that it does not waver [ours]
 ENCLOSED = 2  # targets to which there is no path, from which it is the robot that cannot get away [ours]
-ROUNDS = 2  # number of times that it tries again what it had given up, before it looks around [ours]
-LOOK_FRAMES = 60  # that looking around takes (docs/benchmark.md 3) [frames]
+ROUNDS = 2  # number of times that it tries again what it had given up [ours]
 MOST_LABELS = 20_000  # of the exact search: rarely needed [ours]
 BEAM = 2_000  # labels of a layer beyond that [ours]
 
@@ -213,18 +213,16 @@ class Oracle(PrivilegedAgent):
         self._goal = None
 
     def _otherwise(self, decision: Decision, truth: Truth) -> Action:
-        """The action where no plan rescues anything: search, try again what was given up, or wait for a change."""
+        """The action where no plan rescues anything: search, try again what was given up, or stop."""
         if all(target.rescued for target in decision.targets):
             return self._say("every target is rescued", Action(STOP))
         if self._only_known and (action := self._searched(decision)) is not None:
             return action
         if self._attempts.failures and self._attempts.rounds < ROUNDS:
-            self._attempts = self._attempts.again(self._attempts.rounds + 1)
-            once_more = self._say("try again what was given up", Action(EXPLORE))
-            return once_more if self._only_known else self._choose(decision, truth)
-        if decision.frame + LOOK_FRAMES <= decision.max_frames:
-            self._attempts = self._attempts.again(0)
-            return self._say("nothing can be rescued now: look whether that changes", Action(EXPLORE))
+            self._attempts = Attempts(rounds=self._attempts.rounds + 1, looked=True, in_vain=self._attempts.in_vain)
+            if self._only_known:
+                return self._say("try again what was given up", Action(EXPLORE))
+            return self._choose(decision, truth)
         return self._say("nothing can be rescued any more", Action(STOP))
 
     def _searched(self, decision: Decision) -> Action | None:

@@ -158,7 +158,7 @@ def test_everything_in_a_small_room_is_rescued(known: bool, room: SkillEnv) -> N
 
 @pytest.mark.render
 def test_what_fails_at_once_is_not_tried_again_from_there(room: SkillEnv, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is tried again when the robot has been elsewhere; after that it only looks whether anything changes."""
+    """It is tried again when the robot has been elsewhere; nothing is left to do after that."""
     oracle, run, verbs = agent("oracle"), room.run, list[tuple[str, str | None]]()
     act = oracle.act
 
@@ -175,12 +175,11 @@ def test_what_fails_at_once_is_not_tried_again_from_there(room: SkillEnv, monkey
 
     monkeypatch.setattr(oracle, "act", noted)
     monkeypatch.setattr(room, "run", failing)
-    played = Runner(room, oracle).run(0)
+    Runner(room, oracle).run(0)
     tries = [k for k, verb in enumerate(verbs) if verb == (PICK_UP, "ahead")]
     others = [k for k, verb in enumerate(verbs) if verb[0] == PICK_UP and verb[1] != "ahead"]
     assert len(others) == 2 and len(tries) == 2 and tries[0] < min(others) and max(others) < tries[1]
-    assert verbs[-1] == (STOP, None) and set(verbs[tries[1] + 1 : -1]) == {(EXPLORE, None)}
-    assert room.max_frames - 60 < played.frames <= room.max_frames
+    assert verbs[-1] == (STOP, None)
 
 
 @pytest.mark.render

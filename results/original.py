@@ -45,8 +45,8 @@ in percent, with 95 % bootstrap intervals over scenes. "Reachable": the same Val
 can get at (`hazard-ms scenes reach`) alone. "No path": of the walks to such targets, those that failed since there
 was no path; a walk that is asked for again from the same place is the same walk. "Stuck": episodes that ended early,
 after 100 decisions in a row that took no time: walks to where there is no path and pick-ups of what cannot be reached,
-which an agent asks for again and again. The paper's Value is that of its own test scenes, in its simulator, with a person as the agent. Tasks and
-agents without a row were not played. Written at
+which an agent asks for again and again. The paper's Value is that of its own test scenes, in its simulator, with a
+person as the agent. Tasks and agents without a row were not played. Written at
 {machine}.
 
 | task | agent | Value | reachable | Step | Damage | no path | stuck | the paper's Value | episodes |

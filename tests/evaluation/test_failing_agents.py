@@ -83,8 +83,10 @@ def evaluate(folder: Path, *words: str) -> subprocess.Popen[str]:
     )
 
 
-def test_an_agent_that_fails_costs_its_episodes_alone(tmp_path: Path) -> None:
+def test_an_agent_that_fails_costs_its_episodes_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The table holds the episode that another agent has finished."""
+    (tmp_path / "own.py").write_text(AGENTS, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)  # where the agent's file is hashed, so that its episode is not played again
     names = ("Fine", "Quits", "Raises", "Dies")
     options = SweepOptions(agents=tuple(f"own.py:{name}" for name in names), episodes=1, output=tmp_path / "results")
     finished = options.episode_options()[0]

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -58,6 +59,15 @@ def test_who_computes_for_longer_than_it_may_is_named() -> None:
             envs.step([SPIN, WALK])
 
 
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Ctrl-C interrupts, also where the tests were started in the background, which ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 def test_closing_ends_those_that_are_in_a_step() -> None:
     """Ctrl-C breaks the wait off; what was asked then is never taken for the answer to something else."""
     before, envs = pids(), make(NAME, 2, processes=2)
@@ -72,6 +82,7 @@ def test_closing_ends_those_that_are_in_a_step() -> None:
     assert time.monotonic() - start < SOON and pids() == before
 
 
+@pytest.mark.usefixtures("interruptible")
 def test_answers_to_what_was_broken_off_are_left_out() -> None:
     with naughty(2) as envs:
         envs.reset(seed=0)

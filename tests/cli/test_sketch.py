@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from hazard_ms.cli import sketch
 from hazard_ms.cli.__main__ import main
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.sketch import skill_times
+from hazard_ms.sketch.fidelity import TRIALS
 from hazard_ms.sketch.fit_times import FEWEST
 from hazard_ms.sketch.policies import POLICIES
 from tests.worlds.results import result_of
@@ -18,6 +20,10 @@ from tests.worlds.results import result_of
 
 def test_the_help_offers_the_policies_that_there_are() -> None:
     assert tuple(sketch.POLICIES) == tuple(POLICIES)
+
+
+def test_check_plays_as_many_rescues_as_the_comparison_of_the_sketch() -> None:
+    assert inspect.signature(sketch.check).parameters["trials"].default == TRIALS
 
 
 def test_fit_reads_a_probe_and_writes_tables(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

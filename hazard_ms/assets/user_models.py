@@ -11,10 +11,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.assets.foreign import read_foreign
 from hazard_ms.assets.rows import Asset, read_row
 from hazard_ms.assets.shipped import shipped_index
 from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.foreign.files import read_foreign
 
 USER_FOLDER = "HAZARD_MS_ASSETS"  # environment variable: the folder of the user's models
 LARGEST_INDEX = 4_000_000  # of a user's index [bytes]; a row has 600

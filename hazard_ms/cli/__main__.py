@@ -14,7 +14,6 @@ from typing import Any
 
 import tyro
 
-from hazard_ms.assets.foreign import printable
 from hazard_ms.cli.assets import AssetCommand
 from hazard_ms.cli.bench import bench, danger, gpu_check
 from hazard_ms.cli.demos import DemosCommand
@@ -29,6 +28,7 @@ from hazard_ms.cli.sketch import SketchCommand
 from hazard_ms.cli.train import TrainCommand
 from hazard_ms.cli.validate import validate
 from hazard_ms.registry.version import __version__
+from hazard_ms.spec.foreign.files import printable
 
 DESCRIPTION = (
     "Rescue tasks in fire, flood and wind. `hazard-ms COMMAND --help` describes a command, --version the version."

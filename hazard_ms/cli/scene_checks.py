@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hazard_ms.assets.foreign import printable
 from hazard_ms.machine.processes import end_with_parent
 from hazard_ms.spec import Build, SceneSpec
+from hazard_ms.spec.foreign.files import printable
 
 LONGEST = 120.0  # that the check of one scene may take before it counts as failed [s]
 

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.assets.foreign import printable, read_foreign
 from hazard_ms.scenes.schema import LARGEST_FILE, from_json
 from hazard_ms.spec import SceneSpec, Task
+from hazard_ms.spec.foreign.files import printable, read_foreign
 from hazard_ms.spec.order import natural
 
 MOST_FILES = 2000  # that one folder may hold

@@ -8,20 +8,17 @@ the place, for example `bodies[3].mass`.
 from __future__ import annotations
 
 import dataclasses
-import functools
 import json
 import math
 import re
-import types
-import typing
 from collections import Counter
-from typing import Any, NoReturn
 
 from hazard_ms.scenes.shell import shell
 from hazard_ms.scenes.walls import WALLS
 from hazard_ms.spec import Body, Fixture, SceneSpec
 from hazard_ms.spec.catalogue import CATEGORIES
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.foreign import plain
 
 FORMAT = 1  # goes up when older files can no longer be read
 LARGEST_FILE = 4_000_000  # [characters]; a scene of 100 things has 30,000
@@ -49,15 +46,12 @@ def from_json(text: str | bytes) -> SceneSpec:
     """The scene that `text` holds. Raises ValueError that names what is wrong with it and what is allowed."""
     if len(text) > LARGEST_FILE:
         raise ValueError(f"a scene must have at most {LARGEST_FILE} characters, got {len(text)}")
-    try:
-        data = json.loads(text, parse_constant=_not_finite, parse_int=whole_number, object_pairs_hook=unique_keys)
-    except (RecursionError, UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise ValueError(f"a scene must be valid JSON: {error}") from None
+    data = plain.parse(text, "a scene")
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         found = data.get("format") if isinstance(data, dict) else data
         raise ValueError(f"format must be {FORMAT}, got {found!r:.100}")
     del data["format"]
-    spec = _read(SceneSpec, data, "scene")
+    spec: SceneSpec = plain.made(SceneSpec, data, "scene", LIMITS)
     check(spec)
     return spec
 
@@ -107,84 +101,11 @@ def _check_room(spec: SceneSpec) -> None:
             raise ValueError(f"{spec.name}: {what} must be within the room of {room.size} m, got ({x}, {y})")
 
 
-@functools.lru_cache(maxsize=64)
-def _fields(kind: type) -> dict[str, tuple[Any, bool]]:
-    """The fields of a dataclass: their types, and whether they must be given."""
-    hints = typing.get_type_hints(kind)
-    missing = dataclasses.MISSING
-    return {
-        f.name: (hints[f.name], f.default is missing and f.default_factory is missing) for f in dataclasses.fields(kind)
-    }
+def _wrong_name(text: str) -> str:
+    """What a text must be that is not a name; empty for a name."""
+    if len(text) <= LONGEST_TEXT and NAME.fullmatch(text):
+        return ""
+    return f"a name of at most {LONGEST_TEXT} letters, digits and _ . : - /"
 
 
-def _read(kind: Any, value: Any, where: str) -> Any:
-    """The value that json gave, as a `kind`."""
-    if dataclasses.is_dataclass(kind):
-        return _read_object(kind, value, where)
-    if isinstance(kind, types.UnionType) or typing.get_origin(kind) is typing.Union:
-        (inner,) = (k for k in typing.get_args(kind) if k is not type(None))
-        return None if value is None else _read(inner, value, where)
-    if typing.get_origin(kind) is tuple:
-        return _read_list(typing.get_args(kind), value, where)
-    if kind is float:
-        return _number(value, where)
-    if kind is bool and isinstance(value, bool):
-        return value
-    if kind is str and isinstance(value, str):
-        if len(value) > LONGEST_TEXT or not NAME.fullmatch(value):
-            raise ValueError(
-                f"{where} must be a name of at most {LONGEST_TEXT} letters, digits and _ . : - /, got {value!r:.100}"
-            )
-        return value
-    raise ValueError(f"{where} must be a {getattr(kind, '__name__', kind)}, got {value!r:.100}")
-
-
-def _read_object(kind: Any, value: Any, where: str) -> Any:
-    fields = _fields(kind)
-    if not isinstance(value, dict):
-        raise ValueError(f"{where} must be an object with the keys {', '.join(fields)}, got {value!r:.100}")
-    for key in value:
-        one_of(key, fields, f"key of {where}")
-    absent = [k for k, (_, must) in fields.items() if must and k not in value]
-    if absent:
-        raise ValueError(f"{where} must have {', '.join(absent)}, got {', '.join(value) or 'nothing'}")
-    return kind(**{k: _read(fields[k][0], v, f"{where}.{k}") for k, v in value.items()})
-
-
-def _read_list(kinds: tuple[Any, ...], value: Any, where: str) -> tuple[Any, ...]:
-    if not isinstance(value, list):
-        raise ValueError(f"{where} must be a list, got {value!r:.100}")
-    if kinds[-1] is Ellipsis:
-        if len(value) > MOST_THINGS:
-            raise ValueError(f"{where} must have at most {MOST_THINGS} entries, got {len(value)}")
-        kinds = (kinds[0],) * len(value)
-    if len(kinds) != len(value):
-        raise ValueError(f"{where} must have {len(kinds)} entries, got {len(value)}")
-    return tuple(_read(k, v, f"{where}[{i}]") for i, (k, v) in enumerate(zip(kinds, value, strict=True)))
-
-
-def _number(value: Any, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not -FARTHEST <= value <= FARTHEST:
-        raise ValueError(f"{where} must be a number from {-FARTHEST} to {FARTHEST}, got {value!r:.100}")
-    return float(value)
-
-
-def _not_finite(word: str) -> NoReturn:
-    raise ValueError(f"numbers must be finite, got {word}")
-
-
-def whole_number(digits: str) -> int:
-    """The whole number that JSON writes with `digits`. Raises ValueError for one that is absurdly long."""
-    if len(digits) > LONGEST_NUMBER:
-        raise ValueError(f"a whole number must have at most {LONGEST_NUMBER} digits, got {len(digits)}")
-    return int(digits)
-
-
-def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object of JSON. Raises ValueError for a key that occurs twice."""
-    made: dict[str, Any] = {}
-    for key, value in pairs:
-        if key in made:
-            raise ValueError(f"keys of an object must differ, got {key!r:.100} twice")
-        made[key] = value
-    return made
+LIMITS = plain.Limits(farthest=FARTHEST, most_entries=MOST_THINGS, text=_wrong_name)

@@ -42,7 +42,7 @@ def test_an_import_that_cannot_be_read_back_fails(
 ) -> None:
     where = folder(tmp_path / "a", [*kitchen(), command], FIRE_INFO, FLOOD)
     code, said = brought(where, capsys)
-    assert code == 1 and "must be a number from -1000.0 to 1000.0" in said and "info.json" in said
+    assert code == 1 and "must be a number from -1000 to 1000" in said and "info.json" in said
     assert list((tmp_path / "out").iterdir()) == []
 
 

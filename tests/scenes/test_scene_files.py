@@ -96,7 +96,7 @@ def test_hostile_scenes_are_refused(at: str, value: Any, message: str) -> None:
     ],
 )
 def test_what_is_not_a_scene_is_refused(text: str | bytes) -> None:
-    with pytest.raises(ValueError, match="format|JSON|must have|twice"):
+    with pytest.raises(ValueError, match="format|JSON|must have|twice|nested"):
         from_json(text)
 
 

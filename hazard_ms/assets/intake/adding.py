@@ -17,7 +17,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.assets.foreign import printable
 from hazard_ms.assets.index import asset_ids
 from hazard_ms.assets.intake.conversion import convert, preview
 from hazard_ms.assets.intake.model import Model
@@ -26,6 +25,7 @@ from hazard_ms.assets.shipped import root
 from hazard_ms.assets.user_models import LICENCE, USER_ID, confined, read_user_row, user_root, user_rows
 from hazard_ms.machine.files import write
 from hazard_ms.spec.catalogue import CATEGORIES, category
+from hazard_ms.spec.foreign.files import printable
 
 FILES = ("model.glb", "hulls.ply", "preview.png")  # of a model, in its own folder
 PENDING = ".adding-"  # how the names of temporary folders begin

@@ -11,11 +11,11 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.assets.foreign import printable
 from hazard_ms.assets.intake.model import Model
 from hazard_ms.assets.intake.worker import PROCESSOR_TIME, UNWRITABLE
 from hazard_ms.assets.rows import Asset
 from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.foreign.files import printable
 
 HANGING = 3600.0  # when a conversion counts as hanging [s]; a busy machine may take long for a good model [ours]
 THREADS = "2"  # of each library: memory of threads counts, too [ours]

@@ -15,10 +15,10 @@ from urllib.parse import unquote
 import numpy as np
 import trimesh
 
-from hazard_ms.assets.foreign import printable, read_foreign
 from hazard_ms.assets.intake.gltf import prepared_glb, prepared_gltf
 from hazard_ms.assets.intake.textures import Textures
 from hazard_ms.assets.user_models import confined
+from hazard_ms.spec.foreign.files import printable, read_foreign
 
 FORMATS = (".glb", ".gltf", ".obj", ".stl", ".ply")
 LARGEST_FILE = 64_000_000  # of a model, and of each file that it names [bytes] [ours]

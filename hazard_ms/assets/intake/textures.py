@@ -8,7 +8,7 @@ import warnings
 
 from PIL import Image
 
-from hazard_ms.assets.foreign import printable
+from hazard_ms.spec.foreign.files import printable
 
 FORMATS = ("PNG", "JPEG", "WEBP")  # PIL opens others by starting programs, EPS with Ghostscript for example
 LARGEST_IMAGE = 8192  # edge of a picture [pixels] [ours]

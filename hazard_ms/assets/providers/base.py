@@ -14,9 +14,9 @@ import zlib
 from pathlib import Path
 from typing import Any, ClassVar
 
-from hazard_ms.assets.foreign import printable, read_foreign
 from hazard_ms.assets.intake.model import Model
 from hazard_ms.assets.user_models import confined
+from hazard_ms.spec.foreign.files import printable, read_foreign
 
 LARGEST_JSON = 256_000_000  # unpacked [bytes]; Objaverse describes 5,000 objects in one file of 60 MB [ours]
 DOWNLOAD = "python -m mani_skill.utils.download_asset"

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.assets.foreign import read_foreign
 from hazard_ms.assets.intake.model import Model, ModelPart
 from hazard_ms.assets.providers.base import DOWNLOAD, Provider, read_json
 from hazard_ms.assets.user_models import confined
+from hazard_ms.spec.foreign.files import read_foreign
 
 URDFS = ("mobility_cvx.urdf", "mobility_fixed.urdf")  # the first that is there
 TABLES = {

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from hazard_ms.assets.foreign import printable
+from hazard_ms.spec.foreign.files import printable
 
 LOG = "log.txt"  # a folder that holds one is a scene
 MOST_SCENES = 2000  # in one import

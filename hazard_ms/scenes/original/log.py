@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from hazard_ms.assets.foreign import printable
 from hazard_ms.scenes.original.axes import AXES, about, from_euler, looking, times
 from hazard_ms.scenes.original.reading import Record, read_commands
 from hazard_ms.scenes.original.things import Log, Thing
 from hazard_ms.spec import UPRIGHT
+from hazard_ms.spec.foreign.files import printable
 
 MOST_THINGS = 1000  # that one log may add
 IGNORED = frozenset(

@@ -18,7 +18,6 @@ from pathlib import Path
 
 import numpy as np
 
-from hazard_ms.assets.foreign import printable
 from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes, schema
 from hazard_ms.scenes.generate.arrangement import RESTING_HEIGHT
@@ -39,6 +38,7 @@ from hazard_ms.scenes.original.start import start
 from hazard_ms.scenes.original.street import place_of, street
 from hazard_ms.scenes.original.things import Log, Thing
 from hazard_ms.spec import Body, Fixture, Quat, Room, SceneSpec, Vec3
+from hazard_ms.spec.foreign.files import printable
 
 FLOOD_SIDES = {"x_max": "east", "x_min": "west", "z_max": "north", "z_min": "south"}
 LEDGE_DEPTH = 0.03  # a thing this far below the top of another is in it, not on it [m]

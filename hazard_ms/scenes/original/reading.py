@@ -6,15 +6,14 @@ A log holds one list of commands after the other, usually one on each line.
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
-from hazard_ms.assets.foreign import printable, read_foreign
-from hazard_ms.scenes.schema import unique_keys, whole_number
+from hazard_ms.spec.foreign.files import printable, read_foreign
+from hazard_ms.spec.foreign.plain import HOOKS
 
 LARGEST_FILE = 8_000_000  # [bytes]; the largest published log has 200,000
 FARTHEST = 10_000.0  # any number's absolute value, in its unit; ids are larger
@@ -122,9 +121,7 @@ def read_commands(path: Path) -> Iterator[Record]:
 def _values(path: Path) -> Iterator[tuple[int, Any]]:
     """The JSON values of a file one after the other, each with the line on which it starts."""
     text, shown = _text(path), printable(str(path))
-    decoder = json.JSONDecoder(
-        parse_constant=_not_finite, parse_int=whole_number, parse_float=_finite, object_pairs_hook=unique_keys
-    )
+    decoder = json.JSONDecoder(**HOOKS)
     at, line, counted = 0, 1, 0
     while (at := SPACE.match(text, at).end()) < len(text):  # type: ignore[union-attr]
         line, counted = line + text.count("\n", counted, at), at
@@ -151,14 +148,3 @@ def _text(path: Path) -> str:
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         raise ValueError(f"{shown}, line {line}: not UTF-8: {error.reason}") from None
-
-
-def _not_finite(word: str) -> NoReturn:
-    raise ValueError(f"numbers must be finite, got {word}")
-
-
-def _finite(digits: str) -> float:
-    number = float(digits)
-    if not math.isfinite(number):
-        raise ValueError(f"numbers must be finite, got {digits:.40}")
-    return number

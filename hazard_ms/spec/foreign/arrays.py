@@ -22,7 +22,7 @@ END, END_SIZE = b"PK\x05\x06", 22  # the record at the end of a zip archive that
 LARGE_END, LARGE_END_SIZE = (
     b"PK\x06\x07",
     20,
-)  # what stands before it in archives with sizes of 64 bits (APPNOTE.TXT 4.3.15)
+)  # before it where sizes have 64 bits (APPNOTE.TXT 4.3.15)
 
 
 def read_arrays(path: Path, most: int = MOST_UNPACKED) -> dict[str, NDArray[Any]]:

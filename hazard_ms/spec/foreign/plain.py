@@ -223,7 +223,7 @@ def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 # what a decoder of JSON is told, for numbers that are finite and short, and keys that differ
-HOOKS: dict[str, Callable[[Any], Any]] = {
+HOOKS: dict[str, Any] = {
     "parse_constant": _not_finite,
     "parse_int": _whole_number,
     "parse_float": _finite,

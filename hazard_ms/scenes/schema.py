@@ -108,4 +108,4 @@ def _wrong_name(text: str) -> str:
     return f"a name of at most {LONGEST_TEXT} letters, digits and _ . : - /"
 
 
-LIMITS = plain.Limits(farthest=FARTHEST, most_entries=MOST_THINGS, text=_wrong_name)
+LIMITS = plain.Limits(farthest=FARTHEST, as_float=True, most_entries=MOST_THINGS, text=_wrong_name)

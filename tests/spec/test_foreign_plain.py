@@ -6,7 +6,7 @@ import json
 import resource
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import pytest
 
@@ -22,22 +22,24 @@ class Inner:
 @dataclass(frozen=True)
 class Outer:
     count: int
-    share: float
+    share: Annotated[float, plain.Within(0, 2)]
     flag: bool
-    inner: tuple[Inner, ...]
+    inner: Annotated[tuple[Inner, ...], plain.Within(1, 3)]
     note: str | None = None
     times: dict[str, float] = field(default_factory=dict)
     rest: dict[str, Any] = field(default_factory=dict)
 
 
-WHOLE: dict[str, Any] = {"count": 3, "share": 1, "flag": True, "inner": [{"name": "a", "at": [0, 1.5]}]}
+WHOLE: dict[str, Any] = {"count": 3, "share": 1.0, "flag": True, "inner": [{"name": "a", "at": [0, 1.5]}]}
 
 
 def test_values_become_what_the_types_say() -> None:
     found = plain.made(Outer, {**WHOLE, "note": "n", "times": {"a": 1}, "rest": {"x": [1, {"y": None}]}}, "it")
     assert found == Outer(3, 1.0, True, (Inner("a", (0.0, 1.5)),), "n", {"a": 1.0}, {"x": [1, {"y": None}]})
-    assert type(found.share) is float
-    assert type(found.inner[0].at[0]) is float
+    assert type(found.inner[0].at[0]) is int
+    floats = plain.made(Outer, {**WHOLE, "share": 1}, "it", plain.Limits(as_float=True))
+    assert type(floats.share) is type(floats.inner[0].at[0]) is float
+    assert type(floats.count) is int
 
 
 @pytest.mark.parametrize(
@@ -57,6 +59,10 @@ def test_values_become_what_the_types_say() -> None:
         ({"times": {"a": "b"}}, "it.times.a must be a number"),
         ({"rest": {"a": [10**30]}}, r"it.rest.a\[0\] must be a whole number"),
         ({"other": 1}, "key of it must be one of"),
+        ({"note": "\ud800"}, r"it.note must be valid Unicode, got '\\ud800'"),
+        ({"inner": []}, "it.inner must be of length 1 to 3, got"),
+        ({"inner": 4 * [{"name": "a", "at": [0, 1.5]}]}, "it.inner must be of length 1 to 3, got a list of 4"),
+        ({"share": -0.1}, "it.share must be a number from 0 to 2, got -0.1"),
         ({"note": "\x1b" * 1_000_001}, r"got '\\x1b\\x1b"),
     ],
 )

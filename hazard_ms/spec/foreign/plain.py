@@ -29,9 +29,25 @@ class Limits:
     """The limits on values of one kind of file: the largest number either way, and what text and lists may hold."""
 
     farthest: float = 1e12
+    as_float: bool = False  # whether whole numbers become floats where these are meant
     longest_text: int = 1_000_000  # [characters]
     most_entries: int = 1_000_000  # of a list or an object
     text: Callable[[str], str] = lambda text: ""  # what is wrong with a text; empty: nothing
+
+
+@dataclass(frozen=True)
+class Within:
+    """The bounds of a number, or of the length of a text, a list or an object: `Annotated[int, Within(0, 9)]`."""
+
+    low: float
+    high: float
+
+    def check(self, value: Any, where: str) -> None:
+        """Raises ValueError that names the place for a value out of these bounds; None is in all bounds."""
+        number = isinstance(value, (int, float))
+        if value is not None and not self.low <= (value if number else len(value)) <= self.high:
+            what = "a number from" if number else "of length"
+            raise ValueError(f"{where} must be {what} {self.low:g} to {self.high:g}, got {_show(value)}")
 
 
 def parse(content: str | bytes, what: str) -> Any:
@@ -67,12 +83,16 @@ def made(kind: Any, value: Any, where: str, limits: Limits | None = None) -> Any
     """A value of the type `kind` from plain data that errors call `where`.
 
     `kind` is a frozen dataclass, a tuple, a dict with keys of text, a number, a truth value, text, one of these or
-    None, or Any. Raises ValueError that names the place of the first value that is of another type or past `limits`.
+    None, one of these `Within` bounds, or Any. Raises ValueError that names the place of the first value that is of another type or past `limits`.
     """
     limits = limits or Limits()
     if dataclasses.is_dataclass(kind):
         return _object(kind, value, where, limits)
     origin = typing.get_origin(kind)
+    if origin is typing.Annotated:
+        inner, bounds = typing.get_args(kind)
+        bounds.check(found := made(inner, value, where, limits), where)
+        return found
     if origin in (types.UnionType, typing.Union):
         (inner,) = (k for k in typing.get_args(kind) if k is not type(None))
         return None if value is None else made(inner, value, where, limits)
@@ -95,15 +115,23 @@ def _single(kind: Any, value: Any, where: str, limits: Limits) -> Any:
             raise ValueError(
                 f"{where} must be a {word} from {-limits.farthest:g} to {limits.farthest:g}, got {_show(value)}"
             )
-        return kind(value)
+        return float(value) if kind is float and limits.as_float else value
     if kind is bool and isinstance(value, bool):
         return value
     if kind is str and isinstance(value, str):
-        wrong = f"a text of at most {limits.longest_text} characters" if len(value) > limits.longest_text else ""
-        if wrong := wrong or limits.text(value):
+        long = f"a text of at most {limits.longest_text} characters" if len(value) > limits.longest_text else ""
+        if wrong := long or _not_unicode(value) or limits.text(value):
             raise ValueError(f"{where} must be {wrong}, got {_show(value)}")
         return value
     raise ValueError(f"{where} must be a {getattr(kind, '__name__', kind)}, got {_show(value)}")
+
+
+def _not_unicode(text: str) -> str:
+    try:
+        text.encode()
+    except UnicodeEncodeError:  # half of a surrogate pair, which JSON can hold
+        return "valid Unicode"
+    return ""
 
 
 def _object(kind: Any, value: Any, where: str, limits: Limits) -> Any:
@@ -159,7 +187,7 @@ def _check_count(value: Any, where: str, limits: Limits) -> None:
 @functools.lru_cache(maxsize=64)
 def _fields(kind: type) -> dict[str, tuple[Any, bool]]:
     """The fields of a dataclass: their types, and whether they must be given."""
-    hints = typing.get_type_hints(kind)
+    hints = typing.get_type_hints(kind, include_extras=True)
     missing = dataclasses.MISSING
     return {
         f.name: (hints[f.name], f.default is missing and f.default_factory is missing) for f in dataclasses.fields(kind)

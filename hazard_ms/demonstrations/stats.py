@@ -9,8 +9,8 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
-from hazard_ms.demonstrations.layout import FAILURES, MANIFEST, Entry
-from hazard_ms.demonstrations.reading import entries, read_episode
+from hazard_ms.demonstrations.layout import Entry, shelves
+from hazard_ms.demonstrations.reading import described, entries
 
 NUMBER = re.compile(r"\d+(\.\d+)?")
 
@@ -27,9 +27,8 @@ class Stats:
     @classmethod
     def of(cls, dataset: Path) -> Stats:
         """The numbers of a dataset. Raises ValueError for a dataset of another format."""
-        shelves = [shelf for shelf in (dataset, dataset / FAILURES) if (shelf / MANIFEST).exists()]
-        found = [(shelf / entry.name, entry) for shelf in shelves for entry in entries(shelf)]
-        meta = read_episode(found[0][0]).meta if found else {}
+        found = [(shelf / entry.name, entry) for shelf in shelves(dataset) for entry in entries(shelf)]
+        meta = described(found[0][0])[1] if found else {}
         return cls(dataset, tuple(entry for _, entry in found), tuple(folder for folder, _ in found), meta)
 
     @property

@@ -9,7 +9,7 @@ from pathlib import Path
 from hazard_ms.demonstrations import claims, store
 from hazard_ms.demonstrations.card import write_card
 from hazard_ms.demonstrations.layout import MANIFEST, Entry, datasets, files_of, plain, shelves
-from hazard_ms.demonstrations.reading import differences, entries, whole_entries
+from hazard_ms.demonstrations.reading import described, differences, entries, whole_entries
 from hazard_ms.machine.files import make_folder
 from hazard_ms.spec.foreign.files import folder_name
 
@@ -33,6 +33,7 @@ def merge(folders: Sequence[Path], output: Path) -> dict[Path, int]:
                 f"{shelf / entry.name} must be as its manifest says, got {', '.join(faults)}; "
                 f"see `hazard-ms demos repair`"
             )
+        described(shelf / entry.name)
         _check(place, known[place], shelf, entry)
         if entry.name not in known[place]:
             known[place][entry.name] = entry

@@ -152,6 +152,9 @@ def described(folder: Path) -> tuple[EpisodeResult, dict[str, Any]]:
     path = folder / EPISODE
     try:
         meta = read(path, LARGEST_EPISODE)
+    except ValueError as error:
+        raise DamagedDatasetError(f"{error}; see `hazard-ms demos repair`") from None
+    try:
         result = EpisodeResult.from_dict(meta.pop("result"))
         check_result(result)
         check_meta(meta)
@@ -174,7 +177,7 @@ def arrays(path: Path) -> dict[str, NDArray[Any]]:
     try:
         return Named(str(path), read_arrays(path, MOST_UNPACKED))
     except ValueError as error:
-        raise _damaged(path, "hold arrays", error) from None
+        raise DamagedDatasetError(f"{error}; see `hazard-ms demos repair`") from None
 
 
 def _damaged(path: Path, must: str, error: Exception) -> DamagedDatasetError:

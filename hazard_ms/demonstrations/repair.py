@@ -77,6 +77,8 @@ def _repaired(shelf: Path, aside: Path) -> Counter[str]:
     for folder in sorted(shelf.iterdir()):
         if not folder.is_dir() or folder.name.startswith(".") or folder.name in (FAILURES, DAMAGED, *kept):
             continue
+        if (folder / MANIFEST).exists() and not folder.is_symlink():
+            continue  # a dataset of its own
         try:
             if folder.name in listed:
                 raise DamagedDatasetError

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from hazard_ms.demonstrations.layout import FAILURES, Entry, datasets
+from hazard_ms.demonstrations.layout import FAILURES, MANIFEST, Entry, datasets
 from hazard_ms.demonstrations.reading import described, video_in
+from hazard_ms.demonstrations.sound import Named
 from hazard_ms.demonstrations.stats import Stats
 from hazard_ms.evaluation import page as episode_page
 from hazard_ms.evaluation.comparison import charts, curves
@@ -99,7 +100,7 @@ def _shown(stats: Stats, episodes: Sequence[Recorded]) -> dict[str, Any]:
     """What the template shows of a dataset."""
     results = [episode.result for episode in episodes]
     return {
-        "recipe": stats.entries[0].recipe,
+        "recipe": Named(f"the recipe in {stats.dataset / MANIFEST}", stats.entries[0].recipe),
         "numbers": stats.rows(),
         "value_chart": Markup(_value_chart(episodes)),
         "subtask_chart": _bars(_subtasks(results), "frames"),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.demonstrations.layout import DECISIONS, EPISODE, FRAMES, DamagedDatasetError
 from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.skills.options.options import COUNT
 from hazard_ms.spec.foreign.plain import Limits, made
 
 MOST_FRAMES = 100_000  # of an episode [ours]
@@ -79,6 +80,8 @@ def check_meta(meta: Mapping[str, Any]) -> None:
     for number, prompt in enumerate(meta.get("prompts", ())):
         made(str, prompt.get("text"), f"text of prompts[{number}]", LIMITS)
         made(dict[str, int], prompt.get("options"), f"options of prompts[{number}]", LIMITS)
+        if any(not 0 <= option < COUNT for option in prompt["options"].values()):
+            raise ValueError(f"options of prompts[{number}] must be from 0 to {COUNT - 1}, got others")
     if meta.get("fps", 1.0) <= 0 or meta.get("every", 0) < 0:
         raise ValueError(f"fps and every must not be negative, got {meta.get('fps')} and {meta.get('every')}")
 

@@ -10,6 +10,7 @@ import atexit
 import contextlib
 import fcntl
 import hashlib
+import io
 import json
 import os
 import shutil
@@ -65,24 +66,30 @@ def verified(folder: Path) -> Iterator[None]:
         yield
         if not _whole(folder, seal):
             with contextlib.suppress(ValueError):  # without a seal, the next process compiles again
-                write(seal, json.dumps(_digests(folder)))
+                write(seal, _sealed(folder))
 
 
 def _whole(folder: Path, seal: Path) -> bool:
     """Whether the files in `folder` are those that were sealed."""
-    try:
-        sealed = json.loads(seal.read_bytes())
-    except FileNotFoundError:
+    if not seal.exists():
         return not os.access(folder.parent, os.W_OK)  # who set up a read-only folder answers for it
-    except (OSError, ValueError):
+    wanted = _sealed(folder)
+    try:
+        with seal.open("rb") if seal.is_file() else contextlib.nullcontext(io.BytesIO()) as file:
+            return file.read(len(wanted) + 1) == wanted
+    except OSError:
         return False
-    return bool(sealed == _digests(folder))
 
 
-def _digests(folder: Path) -> dict[str, str]:
-    """The SHA-256 of each file in `folder`, by name; none where there is no folder."""
+def _sealed(folder: Path) -> bytes:
+    """The content of the seal of `folder`: the SHA-256 of each file in it, by name; none where there is no folder."""
     files = sorted(folder.iterdir()) if folder.is_dir() else []
-    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files if file.is_file()}
+    return json.dumps({file.name: _digest(file) for file in files if file.is_file()}).encode()
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 @contextlib.contextmanager

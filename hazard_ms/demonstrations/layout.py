@@ -34,8 +34,8 @@ RESERVED = (MANIFEST, CARD, FAILURES, DAMAGED)  # that no episode is called
 STATE_EVERY = 10  # frames from one restorable state to the next [ours]
 NO_LABEL = 65535  # of a pixel without a surface, in labels/
 MOST_LINES = 256_000_000  # of a manifest [bytes]; a line has 2 to 100 thousand [ours]
-LONGEST_LINE = 8_000_000  # of it [bytes] [ours]
-MOST_FILES, MOST_BYTES = 50_000, 2_000_000_000  # of an episode, pictures of depth among them [-], [bytes] [ours]
+LONGEST_LINE, MOST_VALUES = 4_000_000, 100_000  # of it [bytes], [-] [ours]
+MOST_FILES, MOST_BYTES = 20_000, 2_000_000_000  # of an episode, pictures of depth among them [-], [bytes] [ours]
 LABEL_SHIFT = 2  # pixels of labels/ hold the label of `sensing.camera` plus this: robot 0, structure 1, thing b b + 2
 
 
@@ -93,7 +93,8 @@ class Entry:
 
 def _row(line: str | bytes) -> dict[str, Any] | None:
     """The object with a format that a line of a manifest holds; None for one that is torn or absurd."""
-    if len(line) > LONGEST_LINE:
+    comma: Any = "," if isinstance(line, str) else b","
+    if len(line) > LONGEST_LINE or line.count(comma) > MOST_VALUES:
         return None
     try:
         row = foreign.parse(line, "a line")

@@ -36,7 +36,7 @@ from hazard_ms.spec.foreign.arrays import read_arrays
 from hazard_ms.spec.foreign.files import printable, read_foreign
 from hazard_ms.spec.foreign.plain import read
 
-LARGEST_EPISODE = 64_000_000  # of episode.json [bytes]; a prompt has 2 to 5 thousand [ours]
+LARGEST_EPISODE = 32_000_000  # of episode.json [bytes]; a prompt has 2 to 5 thousand [ours]
 MOST_UNPACKED = 200_000_000  # of each file of arrays [bytes]; all frames of a long episode have 20 million [ours]
 
 

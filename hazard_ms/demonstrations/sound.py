@@ -11,26 +11,22 @@ from numpy.typing import NDArray
 from hazard_ms.demonstrations.layout import DECISIONS, EPISODE, FRAMES, DamagedDatasetError
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.skills.options.options import COUNT
-from hazard_ms.spec.foreign.plain import Limits, made
 
 MOST_FRAMES = 100_000  # of an episode [ours]
 MOST_DECISIONS = 20_000  # likewise [ours]
-LIMITS = Limits(longest_text=200_000)
 Arrays = Mapping[str, NDArray[Any]]
 
 # types of the entries of episode.json; docs/demonstrations.md says what they mean
-META: dict[str, Any] = {
-    **dict.fromkeys(("teacher", "instruction", "robot", "control_mode", "reward_mode", "obs", "reason"), str),
-    **dict.fromkeys(("subtasks", "joints", "things", "targets", "verbs"), tuple[str, ...]),
-    **dict.fromkeys(("recipe", "seeds"), dict[str, Any]),
-    "prompts": tuple[dict[str, Any], ...],
-    "privileged": bool,
-    "fps": float,
-    "reach": float,
-    "every": int,
-    "format": int,
-    "hashes": dict[str, str],
-    "checksum": str,
+META: dict[str, tuple[type, ...]] = {
+    **dict.fromkeys(("teacher", "instruction", "robot", "control_mode", "reward_mode", "obs", "reason"), (str,)),
+    **dict.fromkeys(("subtasks", "joints", "things", "targets", "verbs"), (list, str)),
+    **dict.fromkeys(("recipe", "seeds"), (dict,)),
+    **dict.fromkeys(("fps", "reach"), (float,)),
+    **dict.fromkeys(("every", "format"), (int,)),
+    "prompts": (list, dict),
+    "privileged": (bool,),
+    "hashes": (dict, str),
+    "checksum": (str,),
 }
 # kinds of numpy's types, and shapes by letters, of the arrays that the package itself reads
 FRAME_ARRAYS = {
@@ -74,16 +70,25 @@ class Named(dict[str, Any]):
 
 def check_meta(meta: Mapping[str, Any]) -> None:
     """Check the types of what is there of episode.json, apart from its result. Raises ValueError."""
-    for name, kind in META.items():
-        if name in meta:
-            made(kind, meta[name], name, LIMITS)
+    for name, kinds in META.items():
+        if name in meta and not _is(meta[name], *kinds):
+            raise ValueError(f"{name} must be {' of '.join(kind.__name__ for kind in kinds)}, got another type")
     for number, prompt in enumerate(meta.get("prompts", ())):
-        made(str, prompt.get("text"), f"text of prompts[{number}]", LIMITS)
-        made(dict[str, int], prompt.get("options"), f"options of prompts[{number}]", LIMITS)
-        if any(not 0 <= option < COUNT for option in prompt["options"].values()):
+        options = prompt.get("options")
+        if not (_is(prompt.get("text"), str) and _is(options, dict, int) and len(options) <= COUNT):
+            raise ValueError(f"prompts[{number}] must have a text and options by letters, got others")
+        if not all(0 <= option < COUNT for option in options.values()):
             raise ValueError(f"options of prompts[{number}] must be from 0 to {COUNT - 1}, got others")
     if meta.get("fps", 1.0) <= 0 or meta.get("every", 0) < 0:
         raise ValueError(f"fps and every must not be negative, got {meta.get('fps')} and {meta.get('every')}")
+
+
+def _is(value: Any, kind: type, inner: type | None = None) -> bool:
+    """Whether a value is of a type, where whole numbers count as floats; and whether all entries are of `inner`."""
+    if type(value) is not kind and not (kind is float and type(value) is int):
+        return False
+    entries = value.values() if isinstance(value, dict) else value
+    return inner is None or all(type(entry) is inner for entry in entries)
 
 
 def check_result(result: EpisodeResult) -> None:

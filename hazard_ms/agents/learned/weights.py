@@ -30,6 +30,7 @@ ENDING = ".safetensors"
 LARGEST_STATE = 256_000_000  # of all that a training needs to go on [bytes]; the original's network: 12 million [ours]
 LARGEST, LARGEST_TOLD = 64_000_000, 4_000_000  # of both files [bytes]; the original's network has 3 million [ours]
 MOST_HAZARDS = 16  # of a task [ours]
+LIMITS = plain.Limits(most_entries=1000)  # of a shape [ours]
 
 
 def contents(policy: SetPolicy | MapPolicy, task: str, facts: Mapping[str, Any]) -> tuple[bytes, str]:
@@ -103,7 +104,7 @@ def _read(path: Path, task: str, made_by: str, kind: type[SetPolicy] | type[MapP
         for name, wanted in {**_version(kind), "task": task}.items():
             if facts.get(name) != wanted:
                 raise ValueError(f"{name} must be {wanted}, got {facts.get(name)!s:.100}")
-        shape = plain.made(MapShape if kind is MapPolicy else Shape, facts.get("shape"), "shape")
+        shape = plain.made(MapShape if kind is MapPolicy else Shape, facts.get("shape"), "shape", LIMITS)
         if len(shape.ranges) > MOST_HAZARDS or any(not low < high for low, high in shape.ranges):
             raise ValueError(f"ranges must be (low, high) of at most {MOST_HAZARDS} hazards, got {shape.ranges!r:.100}")
         numbers = _numbers(read_foreign(path, LARGEST))

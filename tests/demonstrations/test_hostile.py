@@ -149,9 +149,9 @@ def test_a_dataset_in_a_dataset_is_not_moved_aside(dataset: Path) -> None:
     assert len(entries(inner)) == 1 and not (dataset / "damaged").exists()
 
 
-@pytest.mark.parametrize("packed", [bomb((2**28,), 2**30), bomb((2**40,), 0)], ids=["bomb", "lie"])
-def test_arrays_are_counted_before_they_are_unpacked(dataset: Path, packed: bytes) -> None:
-    (dataset / entries(dataset)[0].name / FRAMES).write_bytes(packed)
+@pytest.mark.parametrize(("length", "content"), [(2**26, 2**28), (2**40, 0)])
+def test_arrays_are_counted_before_they_are_unpacked(dataset: Path, length: int, content: int) -> None:
+    (dataset / entries(dataset)[0].name / FRAMES).write_bytes(bomb((length,), content))
     folder = relisted(dataset)
     tracemalloc.start()
     try:

@@ -48,11 +48,13 @@ def choices(folder: Path, env_id: str, physics: str, layout: Encoder) -> Choices
     for number, demonstration in enumerate(_episodes(folder, env_id, physics)):
         decisions = demonstration.decisions
         features, option = decisions["features"], decisions["option"].astype(np.int64)
-        if features.ndim != 2 or features.shape[1] != layout.size or not np.isfinite(features).all():
+        if features.ndim != 2 or features.shape[1] != layout.size:
             raise ValueError(
-                f"features of an episode must be {layout.size} finite numbers, got {features.shape[1:]} in "
+                f"features of an episode must be {layout.size} numbers, got {features.shape[-1]} in "
                 f"{demonstration.folder}; record it again"
             )
+        if not np.isfinite(features).all():
+            raise ValueError(f"features of an episode must be finite, got others in {demonstration.folder}")
         if decisions["mask"].shape[1:] != (COUNT,):
             raise ValueError(f"mask must be of {COUNT} options, got another in {demonstration.folder}")
         mask = worthwhile(decisions["mask"])

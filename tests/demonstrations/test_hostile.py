@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 
 from hazard_ms.cli.__main__ import main
-from hazard_ms.demonstrations.export.lerobot_film import samples
 from hazard_ms.demonstrations.layout import (
     EPISODE,
     FAILURES,
@@ -28,10 +27,9 @@ from hazard_ms.demonstrations.layout import (
     hashes_of,
 )
 from hazard_ms.demonstrations.merging import merge
-from hazard_ms.demonstrations.reading import Demonstration, demonstrations, differences, entries, read_episode
+from hazard_ms.demonstrations.reading import demonstrations, differences, entries, read_episode
 from hazard_ms.demonstrations.repair import repair
 from hazard_ms.demonstrations.verify import verify
-from tests.worlds.recorded import film
 from tests.worlds.recordings import RECIPE, stored
 
 COMMANDS = (["verify"], ["stats"], ["show", "-o", "p.html"], ["merge", "-o", "m"], ["export", "-f", "tar", "-o", "t"])
@@ -221,29 +219,6 @@ def test_arrays_that_do_not_fit_each_other_are_refused(dataset: Path, frames: di
     np.savez_compressed(folder / FRAMES, **frames)
     with pytest.raises(DamagedDatasetError, match="must hold arrays that fit each other"):
         read_episode(folder)
-
-
-@pytest.mark.parametrize("content", [b"#EXTM3U\n#EXTINF:1\n/etc/passwd\n", b"", b"\0" * 4000])
-def test_a_film_that_is_none_is_refused(dataset: Path, content: bytes) -> None:
-    pytest.importorskip("av")
-    one = read_episode(dataset / entries(dataset)[0].name)
-    (one.folder / VIDEO).write_bytes(content)
-    with pytest.raises(ValueError, match=r"head\.mp4 must be a film"):
-        samples(one, 3)
-    film(one.folder / VIDEO, [20, 30, 40], 10)
-    assert samples(one, 2).shape == (2, 64, 64, 3)
-
-
-def test_a_film_of_large_pictures_is_not_decoded(dataset: Path) -> None:
-    av = pytest.importorskip("av")
-    one: Demonstration = read_episode(dataset / entries(dataset)[0].name)
-    with av.open(str(one.folder / VIDEO), "w") as file:
-        stream = file.add_stream("libx264", rate=10)
-        stream.width, stream.height, stream.pix_fmt = 2048, 1024, "yuv420p"
-        file.mux(stream.encode(av.VideoFrame.from_ndarray(np.zeros((1024, 2048, 3), np.uint8), format="rgb24")))
-        file.mux(stream.encode())
-    with pytest.raises(ValueError, match="must be h264 of at most 1048576 pixels, got h264, 2048 x 1024"):
-        samples(one, 1)
 
 
 def test_an_added_file_is_named_and_keeps_the_episode_from_being_read(dataset: Path) -> None:

@@ -22,6 +22,8 @@ from hazard_ms.machine.cache import home
 from hazard_ms.machine.files import write
 from hazard_ms.machine.progress import say
 
+READ_AT_ONCE = 1 << 20  # [bytes]
+
 
 def cache() -> str:
     """The folder of compiled kernels; one for this process alone if the usual one cannot be written."""
@@ -88,8 +90,11 @@ def _sealed(folder: Path) -> bytes:
 
 
 def _digest(path: Path) -> str:
+    found = hashlib.sha256()
     with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+        while part := file.read(READ_AT_ONCE):
+            found.update(part)
+    return found.hexdigest()
 
 
 @contextlib.contextmanager

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from hazard_ms.demonstrations.layout import CARD, FAILURES, FORMAT
+from hazard_ms.demonstrations.layout import CARD, FAILURES, FORMAT, MANIFEST
+from hazard_ms.demonstrations.sound import Named
 from hazard_ms.demonstrations.stats import Stats
 from hazard_ms.machine.files import write
 
@@ -46,7 +47,7 @@ def write_card(dataset: Path) -> None:
     found = Stats.of(dataset)
     if not found.entries:
         return
-    recipe = found.entries[0].recipe
+    recipe = Named(f"the recipe in {dataset / MANIFEST}", found.entries[0].recipe)
     write(
         dataset / CARD,
         TEXT.format(

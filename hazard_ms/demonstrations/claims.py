@@ -58,7 +58,7 @@ def tag(seed: int) -> str:
 def _taken(path: Path) -> int:
     """A locked descriptor of the file at `path`, made if need be. Raises BlockingIOError where it is locked."""
     while True:
-        opened = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        opened = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
         try:
             _lock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if path.exists() and os.path.samestat(os.stat(path), os.fstat(opened)):
@@ -71,7 +71,7 @@ def _taken(path: Path) -> int:
 
 @contextlib.contextmanager
 def _locked(path: Path, kind: int) -> Iterator[None]:
-    opened = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+    opened = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
     try:
         _lock(opened, kind)
         yield

@@ -19,6 +19,9 @@ from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
+from hazard_ms.spec.foreign import plain as foreign
+from hazard_ms.spec.foreign.files import folder_name, printable, sha256_of
+
 FORMAT = 1  # goes up when a file or an array changes its meaning
 
 MANIFEST, CARD = "manifest.jsonl", "README.md"
@@ -26,10 +29,13 @@ FAILURES, DAMAGED = "failures", "damaged"  # folders of a dataset
 EPISODE, DECISIONS, FRAMES, VIDEO = "episode.json", "decisions.npz", "frames.npz", "head.mp4"  # files of an episode
 DEPTH, LABELS, PRIVILEGED = "depth", "labels", "privileged"  # folders of an episode
 TRUTH = "truth.npz"  # in PRIVILEGED
-WHOLE = (EPISODE, DECISIONS, FRAMES)  # files that every episode has
+RESERVED = (MANIFEST, CARD, FAILURES, DAMAGED)  # that no episode is called
 
 STATE_EVERY = 10  # frames from one restorable state to the next [ours]
 NO_LABEL = 65535  # of a pixel without a surface, in labels/
+MOST_LINES = 256_000_000  # of a manifest [bytes]; a line has 2 to 100 thousand [ours]
+LONGEST_LINE, MOST_VALUES = 4_000_000, 100_000  # of it [bytes], [-] [ours]
+MOST_FILES, MOST_BYTES = 20_000, 2_000_000_000  # of an episode, pictures of depth among them [-], [bytes] [ours]
 LABEL_SHIFT = 2  # pixels of labels/ hold the label of `sensing.camera` plus this: robot 0, structure 1, thing b b + 2
 
 
@@ -64,19 +70,37 @@ class Entry:
 
     @classmethod
     def of_line(cls, line: str | bytes) -> Entry | None:
-        """The entry that `line` wrote; None for a line that is torn or damaged.
+        """The entry that `line` wrote; None for a line that is torn, damaged or impossible.
 
         Raises ValueError for an entry of another format.
         """
-        try:
-            row = json.loads(line)
-            number = row["format"]
-            if number == FORMAT:
-                made = cls(**{f.name: row[f.name] for f in fields(cls)})
-                return made if made.content == content_of(made.files) else None
-        except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
+        row = _row(line)
+        if row is None:
             return None
-        raise ValueError(f"the format of a dataset must be {FORMAT}, got {number!r:.100}; record it again")
+        if row["format"] != FORMAT:
+            raise ValueError(
+                f"the format of a dataset must be {FORMAT}, got {printable(repr(row['format']))[:100]}; record it again"
+            )
+        if any(f.name not in row for f in fields(cls)):
+            return None
+        try:
+            made: Entry = foreign.made(cls, {f.name: row[f.name] for f in fields(cls)}, "a line")
+            folder_name(made.name, "name")
+        except ValueError:
+            return None
+        return made if made.name not in RESERVED and made.content == content_of(made.files) else None
+
+
+def _row(line: str | bytes) -> dict[str, Any] | None:
+    """The object with a format that a line of a manifest holds; None for one that is torn or absurd."""
+    comma: Any = "," if isinstance(line, str) else b","
+    if len(line) > LONGEST_LINE or line.count(comma) > MOST_VALUES:
+        return None
+    try:
+        row = foreign.parse(line, "a line")
+    except ValueError:
+        return None
+    return row if isinstance(row, dict) and "format" in row else None
 
 
 def content_of(hashes: dict[str, str]) -> str:
@@ -85,13 +109,47 @@ def content_of(hashes: dict[str, str]) -> str:
 
 
 def files_of(folder: Path) -> dict[str, Path]:
-    """All files of an episode's folder by their paths in it, as in an `Entry`."""
-    return {path.relative_to(folder).as_posix(): path for path in sorted(folder.rglob("*")) if path.is_file()}
+    """All files of an episode's folder by their paths in it, as in an `Entry`; none where there is no folder.
+
+    Links are not followed. Raises DamagedDatasetError for a folder that is one, for anything in it but folders and
+    regular files, for MOST_FILES and MOST_BYTES, and for what cannot be read.
+    """
+    if folder.is_symlink():
+        raise DamagedDatasetError(f"{folder} must be a folder, got a link")
+    found: dict[str, Path] = {}
+    size, waiting = 0, [folder] if folder.is_dir() else []
+    try:
+        while waiting:
+            for each in os.scandir(waiting.pop()):
+                path = Path(each.path)
+                if each.is_dir(follow_symlinks=False):
+                    waiting.append(path)
+                    continue
+                if not each.is_file(follow_symlinks=False):
+                    raise DamagedDatasetError(f"{path} must be a regular file, got a link, a pipe or a device")
+                found[path.relative_to(folder).as_posix()] = path
+                size += each.stat(follow_symlinks=False).st_size
+                if len(found) > MOST_FILES or size > MOST_BYTES:
+                    raise DamagedDatasetError(f"{folder} must have at most {MOST_FILES} files of {MOST_BYTES} bytes")
+    except OSError as error:
+        raise DamagedDatasetError(f"{error.filename} cannot be read: {error.strerror}") from None
+    return dict(sorted(found.items(), key=lambda entry: entry[1]))
 
 
 def hashes_of(folder: Path) -> dict[str, str]:
-    """The SHA-256 of each file of an episode's folder. Raises OSError for files that cannot be read."""
-    return {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in files_of(folder).items()}
+    """The SHA-256 of each file of an episode's folder. Raises DamagedDatasetError as `files_of` does."""
+    try:
+        return {name: sha256_of(path) for name, path in files_of(folder).items()}
+    except DamagedDatasetError:
+        raise
+    except ValueError as error:
+        raise DamagedDatasetError(str(error)) from None
+
+
+def shelves(dataset: Path) -> list[Path]:
+    """The folders of a dataset that have a manifest: its own, and that of what was not kept. Links count for none."""
+    found = [dataset, dataset / FAILURES]
+    return [shelf for shelf in found if (shelf / MANIFEST).exists() and (shelf == dataset or not shelf.is_symlink())]
 
 
 def name_of(scene: str, seed: int) -> str:

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from hazard_ms.demonstrations import claims, store
 from hazard_ms.demonstrations.card import write_card
-from hazard_ms.demonstrations.layout import FAILURES, MANIFEST, Entry, datasets, plain
-from hazard_ms.demonstrations.reading import differences, entries
+from hazard_ms.demonstrations.layout import MANIFEST, Entry, datasets, files_of, plain, shelves
+from hazard_ms.demonstrations.reading import described, differences, entries, whole_entries
 from hazard_ms.machine.files import make_folder
+from hazard_ms.spec.foreign.files import folder_name
 
 
 def merge(folders: Sequence[Path], output: Path) -> dict[Path, int]:
@@ -18,19 +19,21 @@ def merge(folders: Sequence[Path], output: Path) -> dict[Path, int]:
 
     What is there already is not copied again. Returns how many were copied into each dataset. Raises ValueError for
     datasets of another format, for those of one task and agent that were made by different recipes, for two different
-    episodes of one name, and for episodes that are not as they were written; nothing is copied then.
+    episodes of one name, for names that lead elsewhere, and for manifests and episodes that are not as they were
+    written; nothing is copied then.
     """
-    sources = [(shelf, entry) for folder in folders for shelf in _shelves(folder) for entry in entries(shelf)]
-    places = {output / str(e.recipe["env_id"]) / plain(str(e.recipe["agent"])) for _, e in sources}
-    known = {place: {e.name: e for shelf in _inside(place) for e in entries(shelf)} for place in places}
+    sources = [(shelf, entry) for folder in folders for shelf in _shelves(folder) for entry in whole_entries(shelf)]
+    places = {_place(output, shelf, entry) for shelf, entry in sources}
+    known = {place: {e.name: e for shelf in shelves(place) for e in entries(shelf)} for place in places}
     new: list[tuple[Path, Path, Entry]] = []
     for shelf, entry in sources:
-        place = output / str(entry.recipe["env_id"]) / plain(str(entry.recipe["agent"]))
+        place = _place(output, shelf, entry)
         if faults := differences(shelf / entry.name, entry):
             raise ValueError(
                 f"{shelf / entry.name} must be as its manifest says, got {', '.join(faults)}; "
                 f"see `hazard-ms demos repair`"
             )
+        described(shelf / entry.name)
         _check(place, known[place], shelf, entry)
         if entry.name not in known[place]:
             known[place][entry.name] = entry
@@ -46,8 +49,13 @@ def _shelves(folder: Path) -> list[Path]:
     return list(datasets(folder, failures=True))
 
 
-def _inside(dataset: Path) -> list[Path]:
-    return [shelf for shelf in (dataset, dataset / FAILURES) if (shelf / MANIFEST).exists()]
+def _place(output: Path, shelf: Path, entry: Entry) -> Path:
+    """The dataset in `output` for an episode of `shelf`. Raises ValueError for names that no folder can have."""
+    names = [entry.recipe.get(key) for key in ("env_id", "agent")]
+    if not all(isinstance(name, str) for name in names):
+        raise ValueError(f"the recipe of {entry.name} must name env_id and agent, got others in {shelf / MANIFEST}")
+    task, agent = str(names[0]), plain(str(names[1]))
+    return output / folder_name(task, f"env_id in {shelf / MANIFEST}") / folder_name(agent, f"agent in {shelf}")
 
 
 def _check(place: Path, known: dict[str, Entry], shelf: Path, entry: Entry) -> None:
@@ -70,5 +78,7 @@ def _copy(source: Path, place: Path, entry: Entry) -> None:
         if not mine:
             raise ValueError(f"{place} must not be written by another process meanwhile, got {entry.name}")
         part = store.begin(place, entry.seed)
-        shutil.copytree(source, part, dirs_exist_ok=True)
+        for name, path in files_of(source).items():
+            (part / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, part / name, follow_symlinks=False)
         store.publish(part, place, entry)

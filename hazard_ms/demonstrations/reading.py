@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.demonstrations.layout import (
@@ -16,14 +14,30 @@ from hazard_ms.demonstrations.layout import (
     EPISODE,
     FRAMES,
     MANIFEST,
+    MOST_LINES,
     PRIVILEGED,
     TRUTH,
     VIDEO,
     DamagedDatasetError,
     Entry,
+    files_of,
     hashes_of,
 )
+from hazard_ms.demonstrations.sound import (
+    TRUTH_ARRAYS,
+    Named,
+    check_arrays,
+    check_meta,
+    check_result,
+    check_shapes,
+)
 from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.spec.foreign.arrays import read_arrays
+from hazard_ms.spec.foreign.files import printable, read_foreign
+from hazard_ms.spec.foreign.plain import read
+
+LARGEST_EPISODE = 32_000_000  # of episode.json [bytes]; a prompt has 2 to 5 thousand [ours]
+MOST_UNPACKED = 200_000_000  # of each file of arrays [bytes]; all frames of a long episode have 20 million [ours]
 
 
 @dataclass(frozen=True)
@@ -39,12 +53,20 @@ class Demonstration:
     @property
     def video(self) -> Path | None:
         """The film of the head camera, None where no pictures were recorded."""
-        path = self.folder / VIDEO
-        return path if path.exists() else None
+        return video_in(self.folder)
 
     def privileged(self) -> dict[str, NDArray[Any]]:
-        """The arrays [N, ...] that only a privileged teacher knows, with positions in [m]."""
-        return arrays(self.folder / PRIVILEGED / TRUTH)
+        """The arrays [N, ...] that only a privileged teacher knows, with positions in [m].
+
+        Raises DamagedDatasetError where they cannot be read, or do not fit the decisions.
+        """
+        path = self.folder / PRIVILEGED / TRUTH
+        found, mask = arrays(path), self.decisions.get("mask")
+        try:
+            check_shapes(found, TRUTH_ARRAYS, TRUTH, {} if mask is None else dict(zip("NO", mask.shape, strict=False)))
+        except ValueError as error:
+            raise _damaged(path, "fit its decisions", error) from None
+        return found
 
 
 def demonstrations(folder: Path) -> Iterator[Demonstration]:
@@ -71,21 +93,40 @@ def entries(folder: Path) -> list[Entry]:
 
     Raises ValueError for a folder without a dataset, and for a dataset of another format.
     """
+    found = (entry for _, entry in numbered(folder))
+    return list({entry.name: entry for entry in found if entry is not None}.values())
+
+
+def numbered(folder: Path) -> Iterator[tuple[int, Entry | None]]:
+    """The lines of a dataset's manifest that are not empty, with their numbers from 1; None for those that are damaged.
+
+    Raises ValueError as `entries` does.
+    """
     path = folder / MANIFEST
     try:
-        lines = path.read_bytes().splitlines()
-    except OSError as error:
-        raise ValueError(f"folder must be a dataset with a {MANIFEST}, got {folder}: {error.strerror}") from None
-    found = (Entry.of_line(line) for line in lines)
-    return list({entry.name: entry for entry in found if entry is not None}.values())
+        lines = read_foreign(path, MOST_LINES).splitlines()
+    except ValueError as error:
+        raise ValueError(f"folder must be a dataset with a {MANIFEST}, got {folder}: {error}") from None
+    yield from ((number, Entry.of_line(line)) for number, line in enumerate(lines, 1) if line)
+
+
+def whole_entries(folder: Path) -> list[Entry]:
+    """The lines of a dataset's manifest, as `entries` gives them. Raises DamagedDatasetError if one is damaged, too."""
+    for number, entry in numbered(folder):
+        if entry is None:
+            raise DamagedDatasetError(
+                f"{folder / MANIFEST} must be whole, got a damaged line {number}; `hazard-ms demos repair {folder}` "
+                "puts it in order"
+            )
+    return entries(folder)
 
 
 def differences(folder: Path, entry: Entry) -> list[str]:
     """The differences between the files of an episode and its manifest, in words; empty if there are none."""
     try:
         now = hashes_of(folder)
-    except OSError as error:
-        return [f"{error.filename}: {error.strerror}"]
+    except DamagedDatasetError as error:
+        return [str(error)]
     if not now:
         return [f"no folder {entry.name}"]
     made = [f"no {name}" for name in entry.files.keys() - now.keys()]
@@ -96,26 +137,49 @@ def differences(folder: Path, entry: Entry) -> list[str]:
 
 def read_episode(folder: Path) -> Demonstration:
     """The episode in a folder, whatever a manifest says. Raises DamagedDatasetError for files that cannot be read."""
+    result, meta = described(folder)
+    decisions, frames = arrays(folder / DECISIONS), arrays(folder / FRAMES)
+    try:
+        check_arrays(meta, decisions, frames)
+    except ValueError as error:
+        raise _damaged(folder, "hold arrays that fit each other", error) from None
+    return Demonstration(folder, result, meta, decisions, frames)
+
+
+def described(folder: Path) -> tuple[EpisodeResult, dict[str, Any]]:
+    """What episode.json in a folder says: the result, and all else. Raises DamagedDatasetError as `read_episode`."""
+    files_of(folder)
     path = folder / EPISODE
     try:
-        meta = json.loads(path.read_bytes())
+        meta = read(path, LARGEST_EPISODE)
+    except ValueError as error:
+        raise DamagedDatasetError(f"{error}; see `hazard-ms demos repair`") from None
+    try:
         result = EpisodeResult.from_dict(meta.pop("result"))
-    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
-        raise DamagedDatasetError(
-            f"{path} must describe an episode, got {type(error).__name__}: {error}; see `hazard-ms demos repair`"
-        ) from None
-    return Demonstration(folder, result, meta, arrays(folder / DECISIONS), arrays(folder / FRAMES))
+        check_result(result)
+        check_meta(meta)
+    except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError) as error:
+        raise _damaged(path, "describe an episode", error) from None
+    return result, Named(str(path), meta)
+
+
+def video_in(folder: Path) -> Path | None:
+    """The film of the head camera in the folder of an episode; None where there is none, or a link."""
+    path = folder / VIDEO
+    return path if path.is_file() and not path.is_symlink() else None
 
 
 def arrays(path: Path) -> dict[str, NDArray[Any]]:
     """All arrays of a file, [...] each, in units [SI] that docs/demonstrations.md lists.
 
-    Raises DamagedDatasetError where they cannot be read.
+    Raises DamagedDatasetError where they cannot be read; asking for one that the file lacks raises it, too.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
-            return dict(file)
-    except Exception as error:  # numpy and zipfile raise many kinds
-        raise DamagedDatasetError(
-            f"{path} must hold arrays, got {type(error).__name__}: {error}; see `hazard-ms demos repair`"
-        ) from None
+        return Named(str(path), read_arrays(path, MOST_UNPACKED))
+    except ValueError as error:
+        raise DamagedDatasetError(f"{error}; see `hazard-ms demos repair`") from None
+
+
+def _damaged(path: Path, must: str, error: Exception) -> DamagedDatasetError:
+    told = printable(f"{type(error).__name__}: {error}")
+    return DamagedDatasetError(f"{path} must {must}, got {told:.300}; see `hazard-ms demos repair`")

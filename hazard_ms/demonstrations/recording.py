@@ -15,7 +15,7 @@ from tqdm import tqdm
 from hazard_ms.agents.base import agent, check_name
 from hazard_ms.demonstrations import claims, store
 from hazard_ms.demonstrations.card import write_card
-from hazard_ms.demonstrations.layout import DECISIONS, FAILURES, FRAMES, MANIFEST, PRIVILEGED, TRUTH, Entry
+from hazard_ms.demonstrations.layout import DECISIONS, FAILURES, FRAMES, MANIFEST, PRIVILEGED, TRUTH, Entry, shelves
 from hazard_ms.demonstrations.options import RecordOptions
 from hazard_ms.demonstrations.reading import entries
 from hazard_ms.demonstrations.repair import repair
@@ -80,8 +80,7 @@ def recorded(dataset: Path, recipe: dict[str, Any]) -> list[Entry]:
     Raises ValueError for one whose recipe is another one, and for one of another version of hazard_ms.
     """
     ours = versions()["hazard-ms"]
-    shelves = [shelf for shelf in (dataset, dataset / FAILURES) if (shelf / MANIFEST).exists()]
-    found = [entry for shelf in shelves for entry in entries(shelf)]
+    found = [entry for shelf in shelves(dataset) for entry in entries(shelf)]
     for entry in found:
         if (theirs := entry.versions.get("hazard-ms", ours)) != ours:
             raise ValueError(

@@ -15,12 +15,14 @@ from hazard_ms.demonstrations.layout import (
     EPISODE,
     FAILURES,
     MANIFEST,
+    MOST_LINES,
     DamagedDatasetError,
     Entry,
 )
 from hazard_ms.demonstrations.reading import differences, entries
 from hazard_ms.demonstrations.store import entry_of, parts
 from hazard_ms.machine.files import write
+from hazard_ms.spec.foreign.files import read_foreign
 
 KEPT, ENTERED, MOVED, MISSING, REMOVED = "whole", "entered", "moved aside", "missing", "unfinished"
 CLAIM = re.compile(r"\.s(\d+)\.(lock|part-\d+)")  # names of what an unfinished episode leaves
@@ -30,8 +32,12 @@ def repair(dataset: Path) -> Counter[str]:
     """Make manifests and folders of a dataset agree; nobody else's unfinished episodes are touched.
 
     Whole folders without a line are entered, damaged ones moved to damaged/, lines without a folder dropped, what
-    killed processes left is deleted. Returns how many there were of each kind.
+    killed processes left is deleted. Returns how many there were of each kind. Raises ValueError for a link in place of
+    one of the dataset's own folders.
     """
+    for name in (FAILURES, DAMAGED):
+        if (dataset / name).is_symlink():
+            raise ValueError(f"{dataset / name} must be a folder, got a link; delete it")
     found: Counter[str] = Counter()
     with repairing(dataset):
         for shelf in (dataset, dataset / FAILURES):
@@ -47,7 +53,9 @@ def repair(dataset: Path) -> Counter[str]:
 
 def broken_datasets(folder: Path) -> list[Path]:
     """The datasets in `folder`, also those without a manifest. Raises ValueError where there are none."""
-    found = {path.parent for path in folder.rglob(MANIFEST)} | {path.parent.parent for path in folder.rglob(EPISODE)}
+    walked = [(Path(path), files) for path, _, files in os.walk(folder)]  # which follows no links
+    found = {path for path, files in walked if MANIFEST in files}
+    found |= {path.parent for path, files in walked if EPISODE in files and path != folder}
     made = sorted(path for path in found if path.name not in (FAILURES, DAMAGED))
     if not made:
         raise ValueError(f"folder must hold a dataset of `hazard-ms demos record`, got {folder}")
@@ -58,7 +66,7 @@ def _repaired(shelf: Path, aside: Path) -> Counter[str]:
     """Put the manifest of one folder of episodes in order; what is damaged goes into `aside`."""
     found: Counter[str] = Counter()
     path = shelf / MANIFEST
-    before = path.read_bytes() if path.exists() else b""
+    before = read_foreign(path, MOST_LINES) if path.exists() else b""
     listed = {entry.name: entry for entry in entries(shelf)} if before else {}
     kept: dict[str, Entry] = {}
     for name, entry in listed.items():
@@ -69,10 +77,15 @@ def _repaired(shelf: Path, aside: Path) -> Counter[str]:
     for folder in sorted(shelf.iterdir()):
         if not folder.is_dir() or folder.name.startswith(".") or folder.name in (FAILURES, DAMAGED, *kept):
             continue
+        if (folder / MANIFEST).exists() and not folder.is_symlink():
+            continue  # a dataset of its own
         try:
             if folder.name in listed:
                 raise DamagedDatasetError
-            kept[folder.name] = replace(entry_of(folder), name=folder.name)
+            entry = replace(entry_of(folder), name=folder.name)
+            if Entry.of_line(entry.line()) != entry:
+                raise DamagedDatasetError  # it could not be read again
+            kept[folder.name] = entry
             found[ENTERED] += 1
         except DamagedDatasetError:
             _move(folder, aside)

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from hazard_ms.demonstrations.layout import FAILURES, Entry, datasets
-from hazard_ms.demonstrations.reading import read_episode
+from hazard_ms.demonstrations.layout import FAILURES, MANIFEST, Entry, datasets
+from hazard_ms.demonstrations.reading import described, video_in
+from hazard_ms.demonstrations.sound import Named
 from hazard_ms.demonstrations.stats import Stats
 from hazard_ms.evaluation import page as episode_page
 from hazard_ms.evaluation.comparison import charts, curves
@@ -90,8 +91,8 @@ def _datasets(folder: Path) -> list[Path]:
 def _episodes(stats: Stats, films: int) -> list[Recorded]:
     made = []
     for number, (entry, folder) in enumerate(zip(stats.entries, stats.folders, strict=True)):
-        read = read_episode(folder)
-        made.append(Recorded(entry, read.result, read.meta["reach"], read.video, number < films))
+        result, meta = described(folder)
+        made.append(Recorded(entry, result, meta["reach"], video_in(folder), number < films))
     return made
 
 
@@ -99,7 +100,7 @@ def _shown(stats: Stats, episodes: Sequence[Recorded]) -> dict[str, Any]:
     """What the template shows of a dataset."""
     results = [episode.result for episode in episodes]
     return {
-        "recipe": stats.entries[0].recipe,
+        "recipe": Named(f"the recipe in {stats.dataset / MANIFEST}", stats.entries[0].recipe),
         "numbers": stats.rows(),
         "value_chart": Markup(_value_chart(episodes)),
         "subtask_chart": _bars(_subtasks(results), "frames"),

@@ -9,8 +9,8 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
-from hazard_ms.demonstrations.layout import FAILURES, MANIFEST, Entry
-from hazard_ms.demonstrations.reading import entries, read_episode
+from hazard_ms.demonstrations.layout import Entry, shelves
+from hazard_ms.demonstrations.reading import described, entries, numbered
 
 NUMBER = re.compile(r"\d+(\.\d+)?")
 
@@ -23,14 +23,15 @@ class Stats:
     entries: tuple[Entry, ...]
     folders: tuple[Path, ...]
     meta: dict[str, Any]
+    damaged: int = 0  # lines of its manifests that cannot be read
 
     @classmethod
     def of(cls, dataset: Path) -> Stats:
         """The numbers of a dataset. Raises ValueError for a dataset of another format."""
-        shelves = [shelf for shelf in (dataset, dataset / FAILURES) if (shelf / MANIFEST).exists()]
-        found = [(shelf / entry.name, entry) for shelf in shelves for entry in entries(shelf)]
-        meta = read_episode(found[0][0]).meta if found else {}
-        return cls(dataset, tuple(entry for _, entry in found), tuple(folder for folder, _ in found), meta)
+        found = [(shelf / entry.name, entry) for shelf in shelves(dataset) for entry in entries(shelf)]
+        meta = described(found[0][0])[1] if found else {}
+        damaged = sum(entry is None for shelf in shelves(dataset) for _, entry in numbered(shelf))
+        return cls(dataset, tuple(entry for _, entry in found), tuple(folder for folder, _ in found), meta, damaged)
 
     @property
     def kept(self) -> tuple[Entry, ...]:
@@ -57,6 +58,8 @@ class Stats:
         ]
         if self.kept:
             rows.insert(1, ("mean value of those", f"{100 * fmean(entry.value for entry in self.kept):.1f} %"))
+        if self.damaged:
+            rows.insert(0, ("damaged lines of manifests", f"{self.damaged}; see `hazard-ms demos verify`"))
         times = [entry.seconds for entry in self.entries if entry.seconds]
         if times:
             again = fmean(seconds.get("verify", 0.0) for seconds in times)

@@ -50,8 +50,9 @@ def begin(dataset: Path, seed: int) -> Path:
 
 
 def parts(dataset: Path, seed: int | None = None) -> Iterator[Path]:
-    """Folders of episodes that are not finished: of one `seed`, or of all."""
-    yield from sorted(dataset.glob(f"{'.s*' if seed is None else tag(seed)}.part-*"))
+    """Folders of episodes that are not finished: of one `seed`, or of all. Links are none."""
+    found = sorted(dataset.glob(f"{'.s*' if seed is None else tag(seed)}.part-*"))
+    yield from (path for path in found if path.is_dir() and not path.is_symlink())
 
 
 def put_arrays(path: Path, arrays: dict[str, NDArray[Any]]) -> None:
@@ -79,7 +80,7 @@ def entry_of(folder: Path) -> Entry:
     row = {"result": read.result.to_dict(), **read.meta}
     found, hashes = row.pop(CHECKSUM, ""), hashes_of(folder)
     others = {name: digest for name, digest in hashes.items() if name != EPISODE}
-    if found != _checksum(row) or others != read.meta.get("hashes") or row["format"] != FORMAT:
+    if found != _checksum(row) or others != read.meta.get("hashes") or row.get("format") != FORMAT:
         raise DamagedDatasetError(f"{folder} must hold the files that its {EPISODE} lists, got others")
     result = read.result
     return Entry(
@@ -104,6 +105,8 @@ def publish(part: Path, dataset: Path, entry: Entry) -> Path:
     """
     shelf = dataset / FAILURES if entry.reason else dataset
     shelf.mkdir(exist_ok=True)
+    if shelf != dataset and shelf.is_symlink():
+        raise OSError(f"{shelf} must be a folder, got a link")
     for path in [*files_of(part).values(), *(p for p in part.rglob("*") if p.is_dir()), part]:
         flush(path)
     with publishing(dataset):
@@ -119,7 +122,7 @@ def append(shelf: Path, entry: Entry) -> None:
 
     Raises OSError where it cannot be written whole.
     """
-    opened = os.open(shelf / MANIFEST, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
+    opened = os.open(shelf / MANIFEST, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW, 0o666)
     try:
         size = os.fstat(opened).st_size
         torn = size > 0 and os.pread(opened, 1, size - 1) != b"\n"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from hazard_ms.demonstrations.layout import DAMAGED, FAILURES, MANIFEST, DamagedDatasetError, Entry, datasets
-from hazard_ms.demonstrations.reading import differences, entries, read_episode
+from hazard_ms.demonstrations.reading import differences, entries, numbered, read_episode
 from hazard_ms.demonstrations.store import entry_of, parts
 from hazard_ms.evaluation.replay import EXACT, compare, job_of
 from hazard_ms.evaluation.spread import spread
@@ -36,10 +36,9 @@ def verify(folder: Path, replay: bool = False, workers: int = 0, load: tuple[str
 
 def faults(shelf: Path) -> Iterator[tuple[str, str]]:
     """The faults of a dataset, or of its failures: the name of a file or folder, and what is wrong with it."""
-    lines = (shelf / MANIFEST).read_bytes().splitlines()
-    for number, line in enumerate(lines, 1):
-        if line and Entry.of_line(line) is None:
-            yield MANIFEST, f"line {number} is torn or damaged"
+    for number, read in numbered(shelf):
+        if read is None:
+            yield MANIFEST, f"line {number} is torn, damaged or impossible"
     listed = {entry.name: entry for entry in entries(shelf)}
     for name, entry in listed.items():
         found = differences(shelf / name, entry)
@@ -48,7 +47,9 @@ def faults(shelf: Path) -> Iterator[tuple[str, str]]:
         elif unlike := _unlike(shelf / name, entry):
             yield name, unlike
     for path in sorted(shelf.iterdir()):
-        if path.is_dir() and not path.name.startswith(".") and path.name not in (FAILURES, DAMAGED, *listed):
+        if path.name in (FAILURES, DAMAGED) and path.is_symlink():
+            yield path.name, "it must be a folder, got a link"
+        elif path.is_dir() and not path.name.startswith(".") and path.name not in (FAILURES, DAMAGED, *listed):
             yield path.name, f"it is not in {MANIFEST}"
     for path in parts(shelf):
         yield path.name, "an unfinished episode, or one that is being recorded"

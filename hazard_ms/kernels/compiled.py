@@ -10,6 +10,7 @@ import atexit
 import contextlib
 import fcntl
 import hashlib
+import io
 import json
 import os
 import shutil
@@ -20,6 +21,8 @@ from pathlib import Path
 from hazard_ms.machine.cache import home
 from hazard_ms.machine.files import write
 from hazard_ms.machine.progress import say
+
+READ_AT_ONCE = 1 << 20  # [bytes]
 
 
 def cache() -> str:
@@ -65,24 +68,33 @@ def verified(folder: Path) -> Iterator[None]:
         yield
         if not _whole(folder, seal):
             with contextlib.suppress(ValueError):  # without a seal, the next process compiles again
-                write(seal, json.dumps(_digests(folder)))
+                write(seal, _sealed(folder))
 
 
 def _whole(folder: Path, seal: Path) -> bool:
     """Whether the files in `folder` are those that were sealed."""
-    try:
-        sealed = json.loads(seal.read_bytes())
-    except FileNotFoundError:
+    if not seal.exists():
         return not os.access(folder.parent, os.W_OK)  # who set up a read-only folder answers for it
-    except (OSError, ValueError):
+    wanted = _sealed(folder)
+    try:
+        with seal.open("rb") if seal.is_file() else contextlib.nullcontext(io.BytesIO()) as file:
+            return file.read(len(wanted) + 1) == wanted
+    except OSError:
         return False
-    return bool(sealed == _digests(folder))
 
 
-def _digests(folder: Path) -> dict[str, str]:
-    """The SHA-256 of each file in `folder`, by name; none where there is no folder."""
+def _sealed(folder: Path) -> bytes:
+    """The content of the seal of `folder`: the SHA-256 of each file in it, by name; none where there is no folder."""
     files = sorted(folder.iterdir()) if folder.is_dir() else []
-    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files if file.is_file()}
+    return json.dumps({file.name: _digest(file) for file in files if file.is_file()}).encode()
+
+
+def _digest(path: Path) -> str:
+    found = hashlib.sha256()
+    with path.open("rb") as file:
+        while part := file.read(READ_AT_ONCE):
+            found.update(part)
+    return found.hexdigest()
 
 
 @contextlib.contextmanager

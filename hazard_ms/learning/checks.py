@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import io
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
-import torch
-
+from hazard_ms.agents.learned.weights import unpacked_state
 from hazard_ms.learning.settings import Settings
 
 
@@ -25,7 +24,10 @@ class Check:
 
 def curve_of(packed: bytes) -> list[Check]:
     """The curve of a training up to where its state was saved. Raises errors of many kinds for anything else."""
-    return [Check(**check) for check in torch.load(io.BytesIO(packed), weights_only=True)["curve"]]
+    found = [Check(**check) for check in unpacked_state(packed)["curve"]]
+    if not all(isinstance(value, int | float) and math.isfinite(value) for check in found for value in astuple(check)):
+        raise ValueError("the curve of a training must hold finite numbers, got others")
+    return found
 
 
 def ended(curve: Sequence[Check], settings: Settings, decisions: int, minutes: float) -> bool:

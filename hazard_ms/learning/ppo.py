@@ -21,7 +21,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 
 from hazard_ms.agents.learned.map_policy import MapPolicy, MapShape
 from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
-from hazard_ms.agents.learned.weights import stored
+from hazard_ms.agents.learned.weights import stored, unpacked_state
 from hazard_ms.learning.actor_critic import ActorCritic
 from hazard_ms.learning.checks import Check, curve_of, ended
 from hazard_ms.learning.cloning import JUDGE, scores
@@ -147,7 +147,7 @@ class Learner:
     def resume(self, packed: bytes) -> None:
         """Go on from what `saved` gave. Raises ValueError for anything else."""
         try:
-            state = torch.load(io.BytesIO(packed), weights_only=True)
+            state = unpacked_state(packed)
             self.curve = curve_of(packed)
             self.model.policy.load_state_dict(state["policy"])
             self.model.policy.optimizer.load_state_dict(state["optimiser"])

@@ -13,6 +13,7 @@ from hazard_ms.agents.learned.set_policy import worthwhile
 from hazard_ms.demonstrations.layout import datasets
 from hazard_ms.demonstrations.reading import Demonstration, demonstrations
 from hazard_ms.skills.options.features import Encoder
+from hazard_ms.skills.options.options import COUNT
 
 HELD_OUT = 10  # every so many episodes, one is kept to see how well a student agrees with it [ours]
 
@@ -47,11 +48,15 @@ def choices(folder: Path, env_id: str, physics: str, layout: Encoder) -> Choices
     for number, demonstration in enumerate(_episodes(folder, env_id, physics)):
         decisions = demonstration.decisions
         features, option = decisions["features"], decisions["option"].astype(np.int64)
-        if features.shape[1] != layout.size:
+        if features.ndim != 2 or features.shape[1] != layout.size:
             raise ValueError(
-                f"features of an episode must be {layout.size} numbers, got {features.shape[1]} in "
+                f"features of an episode must be {layout.size} numbers, got {features.shape[-1]} in "
                 f"{demonstration.folder}; record it again"
             )
+        if not np.isfinite(features).all():
+            raise ValueError(f"features of an episode must be finite, got others in {demonstration.folder}")
+        if decisions["mask"].shape[1:] != (COUNT,):
+            raise ValueError(f"mask must be of {COUNT} options, got another in {demonstration.folder}")
         mask = worthwhile(decisions["mask"])
         begins = decisions["option_start"] & (option >= 0)
         begins[begins] &= mask[begins, option[begins]]
@@ -64,6 +69,6 @@ def choices(folder: Path, env_id: str, physics: str, layout: Encoder) -> Choices
 def _episodes(folder: Path, env_id: str, physics: str) -> Iterator[Demonstration]:
     for dataset in datasets(folder):
         for demonstration in demonstrations(dataset):
-            if (demonstration.result.env_id, demonstration.result.settings["physics"]) != (env_id, physics):
+            if (demonstration.result.env_id, demonstration.result.settings.get("physics")) != (env_id, physics):
                 break  # a dataset is of one recipe
             yield demonstration

@@ -7,14 +7,13 @@ needed to go on.
 from __future__ import annotations
 
 import dataclasses
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import torch
 
-from hazard_ms.agents.learned.weights import contents
+from hazard_ms.agents.learned.weights import contents, packed_state, told
 from hazard_ms.learning.checks import Check
 from hazard_ms.learning.ppo import Learner
 from hazard_ms.machine.files import write_together
@@ -41,17 +40,17 @@ class Run:
         if not kept.exists():
             return None
         try:
-            before = json.loads(self.path.with_suffix(".json").read_text(encoding="utf-8"))["command"]
-        except (OSError, ValueError, KeyError, TypeError) as error:
+            before = told(self.path)["command"]
+        except (ValueError, KeyError) as error:
             raise ValueError(
                 f"{kept} must have its NAME.json beside it, got {error}: delete both to begin anew"
             ) from None
         if before != self._facts["command"]:
             raise ValueError(
-                f"{kept} must be of the training `{self._facts['command']}`, got `{before}`: "
+                f"{kept} must be of the training `{self._facts['command']}`, got `{before!s:.500}`: "
                 "give another folder, or delete it"
             )
-        return kept.read_bytes()
+        return packed_state(kept)
 
     def train(self, learner: Learner, decisions: int, minutes: float) -> None:
         """Train `learner` until there were `decisions` in all, or for `minutes` in all, and print how it gets on.
@@ -59,7 +58,7 @@ class Run:
         Raises ValueError for numbers that are not positive, and where files cannot be written.
         """
 
-        def told(check: Check) -> None:
+        def keep(check: Check) -> None:
             self._keep(learner)
             print(line(learner.curve, decisions, minutes), flush=True)
 
@@ -68,18 +67,18 @@ class Run:
         threads = torch.get_num_threads()
         torch.set_num_threads(1)
         try:
-            learner.train(decisions, minutes, told)
+            learner.train(decisions, minutes, keep)
         finally:
             torch.set_num_threads(threads)
 
     def _keep(self, learner: Learner) -> None:
         best = dataclasses.asdict(max(learner.curve, key=lambda check: check.validation))
-        weights, told = contents(learner.best, self._task, {**self._facts, "best": best, "value": learner.value()})
+        weights, facts = contents(learner.best, self._task, {**self._facts, "best": best, "value": learner.value()})
         names = [field.name for field in dataclasses.fields(Check)]
         rows = [",".join(f"{value:.6g}" for value in dataclasses.astuple(check)) for check in learner.curve]
         parts: dict[str, str | bytes] = {
             self.path.suffix: weights,
-            ".json": told,
+            ".json": facts,
             CURVE: "\n".join([",".join(names), *rows, ""]),
             RESUMABLE: learner.saved(),
         }

@@ -48,12 +48,9 @@ def backend() -> str:
 def kept_backend(key: str) -> str:
     """The answer of an earlier trial under the same `key`, or else of a new trial."""
     place = home() / f"rendering-{key}.json"
-    try:
-        kept = json.loads(place.read_text(encoding="utf-8"))["backend"]
-        if kept in BACKENDS:
-            return str(kept)
-    except (OSError, ValueError, KeyError, TypeError):
-        pass  # none yet, or damaged: try again
+    for name in BACKENDS:
+        if _holds(place, _content(name)):
+            return name
     answer = try_backends()
     if answer != "none":  # what is missing may be installed at any time
         keep(place, answer)
@@ -64,9 +61,24 @@ def keep(place: Path, answer: str) -> None:
     """Store the answer. Where the folder is read-only, the next process repeats the trial."""
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
-        write(place, json.dumps({"backend": answer}))
+        write(place, _content(answer))
     except (OSError, ValueError):
         return
+
+
+def _content(answer: str) -> bytes:
+    return json.dumps({"backend": answer}).encode()
+
+
+def _holds(place: Path, content: bytes) -> bool:
+    """Whether a regular file holds that and no more; False where there is none, or it cannot be read."""
+    try:
+        if not place.is_file():
+            return False
+        with place.open("rb") as file:
+            return file.read(len(content) + 1) == content
+    except OSError:
+        return False
 
 
 def machine_key(environ: Mapping[str, str]) -> str:

@@ -13,6 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.spec.foreign import arrays as foreign
+
+LARGEST = foreign.LARGEST_FILE  # of a file [bytes]
 DIGEST_BYTES = hashlib.sha256().digest_size  # at the start of a file
 
 
@@ -32,9 +35,9 @@ def from_bytes(what: str, version: int, content: bytes) -> dict[str, NDArray[Any
     digest, packed = content[:DIGEST_BYTES], content[DIGEST_BYTES:]
     if hashlib.sha256(packed).digest() != digest:
         raise ValueError(f"{what} must have the digest of its contents, got another: damaged, or something else")
-    with np.load(io.BytesIO(packed), allow_pickle=False) as stored:
-        columns = {name: stored[name] for name in stored.files}
-    found = int(columns.pop("format"))
+    columns = foreign.from_bytes(packed, what)
+    number = columns.pop("format", np.asarray(-1))
+    found = int(number) if number.size == 1 and number.dtype.kind in "iu" else -1
     if found != version:
         raise ValueError(f"format of {what} must be {version}, got {found}: make it anew")
     return columns

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
-import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -16,7 +15,10 @@ import numpy as np
 from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.skill_times import BAG, CART, NO_PATH, SKILLS, SkillRow, SkillTimes
 from hazard_ms.skills import decision, failures
+from hazard_ms.spec.foreign.files import printable, read_text
+from hazard_ms.spec.foreign.plain import parse
 
+LARGEST = 64_000_000  # of a probe [bytes]; a row has 300 [ours]
 HEIGHTS = (-math.inf, 0.25, 0.9, math.inf)  # ends of the bands: floor, tables, shelves [m] [ours]
 CLEARANCES = (-math.inf, 0.4, 0.7, math.inf)  # ends of the bands: at hand, over an edge, at arm's length [m] [ours]
 FEWEST = 12  # attempts: a band with fewer takes the numbers of all bands [ours]
@@ -66,15 +68,17 @@ def probed(path: Path) -> Iterator[tuple[str, Attempt]]:
     What cannot be reached from any place is left out.
     """
     try:
-        rows: Sequence[dict[str, Any]] = [json.loads(line) for line in path.read_text("utf-8").splitlines() if line]
+        rows: Sequence[dict[str, Any]] = [
+            parse(line, "a row") for line in read_text(path, LARGEST).splitlines() if line
+        ]
         for row in rows:
             place = {name: float(row[name]) for name in ("height", "clearance")}
             carts = float(row["distance"]) > 0.0  # the bag is at hand
             made = attempt(row["verb"], bool(row["ok"]), row["reason"], int(row["frames"]), carts, **place)
             if made is not None and row.get("reachable", True):
                 yield str(row["robot"]), made
-    except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
-        told = f"{type(error).__name__}: {error}"
+    except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError) as error:
+        told = printable(f"{type(error).__name__}: {error}")
         raise ValueError(f"{path} must hold rows of `hazard-ms bench --pickups`, got {told}") from None
 
 

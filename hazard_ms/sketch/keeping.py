@@ -17,6 +17,7 @@ from hazard_ms.machine import files
 from hazard_ms.machine.cache import home
 from hazard_ms.sketch import columns
 from hazard_ms.sketch.rescues.scene import SketchScene
+from hazard_ms.spec.foreign.files import read_foreign
 
 FORMAT = 1  # goes up when older files can no longer be read
 # folders whose code decides what a scene is, beside that of its timeline
@@ -39,8 +40,8 @@ def kept(name: str, follows_from: str, made: Callable[[], SketchScene]) -> Sketc
     """
     digest = hashlib.sha256(f"{_code()} {follows_from}".encode()).hexdigest()[:16]
     path = home() / "sketch" / f"{name.replace('/', '-')}-{digest}.scene"
-    with contextlib.suppress(OSError, ValueError):
-        return from_bytes(path.read_bytes())
+    with contextlib.suppress(ValueError):
+        return from_bytes(read_foreign(path, columns.LARGEST))
     scene = made()
     with contextlib.suppress(OSError, ValueError):  # a cache that cannot be written to only costs time
         files.make_folder(path.parent)

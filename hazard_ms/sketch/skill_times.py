@@ -16,13 +16,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.foreign.files import printable
+from hazard_ms.spec.foreign.plain import made
+from hazard_ms.spec.foreign.plain import read as read_json
 
 MEASURED = "fetch"  # the robot whose skill times stand in for those of robots without any
 FORMAT = 1  # goes up when a field of the file changes its meaning
 SHIPPED = Path(__file__).with_name("skill_times.json")
 PICK_UP, BAG, CART, EXPLORE, NO_PATH = "pick_up", "bag", "cart", "explore", "no_path"
 SKILLS = (PICK_UP, BAG, CART, EXPLORE, NO_PATH)  # the drops into the bag and over a cart are apart
+LARGEST = 4_000_000  # of a file [bytes]; that of the package has 12 thousand [ours]
 LONGEST = 10_000  # frames of one skill: any larger number must be a mistake [ours]
+
+# the types of a row's entries in a file, apart from the bands
+ROW = {"skill": str, "count": int, "success": float, "frames": tuple[float, ...], "failed": tuple[float, ...]}
 
 Floats = NDArray[np.float64]
 
@@ -132,15 +139,15 @@ def shipped(robot: str) -> SkillTimes:
 def read(path: Path) -> dict[str, SkillTimes]:
     """The skill times of all robots in the file `path`. Raises ValueError for a file that does not hold them."""
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = read_json(path, LARGEST)
         if content["format"] != FORMAT:
             raise ValueError(f"format must be {FORMAT}, got {content['format']!r:.50}")
         return {
             str(robot): SkillTimes(str(robot), tuple(map(_row, table["rows"])), str(table["source"]))
             for robot, table in content["robots"].items()
         }
-    except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
-        told = f"{type(error).__name__}: {error}"
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
+        told = printable(f"{type(error).__name__}: {error}")
         raise ValueError(f"{path} must hold skill times, got {told}; `hazard-ms sketch fit` makes such files") from None
 
 
@@ -151,13 +158,11 @@ def as_json(tables: dict[str, SkillTimes]) -> str:
 
 
 def _row(plain: dict[str, Any]) -> SkillRow:
-    made = dict(plain)
-    for name in ("frames", "failed"):
-        made[name] = tuple(float(value) for value in made[name])
+    bands = {}
     for name in ("height", "clearance"):
-        low, high = made.get(name, (None, None))
-        made[name] = (-math.inf if low is None else float(low), math.inf if high is None else float(high))
-    return SkillRow(**made)
+        low, high = made(tuple[float | None, float | None], plain.get(name, (None, None)), name)
+        bands[name] = (-math.inf if low is None else low, math.inf if high is None else high)
+    return SkillRow(**{**{name: made(kind, plain[name], name) for name, kind in ROW.items()}, **bands})
 
 
 def _at(quantiles: tuple[float, ...], share: Floats) -> Floats:

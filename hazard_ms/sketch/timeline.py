@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.machine import files
 from hazard_ms.sketch import columns
+from hazard_ms.spec.foreign.files import read_foreign
 
 FORMAT = 1  # goes up when older files can no longer be read
 STRIDE = 10  # frames from sample to sample: water and flames change every 10 frames [ours]
@@ -105,6 +106,6 @@ def from_bytes(content: bytes) -> Timeline:
 def read(path: Path) -> Timeline:
     """The record in a file. Raises ValueError that names the file if there is none, or if it is damaged."""
     try:
-        return from_bytes(path.read_bytes())
-    except (OSError, ValueError) as error:
+        return from_bytes(read_foreign(path, columns.LARGEST))
+    except ValueError as error:
         raise ValueError(f"{path} must hold a timeline: {error}") from None

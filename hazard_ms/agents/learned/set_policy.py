@@ -21,6 +21,7 @@ from hazard_ms.skills.options.features import Encoder
 from hazard_ms.skills.options.options import CART, END, FIRST, LANDMARK, LOOK, TARGET
 
 KINDS = {"targets": TARGET, "carts": CART, "landmarks": LANDMARK}  # tables of things, and their options
+MOST = {"width": 1024, "heads": 1024, "blocks": 32}  # of an architecture: any larger number must be a mistake [ours]
 FORBIDDEN = -1e9  # logit of an option that the mask forbids: its probability is 0 in float32
 
 
@@ -35,10 +36,10 @@ class Shape:
     ignored: tuple[str, ...] = ()  # columns, or the beginnings of their names, that are not read
 
     def __post_init__(self) -> None:
-        """Raises ValueError for numbers below 1, and for heads that do not divide the width."""
-        for name in ("width", "heads", "blocks"):
-            if getattr(self, name) < 1:
-                raise ValueError(f"{name} of a policy must be at least 1, got {getattr(self, name)}")
+        """Raises ValueError for numbers below 1 or above MOST, and for heads that do not divide the width."""
+        for name, most in MOST.items():
+            if not 1 <= getattr(self, name) <= most:
+                raise ValueError(f"{name} of a policy must be from 1 to {most}, got {getattr(self, name)}")
         if self.width % self.heads:
             raise ValueError(f"heads of a policy must divide its width, {self.width}, got {self.heads}")
 

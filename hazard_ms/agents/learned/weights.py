@@ -5,6 +5,7 @@ Nothing in such files can run code. The numbers of a policy that sees a map are 
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -15,19 +16,27 @@ import torch
 from safetensors import SafetensorError
 from safetensors.torch import load as unpacked
 from safetensors.torch import save
+from torch import Tensor
 
 from hazard_ms.agents.learned.map_policy import MapPolicy, MapShape
 from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
 from hazard_ms.skills.options.feature_columns import FEATURES_VERSION
 from hazard_ms.skills.options.paper_map import MAP_VERSION
+from hazard_ms.spec.foreign import plain
+from hazard_ms.spec.foreign.arrays import check_archive
+from hazard_ms.spec.foreign.files import printable, read_foreign
 
 ENDING = ".safetensors"
+LARGEST_STATE = 256_000_000  # of all that a training needs to go on [bytes]; the original's network: 12 million [ours]
+LARGEST, LARGEST_TOLD = 64_000_000, 4_000_000  # of both files [bytes]; the original's network has 3 million [ours]
+MOST_HAZARDS = 16  # of a task [ours]
+LIMITS = plain.Limits(most_entries=1000)  # of a shape [ours]
 
 
 def contents(policy: SetPolicy | MapPolicy, task: str, facts: Mapping[str, Any]) -> tuple[bytes, str]:
     """The contents of both files of a `policy` for `task`; `facts`, plain data, say how it came about."""
-    told = {"task": task, **_version(policy), "shape": asdict(policy.shape), **facts}
-    return save(dict(stored(policy))), json.dumps(told, indent=1, allow_nan=False) + "\n"
+    row = {"task": task, **_version(policy), "shape": asdict(policy.shape), **facts}
+    return save(dict(stored(policy))), json.dumps(row, indent=1, allow_nan=False) + "\n"
 
 
 def stored(policy: SetPolicy | MapPolicy) -> dict[str, torch.Tensor]:
@@ -59,9 +68,29 @@ def load_map(path: Path, task: str, made_by: str = "train ppo --actions paper") 
 def sees_map(path: Path) -> bool:
     """Whether the policy in a file is one over the six actions; False if there is none."""
     try:
-        return "map_version" in json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
-    except (OSError, ValueError, TypeError):
+        return "map_version" in told(path)
+    except ValueError:
         return False
+
+
+def told(path: Path) -> dict[str, Any]:
+    """What NAME.json beside NAME.safetensors says. Raises ValueError where there is none, or a damaged one."""
+    return plain.read(path.with_suffix(".json"), LARGEST_TOLD)
+
+
+def packed_state(path: Path) -> bytes:
+    """The content of the file in which a training keeps all that it needs to go on. Raises ValueError without one."""
+    return read_foreign(path, LARGEST_STATE)
+
+
+def unpacked_state(packed: bytes) -> dict[str, Any]:
+    """The plain numbers and tensors in the content of such a file; nothing in it can run code.
+
+    Raises ValueError for what is no archive or unpacks to more than LARGEST_STATE, and errors of many kinds for other
+    content.
+    """
+    check_archive(packed, "the state of a training", LARGEST_STATE)
+    return dict(torch.load(io.BytesIO(packed), map_location="cpu", weights_only=True))
 
 
 def _version(policy: SetPolicy | MapPolicy | type) -> dict[str, int]:
@@ -70,19 +99,41 @@ def _version(policy: SetPolicy | MapPolicy | type) -> dict[str, int]:
 
 
 def _read(path: Path, task: str, made_by: str, kind: type[SetPolicy] | type[MapPolicy]) -> SetPolicy | MapPolicy:
-    beside = path.with_suffix(".json")
     try:
-        told = json.loads(beside.read_text(encoding="utf-8"))
+        facts = told(path)
         for name, wanted in {**_version(kind), "task": task}.items():
-            if told.get(name) != wanted:
-                raise ValueError(f"{name} must be {wanted}, got {told.get(name)}")
-        plain = dict(told["shape"])
-        ranges = tuple((float(low), float(high)) for low, high in plain.pop("ranges"))
-        shape = {**plain, "ignored": tuple(plain["ignored"])}
-        policy = MapPolicy(MapShape(ranges, **shape)) if kind is MapPolicy else SetPolicy(Shape(ranges, **shape))
-        policy.load_state_dict(unpacked(path.read_bytes()))
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RuntimeError, SafetensorError) as error:
+            if facts.get(name) != wanted:
+                raise ValueError(f"{name} must be {wanted}, got {facts.get(name)!s:.100}")
+        shape = plain.made(MapShape if kind is MapPolicy else Shape, facts.get("shape"), "shape", LIMITS)
+        if len(shape.ranges) > MOST_HAZARDS or any(not low < high for low, high in shape.ranges):
+            raise ValueError(f"ranges must be (low, high) of at most {MOST_HAZARDS} hazards, got {shape.ranges!r:.100}")
+        numbers = _numbers(read_foreign(path, LARGEST))
+        with torch.device("meta"):  # which allocates nothing
+            _check(numbers, kind(shape).state_dict())
+        policy = kind(shape)
+        policy.load_state_dict(numbers)
+    except (ValueError, RuntimeError, IndexError, SafetensorError) as error:
         raise ValueError(
-            f"{path} must hold a policy for {task}: {error}; `hazard-ms {made_by} -e {task} -o FOLDER` makes one"
+            f"{path} must hold a policy for {task}: {printable(str(error)):.500}; "
+            f"`hazard-ms {made_by} -e {task} -o FOLDER` makes one"
         ) from None
     return policy.eval()
+
+
+def _numbers(content: bytes) -> dict[str, Tensor]:
+    """The numbers in a file of safetensors, [...] each. Raises ValueError or SafetensorError for other content."""
+    found = unpacked(content)
+    for name, part in found.items():
+        if not part.is_floating_point() or not bool(torch.isfinite(part.float()).all()):
+            raise ValueError(f"{name} must hold finite floating-point numbers, got others")
+    return found
+
+
+def _check(numbers: Mapping[str, Tensor], wanted: Mapping[str, Tensor]) -> None:
+    """Raises ValueError unless `numbers`, [...] each, have the names and the shapes of those that are `wanted`."""
+    if numbers.keys() != wanted.keys():
+        other = sorted(numbers.keys() ^ wanted.keys())
+        raise ValueError(f"its numbers must be those of its shape, got others: {', '.join(other):.200}")
+    for name, part in wanted.items():
+        if numbers[name].shape != part.shape:
+            raise ValueError(f"{name} must be {list(part.shape)}, got {list(numbers[name].shape)}")

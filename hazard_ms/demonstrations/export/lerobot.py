@@ -47,7 +47,7 @@ def write(source: Source, folder: Path) -> str:
 def rate_of(common: Common) -> int:
     """Rows per second of simulated time. Raises ValueError where it is not a whole number, as LeRobot needs it."""
     step = _step(common)
-    if common.fps % step:
+    if step < 1 or common.fps % step:
         raise ValueError(
             f"every must divide the {common.fps:g} frames of a second for lerobot, got {step}; record it with another"
         )

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
+from contextlib import contextmanager
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -12,6 +15,8 @@ from numpy.typing import NDArray
 from hazard_ms.demonstrations.export.lerobot_tables import CHUNK, FILM_SIZE, MB, place
 from hazard_ms.demonstrations.reading import Demonstration
 
+CODEC = "h264"  # of recordings
+LARGEST, MOST_PIXELS = 256_000_000, 1024 * 1024  # of a film [bytes], of a picture [-] [ours]
 MOST_SAMPLES = 100  # pictures of an episode for statistics [ours]
 
 
@@ -30,10 +35,7 @@ class Film:
 
         Raises ValueError for an episode with fewer pictures, and for films that cannot follow each other.
         """
-        import av
-
-        with av.open(str(_film(one))) as film:
-            stream = film.streams.video[0]
+        with _opened(one) as (film, stream):
             packets = [packet for packet in film.demux(stream) if packet.size][:count]
             if len(packets) < count or any(packet.pts != packet.dts for packet in packets):
                 raise ValueError(f"{one.video} must hold {count} pictures in their order, got {len(packets)}")
@@ -80,13 +82,11 @@ class Film:
 def samples(one: Demonstration, count: int) -> NDArray[np.uint8]:
     """Some of the first `count` pictures of an episode, evenly spaced, [N, H, W, 3].
 
-    Raises ValueError for an episode without a film.
+    Raises ValueError for an episode without a film, and for one that is damaged or too large.
     """
-    import av
-
     chosen = set(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).round().astype(int).tolist())
-    with av.open(str(_film(one))) as film:
-        shown = enumerate(film.decode(video=0))
+    with _opened(one) as (film, stream):
+        shown = enumerate(itertools.islice(film.decode(stream), count))
         return np.stack([picture.to_ndarray(format="rgb24") for number, picture in shown if number in chosen])
 
 
@@ -110,7 +110,23 @@ def picture_info(shown: NDArray[np.uint8], rate: int) -> dict[str, Any]:
     }
 
 
-def _film(one: Demonstration) -> Path:
+@contextmanager
+def _opened(one: Demonstration) -> Iterator[tuple[Any, Any]]:
+    """The film of an episode, open, and its pictures. Raises ValueError for films that the recorder does not make."""
+    import av
+
     if one.video is None:
         raise ValueError(f"{one.folder} must hold a film of the head camera as the others do, got none")
-    return one.video
+    if (size := one.video.stat().st_size) > LARGEST:
+        raise ValueError(f"{one.video} must have at most {LARGEST} bytes, got {size}")
+    try:
+        with av.open(str(one.video), format="mp4") as film:  # which opens no other file, as playlists would
+            stream = film.streams.video[0]
+            codec = stream.codec_context
+            if codec.name != CODEC or codec.width * codec.height > MOST_PIXELS:
+                told = f"{codec.name}, {codec.width} x {codec.height}"
+                raise ValueError(f"{one.video} must be {CODEC} of at most {MOST_PIXELS} pixels, got {told}")
+            codec.options = {"max_pixels": str(MOST_PIXELS)}  # also for pictures that are larger than the film says
+            yield film, stream
+    except (av.FFmpegError, IndexError) as error:
+        raise ValueError(f"{one.video} must be a film of the head camera, got {error!s:.200}") from None

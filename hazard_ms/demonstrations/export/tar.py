@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import tarfile
 from pathlib import Path
@@ -33,7 +32,7 @@ def write(source: Source, folder: Path, size: int = SHARD) -> str:
                 room = size
             room -= bytes_needed
             for name, path in files.items():
-                _add(shards[-1], f"{one.folder.name.replace('.', '-')}.{name.replace('/', '-')}", path.read_bytes())
+                _add(shards[-1], f"{one.folder.name.replace('.', '-')}.{name.replace('/', '-')}", path)
     finally:
         if shards:
             shards[-1].close()
@@ -52,8 +51,9 @@ def _open(name: str) -> bool:
     return name.split("/")[0] != PRIVILEGED
 
 
-def _add(shard: tarfile.TarFile, name: str, content: bytes) -> None:
+def _add(shard: tarfile.TarFile, name: str, path: Path) -> None:
     """Add a file without owner and time, so that the same episodes give the same bytes."""
     entry = tarfile.TarInfo(name)
-    entry.size = len(content)
-    shard.addfile(entry, io.BytesIO(content))
+    entry.size = path.stat().st_size
+    with path.open("rb") as file:
+        shard.addfile(entry, file)

@@ -19,10 +19,8 @@ MOST_DIRECTORY = 1_000_000  # of the list of an archive's members [bytes]; one t
 READ_AT_ONCE = 1 << 20  # [bytes]
 KINDS = "biufcSU"  # of numpy's types: numbers, truth values and text; no objects
 END, END_SIZE = b"PK\x05\x06", 22  # the record at the end of a zip archive that has no comment (APPNOTE.TXT 4.3.16)
-LARGE_END, LARGE_END_SIZE = (
-    b"PK\x06\x07",
-    20,
-)  # before it where sizes have 64 bits (APPNOTE.TXT 4.3.15)
+LARGE_END, LARGE_END_SIZE = b"PK\x06\x07", 20  # before it where sizes have 64 bits, as torch's (APPNOTE.TXT 4.3.15)
+LARGE_RECORD, LARGE_RECORD_SIZE = b"PK\x06\x06", 56  # before that: the record itself (APPNOTE.TXT 4.3.14)
 
 
 def read_arrays(path: Path, most: int = MOST_UNPACKED) -> dict[str, NDArray[Any]]:
@@ -58,9 +56,9 @@ def check_archive(content: bytes, what: str, most: int = MOST_UNPACKED) -> None:
     shown = printable(what)
     end = content[-END_SIZE:]
     plain = end.startswith(END) and end.endswith(b"\0\0")  # else zipfile looks for another end further up
-    if not plain or len(end) < END_SIZE or content[-END_SIZE - LARGE_END_SIZE :].startswith(LARGE_END):
+    directory = _directory_size(content) if plain and len(end) == END_SIZE else None
+    if directory is None:
         raise ValueError(f"{shown} must be a zip archive of numpy or torch, got something else, or a part of one")
-    directory = int.from_bytes(end[12:16], "little")
     if directory > MOST_DIRECTORY:
         raise ValueError(f"{shown} must list its members in at most {MOST_DIRECTORY} bytes, got {directory}")
     try:
@@ -70,6 +68,18 @@ def check_archive(content: bytes, what: str, most: int = MOST_UNPACKED) -> None:
         raise ValueError(f"{shown} must be a zip archive, got {_words(error)}") from None
     if unpacked > most:
         raise ValueError(f"{shown} must unpack to at most {most} bytes, got {unpacked}")
+
+
+def _directory_size(content: bytes) -> int | None:
+    """The bytes of the list of members that the end of an archive announces; None where its parts do not follow."""
+    locator = content[-END_SIZE - LARGE_END_SIZE : -END_SIZE]
+    if not locator.startswith(LARGE_END):
+        return int.from_bytes(content[-END_SIZE:][12:16], "little")
+    start = len(content) - END_SIZE - LARGE_END_SIZE - LARGE_RECORD_SIZE
+    record = content[max(start, 0) :][:LARGE_RECORD_SIZE]
+    if not record.startswith(LARGE_RECORD) or int.from_bytes(locator[8:16], "little") != start:
+        return None
+    return int.from_bytes(record[40:48], "little")
 
 
 def _array(file: Any, size: int) -> NDArray[Any]:

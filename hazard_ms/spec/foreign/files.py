@@ -25,8 +25,10 @@ def read_foreign(path: Path, most: int, name: str = "") -> bytes:
         size = os.fstat(file.fileno()).st_size
         if size > most:
             raise ValueError(f"{shown} must have at most {most} bytes, got {size}")
-        data = file.read(most + 1)
-    if len(data) > most:  # it grew, or does not say how large it is
+        data = file.read(size + 1)  # no more: so much memory is taken first
+        if len(data) > size:  # it grew, or does not say how large it is
+            data += file.read(most + 1 - len(data))
+    if len(data) > most:
         raise ValueError(f"{shown} must have at most {most} bytes, got more")
     return data
 

@@ -6,7 +6,24 @@ import contextlib
 import multiprocessing
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+
+KEYS = ("HAZARD_MS_LLM_KEY", "HAZARD_MS_LLM_KEY_FILE")  # a key for models, and where it is
+
+
+def environment(variables: Mapping[str, str] | None = None) -> dict[str, str]:
+    """The environment for a process that needs no key for models: `variables`, or ours, without it."""
+    return {name: value for name, value in (variables or os.environ).items() if name not in KEYS}
+
+
+@contextlib.contextmanager
+def without_keys() -> Iterator[None]:
+    """Let processes of `multiprocessing` that are started meanwhile, which get our environment, have no key."""
+    kept = {name: os.environ.pop(name) for name in KEYS if name in os.environ}
+    try:
+        yield
+    finally:
+        os.environ.update(kept)
 
 
 def end_with_parent() -> None:

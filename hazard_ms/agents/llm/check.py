@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from hazard_ms.agents.llm.answers import ASKS, JSON, LETTER, LOGPROB, UnreadableError, read, request_of
 from hazard_ms.agents.llm.asking import Asker, Budget, Counts
 from hazard_ms.agents.llm.choices import FETCH, LOOK, SEARCH, Choice, Menu
-from hazard_ms.agents.llm.client import Client, NoAnswerError, RefusedError
+from hazard_ms.agents.llm.client import Client
 from hazard_ms.agents.llm.endpoint import endpoint
+from hazard_ms.agents.llm.network.faults import NoAnswerError, RefusedError
 from hazard_ms.agents.llm.prompt import messages
 from hazard_ms.agents.llm.rules import greedy
 from hazard_ms.agents.llm.scene_text import Block

@@ -103,9 +103,7 @@ def report(found: list[Way], price_in: float, price_out: float) -> str:
             + (f"  {printable(each.fault)}" if each.fault else "")
         )
     if any(each.counts.cut for each in found):
-        lines.append(
-            "Its server cuts prompts: by its own count it read less than half. Start it with a longer context."
-        )
+        lines.append("Its server cuts prompts: it says that it read less than half. Start it with a longer context.")
     good = [each for each in found if each.asked and each.read >= WORKS * each.asked]
     if not good:
         return "\n".join([*lines, "It cannot play: in no way could its answers be read."])

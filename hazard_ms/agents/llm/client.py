@@ -111,7 +111,7 @@ class Client:
             except BaseException as error:  # noqa: B036 it is raised again in the thread that asked
                 done.put((None, error))
 
-        thread = threading.Thread(target=work, daemon=True)
+        thread = threading.Thread(target=work, name="llm work", daemon=True)
         thread.start()
         try:
             made, error = done.get(timeout=seconds + 0.2)  # [s] the call's own time-out comes first

@@ -13,9 +13,10 @@ from typing import Any
 
 from hazard_ms import Action, Agent
 from hazard_ms.agents.llm.choices import LETTERS, MACRO, SEARCH, Choice, forced, menu
-from hazard_ms.agents.llm.client import Client, NoAnswerError
+from hazard_ms.agents.llm.client import Client
 from hazard_ms.agents.llm.endpoint import endpoint
 from hazard_ms.agents.llm.memory import Memory
+from hazard_ms.agents.llm.network.faults import NoAnswerError
 from hazard_ms.agents.llm.prompt import messages, system_text
 from hazard_ms.agents.llm.scene_text import block, plain_names
 from hazard_ms.skills.brief import Brief

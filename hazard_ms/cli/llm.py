@@ -50,6 +50,7 @@ def check(
     price_out: float = 0.0,
     deadline: float = 50.0,
     limit_field: str = "max_tokens",
+    extra: str = "",
 ) -> int:
     """Ask a model a few small questions in each way of answering; say whether it can play, how fast, and at what cost.
 
@@ -63,12 +64,13 @@ def check(
         price_out: Price of a million tokens written [USD].
         deadline: Time for an answer [s].
         limit_field: Name under which the greatest length of an answer is sent.
+        extra: Further fields of a request, name:value;name:value or a JSON object, such as reasoning_effort:none.
     """
     from hazard_ms.agents.llm.check import report, ways
 
     if not 0.0 < deadline <= LONGEST:
         raise ValueError(f"deadline must be more than 0 and at most {LONGEST:g} s, got {deadline}")
-    found = list(ways(base_url, model, deadline, limit_field))
+    found = list(ways(base_url, model, deadline, limit_field, extra))
     told = report(found, price_in, price_out)
     print(told)
     return int("It can play" not in told)

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hazard_ms.machine.processes import end_with_parent
+from hazard_ms.machine.processes import end_with_parent, without_keys
 from hazard_ms.spec import Build, SceneSpec
 from hazard_ms.spec.foreign.files import printable
 
@@ -76,7 +76,7 @@ def check_all(names: Sequence[str], workers: int) -> int:
 
 def _in_processes(names: Sequence[str], workers: int) -> Iterator[CheckedScene]:
     """The checked scenes in the order of `names`. A check that crashes or hangs is a problem, and is ended."""
-    with multiprocessing.get_context("spawn").Pool(min(workers, len(names)), end_with_parent) as pool:
+    with without_keys(), multiprocessing.get_context("spawn").Pool(min(workers, len(names)), end_with_parent) as pool:
         waiting = [(name, pool.apply_async(check_one, (name,))) for name in names]
         for name, result in waiting:
             try:

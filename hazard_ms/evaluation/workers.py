@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import DIED, TOO_SLOW, EpisodeResult
-from hazard_ms.machine.processes import end_with_parent
+from hazard_ms.machine.processes import end_with_parent, needs_key, without_keys
 
 LIFETIME = 40  # episodes, after which a process is replaced: each leaves it 10 to 25 MB larger [measured]
 START = 900.0  # longest time until the first decision; where kernels are new, they are compiled [s] [ours]
@@ -68,26 +68,28 @@ class Worker:
         self._process: multiprocessing.process.BaseProcess | None = None
         self._connection: Connection
         self._played = 0
+        self._keyed = False  # whether the process has the key for models
 
     def begin(self, job: Job) -> None:
         """Begin with a job."""
-        if self._played >= LIFETIME:
+        keyed = needs_key(job.options.agent, job.options.load)
+        if self._played >= LIFETIME or (keyed and not self._keyed):
             self.end()
         if self._process is None:
-            self._start()
+            self._start(keyed)
         self._job, self._so_far, self._asked, self._played = job, None, False, self._played + 1
         self._deadline = time.monotonic() + START
         with contextlib.suppress(OSError):  # it has died: `outcome` will say so
             self._connection.send(job)
 
-    def _start(self) -> None:
+    def _start(self, keyed: bool) -> None:
         context = multiprocessing.get_context("spawn")
         self._connection, theirs = context.Pipe()
         self._process = context.Process(target=_serve, args=(theirs, self._attempt))
-        with _one_thread():
+        with _one_thread(), without_keys(needed=keyed):
             self._process.start()
         theirs.close()
-        self._played = 0
+        self._played, self._keyed = 0, keyed
 
     @property
     def signs(self) -> list[Connection | int]:

@@ -11,7 +11,7 @@ import torch
 from tqdm import tqdm
 
 from hazard_ms.machine.cores import cores
-from hazard_ms.machine.processes import end_with_parent
+from hazard_ms.machine.processes import end_with_parent, without_keys
 from hazard_ms.sketch.rescues.scene import SketchScene
 from hazard_ms.sketch.scenes import more_scenes
 
@@ -29,7 +29,7 @@ def generated(env_id: str, physics: str, numbers: Sequence[int], workers: int = 
     if most <= 1:
         return list(_watched(map(make, numbers), len(numbers)))
     spawned = multiprocessing.get_context("spawn")  # forks of a process that runs torch can stand still
-    with ProcessPoolExecutor(most, spawned, initializer=_begin) as pool:
+    with without_keys(), ProcessPoolExecutor(most, spawned, initializer=_begin) as pool:
         return list(_watched(pool.map(make, numbers), len(numbers)))
 
 

@@ -19,6 +19,7 @@ from pathlib import Path
 from hazard_ms.machine import render_backend
 from hazard_ms.machine.cache import home
 from hazard_ms.machine.diagnosis import OPENCVS, PACKAGES, Facts, chosen_backend, examine
+from hazard_ms.machine.processes import environment
 from hazard_ms.machine.survey import read_machine
 from hazard_ms.machine.vulkan import ask_vulkan, last_line
 
@@ -63,7 +64,7 @@ def python_fault(code: str, environ: Mapping[str, str]) -> str:
     try:
         command = [sys.executable, "-c", code]
         child = subprocess.run(
-            command, capture_output=True, text=True, timeout=CHILD_TIMEOUT, check=False, env=dict(environ)
+            command, capture_output=True, text=True, timeout=CHILD_TIMEOUT, check=False, env=environment(environ)
         )
     except subprocess.TimeoutExpired:
         return f"no answer within {CHILD_TIMEOUT:.0f} s"

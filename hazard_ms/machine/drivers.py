@@ -26,6 +26,7 @@ import urllib.request
 from pathlib import Path
 
 from hazard_ms.machine.files import write
+from hazard_ms.machine.processes import environment
 from hazard_ms.machine.survey import Machine, read_machine
 from hazard_ms.machine.vulkan import Answer, ask_vulkan
 
@@ -103,7 +104,10 @@ def root_prefix() -> Command | None:
     if os.geteuid() == 0:
         return ["env", "DEBIAN_FRONTEND=noninteractive"]
     sudo = shutil.which("sudo")
-    if sudo and subprocess.run([sudo, "-n", "true"], capture_output=True, check=False).returncode == 0:
+    if (
+        sudo
+        and subprocess.run([sudo, "-n", "true"], capture_output=True, check=False, env=environment()).returncode == 0
+    ):
         return [sudo, "-n", "env", "DEBIAN_FRONTEND=noninteractive"]
     return None
 
@@ -115,7 +119,9 @@ def install(commands: list[Command]) -> bool:
         return False
     for command in commands:
         say(f"as root: {shlex.join(command)}")
-        done = subprocess.run([*prefix, *command], stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL, check=False)
+        done = subprocess.run(
+            [*prefix, *command], stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL, check=False, env=environment()
+        )
         if done.returncode != 0:
             say(f"that failed with code {done.returncode}")
             return False
@@ -138,7 +144,7 @@ def unpack_lavapipe(folder: Path) -> Path:
             package.write_bytes(reply.read())
         if hashlib.sha256(package.read_bytes()).hexdigest() != PRIVATE_SHA256:
             raise ValueError(f"{address} must have the SHA-256 {PRIVATE_SHA256}, got another file")
-        subprocess.run(["dpkg-deb", "-x", str(package), f"{scratch}/files"], check=True)
+        subprocess.run(["dpkg-deb", "-x", str(package), f"{scratch}/files"], check=True, env=environment())
         folder.mkdir(exist_ok=True)
         shutil.move(f"{scratch}/files/{PRIVATE_LIBRARY}", folder / "libvulkan_lvp.so")
     text = {
@@ -170,7 +176,9 @@ def command_line(machine: Machine, packages: list[str]) -> str:
 
 def policy() -> str:
     """The text of `apt-cache policy`: which suites are known, and from where."""
-    return subprocess.run(["apt-cache", "policy"], capture_output=True, text=True, check=False).stdout
+    return subprocess.run(
+        ["apt-cache", "policy"], capture_output=True, text=True, check=False, env=environment()
+    ).stdout
 
 
 def prepare(home: Path) -> dict[str, str] | None:

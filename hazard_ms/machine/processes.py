@@ -6,7 +6,34 @@ import contextlib
 import multiprocessing
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+
+KEYS = ("HAZARD_MS_LLM_KEY", "HAZARD_MS_LLM_KEY_FILE")  # a key for models, and where it is
+
+
+def environment(variables: Mapping[str, str] | None = None) -> dict[str, str]:
+    """The environment for a process that needs no key for models: `variables`, or ours, without it."""
+    given = os.environ if variables is None else variables
+    return {name: value for name, value in given.items() if name not in KEYS}
+
+
+def needs_key(agent: str, load: Sequence[str] = ()) -> bool:
+    """Whether an agent may ask a model: `llm`, one of a module or a file, and any that `load` may have registered."""
+    name = agent.partition(":")[0]
+    return name == "llm" or "." in name or bool(load)
+
+
+@contextlib.contextmanager
+def without_keys(needed: bool = False) -> Iterator[None]:
+    """Let processes of `multiprocessing` that are started meanwhile, which get our environment, have no key.
+
+    Where it is `needed` they keep it.
+    """
+    kept = {} if needed else {name: os.environ.pop(name) for name in KEYS if name in os.environ}
+    try:
+        yield
+    finally:
+        os.environ.update(kept)
 
 
 def end_with_parent() -> None:

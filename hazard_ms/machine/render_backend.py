@@ -21,6 +21,7 @@ from pathlib import Path
 
 from hazard_ms.machine.cache import home
 from hazard_ms.machine.files import write
+from hazard_ms.machine.processes import environment
 from hazard_ms.machine.survey import manifest_paths
 from hazard_ms.machine.vulkan import last_line
 
@@ -112,7 +113,7 @@ def trial_fault(name: str, draw: bool = False, environ: Mapping[str, str] | None
     With `draw` the trial also takes a picture.
     """
     command = [sys.executable, "-m", "hazard_ms.machine.render_backend", name] + (["--draw"] if draw else [])
-    variables = dict(os.environ if environ is None else environ)
+    variables = environment(environ)
     try:
         child = subprocess.run(
             command, capture_output=True, text=True, timeout=TRIAL_TIMEOUT, check=False, env=variables

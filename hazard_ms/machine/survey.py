@@ -14,6 +14,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from hazard_ms.machine.processes import environment
+
 MANIFEST_VARIABLES = ("VK_DRIVER_FILES", "VK_ICD_FILENAMES")  # these replace the folders; the first that is set counts
 MANIFEST_FOLDERS = ("etc/vulkan/icd.d", "usr/local/share/vulkan/icd.d", "usr/share/vulkan/icd.d")
 LAVAPIPE = "libvulkan_lvp"  # the library of Mesa's driver that draws on the CPU
@@ -79,7 +81,10 @@ def read_machine(
 def listing(command: list[str]) -> str:
     """The output of `command`; empty if it does not exist or does not end."""
     try:
-        return subprocess.run(command, capture_output=True, text=True, timeout=LISTING_TIMEOUT, check=False).stdout
+        done = subprocess.run(
+            command, capture_output=True, text=True, timeout=LISTING_TIMEOUT, check=False, env=environment()
+        )
+        return done.stdout
     except (OSError, subprocess.TimeoutExpired):
         return ""
 

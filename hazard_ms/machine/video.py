@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.machine.files import Draft
+from hazard_ms.machine.processes import environment
 
 FAST = ("-preset", "veryfast", "-crf", "23")  # how ffmpeg encodes films of episodes [ours]
 FINE = ("-crf", "20")  # how it encodes few pictures [ours]
@@ -48,6 +49,7 @@ class Video:
                 [program, "-y", "-v", "error", *given, *made, str(draft.path)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
+                env=environment(),
                 start_new_session=True,  # Ctrl-C is for this process, which then ends the encoder
             )
         except OSError as error:

@@ -16,6 +16,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from hazard_ms.machine.processes import environment
+
 CHILD_TIMEOUT = 60.0  # [s] a loader with all of Mesa's drivers answers within one
 OLDEST_MESA = (24, 3)  # SAPIEN 3.0.3 finds no device in the lavapipe of earlier ones
 
@@ -69,7 +71,7 @@ def ask_vulkan(environ: Mapping[str, str] | None = None) -> Answer:
     command = [sys.executable, "-m", "hazard_ms.machine.vulkan"]
     try:
         child = subprocess.run(
-            command, capture_output=True, text=True, timeout=CHILD_TIMEOUT, check=False, env=dict(environ)
+            command, capture_output=True, text=True, timeout=CHILD_TIMEOUT, check=False, env=environment(environ)
         )
     except subprocess.TimeoutExpired:
         return Answer(fault=f"the Vulkan loader did not answer within {CHILD_TIMEOUT:.0f} s")

@@ -18,7 +18,7 @@ from gymnasium.vector import AutoresetMode
 
 from hazard_ms.machine.activity import Activity
 from hazard_ms.machine.cores import cores
-from hazard_ms.machine.processes import few_threads
+from hazard_ms.machine.processes import few_threads, without_keys
 from hazard_ms.vector.board import NONE, Board, make_file
 from hazard_ms.vector.playing import Failure, Share, Spaces, serve
 
@@ -50,7 +50,7 @@ class Process:
         self._process = context.Process(target=serve, args=(theirs, share), daemon=True)
         self._activity: Activity | None = None
         try:
-            with few_threads(threads):
+            with few_threads(threads), without_keys():
                 self._process.start()
         finally:
             theirs.close()

@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.machine.processes import few_threads
+from hazard_ms.machine.processes import few_threads, needs_key, without_keys
 from hazard_ms.web.playing.link import PICTURES
 from hazard_ms.web.playing.process import main
 from hazard_ms.web.rescue import Rescue, Taken
@@ -66,7 +66,9 @@ class Session:
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe()
         self._process = context.Process(target=main, args=(theirs, self.rescue, self._folder), daemon=True)
-        with few_threads(drawing=os.cpu_count() or 1):
+        agents, load = (self.rescue.episode.agent, self.rescue.after or ""), self.rescue.episode.load
+        keyed = any(needs_key(agent, load) for agent in agents)
+        with few_threads(drawing=os.cpu_count() or 1), without_keys(needed=keyed):
             self._process.start()
         theirs.close()
         self.alive, self.finishing, self._said_last = True, False, False

@@ -87,7 +87,8 @@ def test_pictures_stand_with_their_decision_alone() -> None:
 
 def test_a_trace_is_read(tmp_path: Path) -> None:
     (tmp_path / "t.jsonl").write_text(f"{json.dumps(ROW)}\n{json.dumps(ROW)}\n")
-    assert read_trace(tmp_path / "t.jsonl") == [ROW, ROW]
+    made = json.loads(json.dumps(read_trace(tmp_path / "t.jsonl")))
+    assert made == [{**ROW, "replies": [{"thought": "", **reply} for reply in ROW["replies"]]}] * 2
 
 
 @pytest.mark.parametrize("text", ["no JSON", "3", "{}", "[]", json.dumps({**ROW, "replies": [{}]}), "\0"])

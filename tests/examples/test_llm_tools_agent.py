@@ -12,7 +12,7 @@ import pytest
 
 from hazard_ms.agents.base import Agent, agent
 from hazard_ms.agents.llm import scripted
-from hazard_ms.agents.llm.client import RefusedError
+from hazard_ms.agents.llm.network.faults import RefusedError
 from hazard_ms.agents.llm.prompt import text_of
 from hazard_ms.agents.llm.rules import RULES, block_in
 from hazard_ms.agents.llm.scripted import ScriptedServer

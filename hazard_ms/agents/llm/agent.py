@@ -27,9 +27,11 @@ from hazard_ms.agents.llm.answers import (
 from hazard_ms.agents.llm.asking import Asker, Budget, SpentError
 from hazard_ms.agents.llm.cache import Cache
 from hazard_ms.agents.llm.choices import FULL, LETTERS, LOOK, MOVES, PICK, PUT, SEARCH, Choice, Menu, forced, menu
-from hazard_ms.agents.llm.client import Client, NoAnswerError, RefusedError
+from hazard_ms.agents.llm.client import Client
 from hazard_ms.agents.llm.endpoint import endpoint
 from hazard_ms.agents.llm.memory import Memory
+from hazard_ms.agents.llm.network.extra import extra_of
+from hazard_ms.agents.llm.network.faults import NoAnswerError, RefusedError
 from hazard_ms.agents.llm.prompt import FORECAST, HISTORIES, IMAGE, VERSIONS, Message, messages, system_text
 from hazard_ms.agents.llm.rules import RULES
 from hazard_ms.agents.llm.scene_text import Block, block, plain_names
@@ -65,6 +67,7 @@ class Llm(Agent):
     reply_tokens: int = 512  # of an answer, at most
     limit_field: str = "max_tokens"  # name under which that is sent; some models want max_completion_tokens
     send_seed: bool = True  # whether a seed is sent, which some servers refuse
+    extra: str = ""  # further fields of a request: name:value;name:value, or a JSON object
     sample: int = 0  # another number: other answers than those recorded
     deadline: float = 50.0  # for a decision [s]; `hazard-ms evaluate` ends one that takes more than its --timeout
     tries: int = 4  # of a call
@@ -91,6 +94,7 @@ class Llm(Agent):
             raise ValueError(f"deadline must be more than 0 and at most {LONGEST_DEADLINE:g} s, got {self.deadline}")
         if self.replay and not self.cache:
             raise ValueError("cache must name a file for replay=true, got none")
+        self._extra = extra_of(self.extra)
         budget = Budget(self.most_calls, self.most_tokens, self.most_cost, self.price_in, self.price_out)
         where = endpoint(self.base_url, self.model)
         self._endpoint, client = where, None
@@ -207,12 +211,12 @@ class Llm(Agent):
         return choice, thoughts if self.way == THINK else reason
 
     def _settings(self, form: dict[str, Any]) -> dict[str, Any]:
-        """The settings of a request; those of `form` come first."""
+        """The settings of a request; those of `form` come first, and what the user added before all."""
         made: dict[str, Any] = {"temperature": self.temperature, "top_p": self.top_p}
         if self.send_seed:
             made["seed"] = (self._brief.random_seed + self.sample) % SEEDS
         made.update(form)
-        return {name: value for name, value in made.items() if value is not None}
+        return {name: value for name, value in made.items() if value is not None} | self._extra
 
     def _stand_in(self, on_offer: Menu, told: Block, error: Exception, answered: bool) -> tuple[Choice, str]:
         """What is done in place of an answer. Raises RuntimeError where none has come for several decisions."""

@@ -30,7 +30,10 @@ SHORT_REPLY = 16  # tokens of a reply that is a letter: some models put signs ar
 MOST_TOKENS = 10**7  # of one call: a server that tells of more is not believed [ours]
 AFTER_WORD = re.compile(r"(?i:answer)\W{0,8}(?:(?i:is|option)\W{1,4}){0,2}([A-T])\b(?!['’])")
 ALONE = re.compile(r"^\W*([A-T])\W*$", re.MULTILINE)
-END_OF_THOUGHT = "</think>"  # what many models put between their reasoning and their answer
+THOUGHT, END_OF_THOUGHT = "<think>", "</think>"  # between which many models put their reasoning
+BYTE_ORDER_MARK = "\ufeff"
+SPENT = "raise reply_tokens, or let it think less: extra=reasoning_effort:none"  # what to do about long thoughts
+CUT = 2  # times fewer tokens read than were sent: the server has cut the prompt [ours]
 OBJECT = re.compile(r"\{.*\}", re.DOTALL)
 LONGEST_QUOTE = 200  # characters of an answer that errors quote [ours]
 
@@ -51,6 +54,9 @@ class Reply:
     answer_tokens: int
     seconds: float  # until it was there
     cached: bool = False  # whether it was asked for earlier
+    thought: str = ""  # what servers send apart from the text, in `reasoning` or `reasoning_content`
+    called: bool = False  # whether a function was called, which nobody offered
+    cut: bool = False  # whether the server has read less than half of the prompt
 
 
 def reply_of(body: Any, seconds: float, prompt: str, cached: bool = False) -> Reply:
@@ -65,18 +71,30 @@ def reply_of(body: Any, seconds: float, prompt: str, cached: bool = False) -> Re
         finish, text, refusal = choice.get("finish_reason"), message.get("content"), message.get("refusal")
     except (LookupError, TypeError, AttributeError):
         raise UnreadableError(f"a chat completion must have choices with a message, got {body!r:.100}") from None
-    text = text if isinstance(text, str) else ""
+    text, thought = _text(text), _text(message.get("reasoning") or message.get("reasoning_content"))
     usage = body.get("usage") if isinstance(body.get("usage"), dict) else {}
+    read = _count(usage.get("prompt_tokens"), prompt)
     return Reply(
         text=text,
         refused=bool(refusal) or finish == "content_filter",
         truncated=finish == "length",
         candidates=_candidates(choice),
-        prompt_tokens=_count(usage.get("prompt_tokens"), prompt),
-        answer_tokens=_count(usage.get("completion_tokens"), text),
+        prompt_tokens=read,
+        answer_tokens=_count(usage.get("completion_tokens"), thought + text),
         seconds=seconds,
         cached=cached,
+        thought=thought,
+        called=bool(message.get("tool_calls")),
+        cut=0 < CUT * read < estimate(prompt),
     )
+
+
+def _text(told: Any) -> str:
+    """The text of a message: a text, or a list of parts of which some are; empty for anything else."""
+    if isinstance(told, list):
+        parts = (part.get("text") if isinstance(part, dict) else part for part in told)
+        told = "".join(part for part in parts if isinstance(part, str))
+    return told.lstrip(BYTE_ORDER_MARK) if isinstance(told, str) else ""
 
 
 def request_of(way: str, menu: Menu, tokens: int, limit_field: str) -> dict[str, Any]:
@@ -105,9 +123,7 @@ def read(way: str, reply: Reply, menu: Menu, options: dict[str, str]) -> tuple[C
         return _likeliest(reply, menu), ""
     if reply.refused:
         raise UnreadableError("the model refused to answer")
-    if not reply.text.strip():
-        raise UnreadableError("the answer was empty")
-    said = reply.text.rpartition(END_OF_THOUGHT)[2]
+    said = _said(reply)
     named, reason = _from_json(said) if way == JSON else (_letter(said, menu), said)
     for choice in menu.choices:
         if named is not None and (named.strip() in (choice.letter, options[choice.letter])):
@@ -115,6 +131,23 @@ def read(way: str, reply: Reply, menu: Menu, options: dict[str, str]) -> tuple[C
     letters = ", ".join(choice.letter for choice in menu.choices)
     shown = (named or reply.text)[:LONGEST_QUOTE]
     raise UnreadableError(f"the answer must name one of {letters}, got {shown!r}")
+
+
+def _said(reply: Reply) -> str:
+    """What a reply says after its thought. Raises UnreadableError where it says nothing."""
+    before, ended, said = reply.text.rpartition(END_OF_THOUGHT)
+    inside = said.lstrip().startswith(THOUGHT)
+    if said.strip() and not inside:
+        return said
+    thought = reply.thought or (said if inside else before)
+    if thought.strip():
+        shown = f"got only a thought that ends in {thought.strip()[-LONGEST_QUOTE:]!r}"
+        if reply.truncated:
+            raise UnreadableError(f"the model thought until its tokens were spent: {SPENT}; {shown}")
+        raise UnreadableError(f"the answer must be a text, {shown}")
+    if reply.called:
+        raise UnreadableError("the answer must be a text, got a call of a function that was not offered")
+    raise UnreadableError("the answer was empty")
 
 
 def _from_json(text: str) -> tuple[str, str]:

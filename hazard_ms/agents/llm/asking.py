@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections import Counter
 from collections.abc import Sequence
@@ -10,12 +11,22 @@ from typing import Any
 
 from hazard_ms.agents.llm.answers import Reply, reply_of
 from hazard_ms.agents.llm.cache import Cache, Stored, key_of
-from hazard_ms.agents.llm.client import Client, NoAnswerError
+from hazard_ms.agents.llm.client import Client
 from hazard_ms.agents.llm.endpoint import Endpoint
-from hazard_ms.agents.llm.prompt import Message, text_of
+from hazard_ms.agents.llm.network.faults import NoAnswerError
+from hazard_ms.agents.llm.prompt import Message, estimate, text_of
+from hazard_ms.spec.foreign.files import printable
 
 LOST = "lost"  # in the body that is kept of a call that no answer came to: why
 MILLION = 1e6  # tokens that a price is for
+
+
+def cut_warning(model: str, reply: Reply, prompt: str) -> str:
+    """A warning of a prompt that a server has cut, of which it says nothing."""
+    return (
+        f"{printable(model)[:60]} read {reply.prompt_tokens} tokens of a prompt of about {estimate(prompt)}: "
+        "its server cuts prompts; start it with a longer context"
+    )
 
 
 class SpentError(RuntimeError):
@@ -68,6 +79,7 @@ class Counts:
     lost: int = 0  # calls that no answer came to
     refused: int = 0  # answers that were refusals
     truncated: int = 0  # answers that broke off at their greatest length
+    cut: int = 0  # answers to prompts of which the server says that it read less than half
     invalid: int = 0  # answers that named no option
     repaired: int = 0  # decisions in which the second answer named one
     fallbacks: int = 0  # decisions that something else took in place of the model
@@ -82,6 +94,7 @@ class Asker:
         """Ask over the network with `client`, out of `cache`, or both; without a client, every answer must be there."""
         self._endpoint, self._client, self._cache = endpoint, client, cache
         self._budget, self._sample = budget, sample
+        self._warned = False
         self.begin()
 
     def begin(self) -> None:
@@ -125,6 +138,10 @@ class Asker:
         counts.tokens_out += reply.answer_tokens
         counts.refused += reply.refused
         counts.truncated += reply.truncated
+        counts.cut += reply.cut
+        if reply.cut and not self._warned:
+            self._warned = True
+            print(f"hazard_ms: {cut_warning(self._endpoint.model, reply, prompt)}", file=sys.stderr, flush=True)
         return reply
 
     def _took(self, seconds: float) -> None:

@@ -5,17 +5,21 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 from hazard_ms.agents.llm.answers import ASKS, JSON, LETTER, LOGPROB, UnreadableError, read, request_of
 from hazard_ms.agents.llm.asking import Asker, Budget, Counts
 from hazard_ms.agents.llm.choices import FETCH, LOOK, SEARCH, Choice, Menu
-from hazard_ms.agents.llm.client import Client, NoAnswerError, RefusedError
+from hazard_ms.agents.llm.client import Client
 from hazard_ms.agents.llm.endpoint import endpoint
+from hazard_ms.agents.llm.network.extra import extra_of
+from hazard_ms.agents.llm.network.faults import SAMPLING, NoAnswerError, RefusedError
 from hazard_ms.agents.llm.prompt import messages
 from hazard_ms.agents.llm.rules import greedy
 from hazard_ms.agents.llm.scene_text import Block
 from hazard_ms.skills.decision import EXPLORE, STOP, Action
+from hazard_ms.spec.foreign.files import printable
 
 CHECKED = (JSON, LETTER, LOGPROB)  # `think` needs no more than `letter`
 DECISIONS = 20  # of an episode for which a model is asked: 14 in rooms, 31 in the open [measured with `greedy`]
@@ -24,6 +28,7 @@ EPISODES = 75  # 25 of each of three tasks, as the benchmark has them
 WORKS = 0.95  # share of answers that can be read, from which a way is recommended [ours]
 PROMPTS = 4  # that are asked in each way
 TOKENS = 512  # of an answer, at most
+SETTINGS = {"temperature": 0.7, "top_p": 1.0, "seed": 0}  # that the agent sends by default
 SYSTEM = (
     "You direct a rescue robot. The room is burning; a flammable thing is damaged once it catches fire.\n"
     "Things are saved once they are in the robot's bag. Time runs while the robot moves.\n"
@@ -42,36 +47,49 @@ class Way:
     seconds: float  # median until the answer was there [s]
     counts: Counts
     fault: str = ""  # why it cannot be used at all
+    needs: str = ""  # parameters of the agent that the server asks for
 
 
-def ways(base_url: str, model: str, seconds: float, limit_field: str) -> Iterator[Way]:
-    """The model at an address, tried in each way, with `seconds` [s] for each answer.
+def ways(base_url: str, model: str, seconds: float, limit_field: str, extra: str = "") -> Iterator[Way]:
+    """The model at an address, tried in each way, with `seconds` [s] for each answer, and with the fields of `extra`.
 
-    Raises ValueError for an address that cannot be used.
+    What an episode sends is sent here, too; what the server refuses of it is then left out. Raises ValueError for an
+    address that cannot be used.
     """
-    where = endpoint(base_url, model)
+    where, more = endpoint(base_url, model), extra_of(extra)
     client = Client(where, tries=2, seed=0)
     client.greet()
     for way in CHECKED:
-        asker = Asker(where, client, None, Budget(), 0)
-        taken, named, same, fault = [], 0, 0, ""
-        for number in range(PROMPTS):
-            told, menu = sample(number)
-            asked, _ = messages("llm-1", SYSTEM, told, ASKS[way])
-            try:
-                reply = asker.ask(asked, request_of(way, menu, TOKENS, limit_field), time.monotonic() + seconds)
-                taken.append(reply.seconds)
-                if way == LOGPROB and reply.candidates is None:
-                    fault = "no log-probabilities are sent"
-                    break
-                choice, _ = read(way, reply, menu, told["options"])
-            except (UnreadableError, NoAnswerError, RefusedError) as error:
-                fault = str(error)
-                continue
-            named += 1
-            same += choice.letter == greedy(told)
-        asked_for = asker.counts.calls
-        yield Way(way, asked_for, named, same, statistics.median(taken or [0.0]), asker.counts, fault)
+        found = _tried(way, Asker(where, client, None, Budget(), 0), seconds, limit_field, {**SETTINGS, **more})
+        if not found.read and found.needs == SAMPLING:
+            asker = Asker(where, client, None, Budget(), 0)
+            found = replace(_tried(way, asker, seconds, limit_field, more), needs=SAMPLING)
+        yield found
+
+
+def _tried(way: str, asker: Asker, seconds: float, limit_field: str, settings: dict[str, Any]) -> Way:
+    """The outcome of some prompts in one way, sent with `settings`."""
+    taken, named, same, fault, needs = [], 0, 0, "", ""
+    for number in range(PROMPTS):
+        told, menu = sample(number)
+        asked, _ = messages("llm-1", SYSTEM, told, ASKS[way])
+        form = {**settings, **request_of(way, menu, TOKENS, limit_field)}
+        try:
+            reply = asker.ask(asked, form, time.monotonic() + seconds)
+            taken.append(reply.seconds)
+            if way == LOGPROB and reply.candidates is None:
+                fault = "no log-probabilities are sent"
+                break
+            choice, _ = read(way, reply, menu, told["options"])
+        except RefusedError as error:
+            fault, needs = str(error), error.remedy
+            break
+        except (UnreadableError, NoAnswerError) as error:
+            fault = str(error)
+            continue
+        named += 1
+        same += choice.letter == greedy(told)
+    return Way(way, asker.counts.calls, named, same, statistics.median(taken or [0.0]), asker.counts, fault, needs)
 
 
 def report(found: list[Way], price_in: float, price_out: float) -> str:
@@ -82,15 +100,17 @@ def report(found: list[Way], price_in: float, price_out: float) -> str:
         lines.append(
             f"{each.way:8} {each.read}/{each.asked:<5} {each.greedy}/{each.asked:<9} {each.seconds:7.2f}  "
             f"{counts.tokens_in / calls:.0f}, {counts.tokens_out / calls:.0f}"
-            + (f"  {each.fault}" if each.fault else "")
+            + (f"  {printable(each.fault)}" if each.fault else "")
         )
+    if any(each.counts.cut for each in found):
+        lines.append("Its server cuts prompts: it says that it read less than half. Start it with a longer context.")
     good = [each for each in found if each.asked and each.read >= WORKS * each.asked]
     if not good:
         return "\n".join([*lines, "It cannot play: in no way could its answers be read."])
     best, count = good[0], DECISIONS * EPISODES
     tokens_in, tokens_out = count * PROMPT_TOKENS, round(count * best.counts.tokens_out / best.counts.calls)
     cost = Budget(price_in=price_in, price_out=price_out).spent(Counts(tokens_in=tokens_in, tokens_out=tokens_out))
-    lines.append(f"It can play: --agent llm:way={best.way},...")
+    lines.append(f"It can play: --agent llm:way={best.way}{best.needs and ','}{best.needs},...")
     lines.append(
         f"{EPISODES} episodes of about {DECISIONS} decisions: {count * best.seconds / 3600:.1f} hours one by one, "
         f"{tokens_in / 1e6:.2f} million tokens read, {tokens_out / 1e6:.2f} written"

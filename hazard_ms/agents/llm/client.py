@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-import json
 import queue
 import random
 import threading
 import time
+import urllib.request
 from collections.abc import Callable
 from functools import partial
 from typing import Any, TypeVar
 
 from hazard_ms.agents.llm.endpoint import KEY_VARIABLE, Endpoint
+from hazard_ms.agents.llm.network.faults import AgainError, NoAnswerError, RefusedError, meaning
+from hazard_ms.spec.foreign.plain import parse
 
-LARGEST = 1_000_000  # size of an answer: hundreds of times that of a letter with its reason [bytes] [ours]
 LONGEST_PAUSE = 60.0  # for which a server may ask before the next try [s] [ours]
 FIRST_PAUSE = 1.0  # before the second try; it doubles with each [s] [ours]
+ENDING = 1.0  # time in which a call ends whose connection was cut [s] [ours]
 FIRST_CONTACT = 10.0  # time for the first sign of a server [s] [ours]
-PASSING = (408, 409, 425, 429)  # status of faults that pass, besides those from 500 on
 HEADERS = (  # that are sent
     "host",
     "accept",
@@ -30,25 +31,7 @@ HEADERS = (  # that are sent
     "user-agent",
     "x-stainless-raw-response",  # by which openai knows how it was asked
 )
-LONGEST_MESSAGE = 200  # characters of a server's message that are shown [ours]
-
 _Made = TypeVar("_Made")
-
-
-class NoAnswerError(RuntimeError):
-    """Raised where no answer came in time, or none that can be read."""
-
-
-class RefusedError(RuntimeError):
-    """Raised where a server will not answer however often it is asked: a wrong key, an unknown model."""
-
-
-class _AgainError(Exception):
-    """A fault that may pass; `pause`: the time for which the server asks [s]."""
-
-    def __init__(self, why: str, pause: float | None = None) -> None:
-        super().__init__(why)
-        self.pause = pause
 
 
 class Client:
@@ -65,30 +48,33 @@ class Client:
         self.retries = 0
         omit: Any = openai.Omit()
         self._headers: dict[str, Any] = {} if endpoint.key else {"Authorization": omit}
+        self._connection = _connection(endpoint)
         self._client = openai.OpenAI(
             base_url=endpoint.base_url,
             api_key=endpoint.key or "none",
             max_retries=0,
             http_client=openai.DefaultHttpxClient(
-                follow_redirects=False, trust_env=not endpoint.local, event_hooks={"request": [_without_others]}
+                transport=self._connection,
+                follow_redirects=False,
+                trust_env=not endpoint.local,
+                event_hooks={"request": [_without_others]},
             ),
         )
 
     def greet(self) -> None:
         """See whether the server is there and takes the key. Raises ValueError where it is not, or does not."""
+        import httpx2
 
         def listed() -> None:
-            models = self._client.models.with_streaming_response
-            with models.list(timeout=FIRST_CONTACT, extra_headers=self._headers):
-                pass
+            self._client.get("/models", cast_to=httpx2.Response, options=self._options(FIRST_CONTACT))
 
         host = self.endpoint.host
         try:
             self._within(FIRST_CONTACT, listed)
         except RefusedError as refused:
-            if "401" in str(refused) or "403" in str(refused):
+            if refused.status in (401, 403):
                 raise ValueError(f"{KEY_VARIABLE} must be a key that {host} takes; {refused}") from None
-        except _AgainError as error:
+        except AgainError as error:
             if "status" not in str(error):
                 raise ValueError(
                     f"base_url must be the address of a running server, got {self.endpoint.base_url}: {error}"
@@ -107,7 +93,7 @@ class Client:
             self.retries += number > 0
             try:
                 return self._within(left, partial(self._call, request, end))
-            except _AgainError as again:
+            except AgainError as again:
                 why = str(again)
                 pause = FIRST_PAUSE * 2**number * self._chance.uniform(0.5, 1.5) if again.pause is None else again.pause
             if pause > LONGEST_PAUSE or time.monotonic() + pause >= end:
@@ -125,11 +111,14 @@ class Client:
             except BaseException as error:  # noqa: B036 it is raised again in the thread that asked
                 done.put((None, error))
 
-        threading.Thread(target=work, daemon=True).start()
+        thread = threading.Thread(target=work, name="llm work", daemon=True)
+        thread.start()
         try:
             made, error = done.get(timeout=seconds + 0.2)  # [s] the call's own time-out comes first
         except queue.Empty:
-            raise _AgainError("no answer in time") from None
+            self._connection.cut()
+            thread.join(ENDING)
+            raise AgainError("no answer in time") from None
         if error is not None:
             raise error
         return made  # type: ignore[return-value]
@@ -138,63 +127,58 @@ class Client:
         """The result of `call`, its errors as ours, without the requests that hold the key."""
         import httpx2
 
+        from hazard_ms.agents.llm.network.transport import BodyError
+
         try:
             return call()
         except (self._openai.APITimeoutError, httpx2.TimeoutException):
-            raise _AgainError("no answer in time") from None
+            raise AgainError("no answer in time") from None
         except self._openai.APIStatusError as error:
-            raise self._meaning(error) from None
-        except (self._openai.APIConnectionError, httpx2.HTTPError, OSError) as error:
-            raise _AgainError(f"no connection ({type(error).__name__})") from None
+            raise meaning(error, (), self.endpoint) from None
+        except (BodyError, self._openai.OpenAIError, httpx2.HTTPError, OSError, ValueError) as error:
+            told = next((each for each in (error, error.__cause__) if isinstance(each, BodyError)), None)
+            if told is not None:
+                raise NoAnswerError(str(told)) from None
+            raise AgainError(f"no connection ({type(error).__name__})") from None
 
     def _call(self, request: dict[str, Any], until: float) -> dict[str, Any]:
-        left = max(until - time.monotonic(), 0.01)
-        chat = self._client.chat.completions.with_streaming_response
+        import httpx2
+
+        options = self._options(max(until - time.monotonic(), 0.01))
         try:
-            with chat.create(**request, timeout=left, extra_headers=self._headers) as response:
-                body = bytearray()
-                for chunk in response.iter_bytes():
-                    body += chunk
-                    if len(body) > LARGEST:
-                        raise NoAnswerError(f"an answer must have at most {LARGEST} bytes, got more")
-                    if time.monotonic() > until:
-                        raise _AgainError("no answer in time")
-        except self._openai.BadRequestError as error:
-            if error.code == "content_filter":  # how Azure says that a filter stopped it
+            answer = self._client.post("/chat/completions", cast_to=httpx2.Response, body=request, options=options)
+        except self._openai.APIStatusError as error:
+            if error.status_code == 400 and error.code == "content_filter":  # how Azure says that a filter stopped it
                 return {"choices": [{"message": {"content": ""}, "finish_reason": "content_filter"}]}
-            raise
+            raise meaning(error, request, self.endpoint) from None
         try:
-            found = json.loads(body)
-        except (ValueError, RecursionError):
+            found = parse(answer.content, "an answer")
+        except ValueError:
             raise NoAnswerError("an answer must be JSON, got something else") from None
         if not isinstance(found, dict):
             raise NoAnswerError("an answer must be a JSON object, got something else")
         hidden: dict[str, Any] = self.endpoint.hide(found)
         return hidden
 
-    def _meaning(self, error: Any) -> Exception:
-        """The error of ours that a server's status means."""
-        status, host = int(error.status_code), self.endpoint.host
-        spent = error.code == "insufficient_quota"
-        if (status in PASSING or status >= 500) and not spent:
-            return _AgainError(f"status {status}", _seconds(error.response.headers.get("retry-after")))
-        if 300 <= status < 400:
-            return RefusedError(f"base_url must be the final address of the server, got a redirect from {host}")
-        told = self.endpoint.hide(str(error.message))
-        shown = "".join(c if c.isprintable() else " " for c in told[:LONGEST_MESSAGE])
-        return RefusedError(f"{host} refused with status {status}: {shown}")
+    def _options(self, seconds: float) -> Any:
+        return {"timeout": seconds, "headers": self._headers}
+
+
+def _connection(endpoint: Endpoint) -> Any:
+    """The connection to an endpoint: direct, or through the proxy that the environment names for it."""
+    import httpx2
+
+    from hazard_ms.agents.llm.network.transport import Bounded
+
+    proxies = urllib.request.getproxies()
+    direct = endpoint.local or urllib.request.proxy_bypass(endpoint.host)
+    scheme = endpoint.base_url.partition(":")[0]
+    proxy = None if direct else proxies.get(scheme) or proxies.get("all")
+    return Bounded(httpx2.HTTPTransport(trust_env=not endpoint.local, proxy=proxy))
 
 
 def _without_others(request: Any) -> None:
     """Take out of a request what the environment holds for another server: openai adds headers that it finds there."""
+    request.headers["accept-encoding"] = "gzip"
     for name in [name for name in request.headers if name.lower() not in HEADERS]:
         del request.headers[name]
-
-
-def _seconds(header: str | None) -> float | None:
-    """The time in a Retry-After header [s]; None where there is none, or a date."""
-    try:
-        seconds = float(header or "")
-    except ValueError:
-        return None
-    return seconds if 0.0 <= seconds < float("inf") else None

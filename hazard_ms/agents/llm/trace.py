@@ -53,6 +53,7 @@ class Trace:
             "replies": [
                 {
                     "text": reply.text,
+                    "thought": reply.thought,
                     "seconds": round(reply.seconds, 3),
                     "tokens": [reply.prompt_tokens, reply.answer_tokens],
                     "cached": reply.cached,

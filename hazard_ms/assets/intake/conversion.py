@@ -14,6 +14,7 @@ from typing import Any
 from hazard_ms.assets.intake.model import Model
 from hazard_ms.assets.intake.worker import PROCESSOR_TIME, UNWRITABLE
 from hazard_ms.assets.rows import Asset
+from hazard_ms.machine.processes import environment
 from hazard_ms.spec.catalogue import CATEGORIES
 from hazard_ms.spec.foreign.files import printable
 
@@ -39,7 +40,7 @@ def convert(model: Model, made: Path, size: float | None) -> dict[str, Any]:
             text=True,
             errors="replace",
             cwd=made,
-            env={**os.environ, "PYTHONPATH": path, "OMP_NUM_THREADS": THREADS, "OPENBLAS_NUM_THREADS": THREADS},
+            env={**environment(), "PYTHONPATH": path, "OMP_NUM_THREADS": THREADS, "OPENBLAS_NUM_THREADS": THREADS},
             timeout=HANGING,
             check=False,
         )

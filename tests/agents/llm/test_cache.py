@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hazard_ms.agents.llm.agent import Llm
-from hazard_ms.agents.llm.cache import Cache, Stored, key_of
+from hazard_ms.agents.llm.cache import TABLE, Cache, Stored, key_of
 from hazard_ms.agents.llm.scripted import ScriptedServer
 from tests.agents.llm.conftest import Ground, Made
 from tests.worlds.playground import play
@@ -86,3 +86,35 @@ def test_two_processes_share_a_file(tmp_path: Path) -> None:
     one.put("a", Stored({"x": [1, "ü"]}, 0.25), "host", "m")
     two.put("b", Stored({}, 1.0), "host", "m")
     assert two.get("a") == Stored({"x": [1, "ü"]}, 0.25) and one.get("b") == Stored({}, 1.0) and one.get("c") is None
+
+
+ROW = "INSERT INTO answers (key, body, seconds, host, model) VALUES ('k', {body}, {seconds}, '', '')"
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        "CREATE VIEW answers AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x+1 FROM c) "
+        "SELECT 'k' AS key, '{}' AS body, 1 AS seconds FROM c WHERE x < 0",
+        f"{TABLE}; CREATE TRIGGER q AFTER INSERT ON answers BEGIN DELETE FROM answers; END",
+        "CREATE TABLE answers (key TEXT PRIMARY KEY, body, seconds, host, model, at)",
+        f"{TABLE}; CREATE TABLE more (x)",
+    ],
+)
+def test_files_with_other_tables_are_refused(tmp_path: Path, script: str) -> None:
+    with sqlite3.connect(tmp_path / "other") as other:
+        other.executescript(script)
+    with pytest.raises(ValueError, match="cache must be a file of recorded answers, got other tables"):
+        Cache(tmp_path / "other")
+
+
+@pytest.mark.parametrize(
+    ("body", "seconds"),
+    [("'[1]'", "1"), ("x'ff00'", "1"), ("'{'", "1"), ("'{}'", "'abc'"), ("'{}'", "9e999"), ("'5'", "1")],
+)
+def test_rows_of_other_types_are_refused(tmp_path: Path, body: str, seconds: str) -> None:
+    cache = Cache(tmp_path / "answers")
+    with sqlite3.connect(tmp_path / "answers") as database:
+        database.execute(ROW.format(body=body, seconds=seconds))
+    with pytest.raises(ValueError, match="answers"):
+        cache.get("k")

@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from hazard_ms.agents.llm.client import RefusedError
+from hazard_ms.agents.llm.network.faults import RefusedError
 from hazard_ms.agents.llm.scripted import BEHAVIOURS, ScriptedServer
 from tests.agents.llm.conftest import Ground, Made
 from tests.worlds.playground import brief, play

@@ -165,3 +165,12 @@ def test_the_system_text_holds_the_hazard_and_the_safe_place() -> None:
     assert "burning" in both and "Water is rising" in both and "in the robot's bag" in both
     assert "1500 frames" in both and "62 frames per metre" in both and "half of its value" in both
     assert '"pick up" takes it' in system_text(wind, False) and '"pick up" takes it' not in both
+
+
+def test_a_history_keeps_its_first_sightings_and_its_last() -> None:
+    """Of eight sightings before the newest one: the first three and the last three."""
+    memory, ground = Memory(0), Playground({"mug_1": (1.0, 0.0)}, {"mug_1": 5.0})
+    for frame in range(9):
+        ground.remember(0, seen((1.0 + frame, 0.0), frame, 20.0 + frame))
+        memory.note(ground.decision())
+    assert [sight.frame for sight in memory.history("mug_1")] == [0, 1, 2, 5, 6, 7]

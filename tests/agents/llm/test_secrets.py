@@ -10,8 +10,9 @@ from typing import ClassVar
 import pytest
 
 from hazard_ms.agents.llm.agent import Llm
-from hazard_ms.agents.llm.client import Client, RefusedError
+from hazard_ms.agents.llm.client import Client
 from hazard_ms.agents.llm.endpoint import HIDDEN, endpoint
+from hazard_ms.agents.llm.network.faults import RefusedError
 from hazard_ms.agents.llm.scripted import ScriptedServer
 from tests.agents.llm.conftest import Ground, Made
 from tests.worlds.playground import play
@@ -55,7 +56,7 @@ def test_without_a_key_none_is_sent(llm: Made, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setenv("OPENAI_API_KEY", SENTINEL)
     with pytest.raises(RefusedError) as refused:
         play(llm("401"), Ground())
-    assert str(refused.value).endswith("incorrect key provided: ")
+    assert str(refused.value).endswith("incorrect key provided:")
 
 
 class Headers(BaseHTTPRequestHandler):

@@ -40,9 +40,7 @@ class Runner:
 
     def played(self, ended: str = RUNNING) -> Played:
         """The course of the episode up to now."""
-        return Played(
-            ended, tuple(self._records), tuple(self._links), dict(self._seconds), counters_of(self.agent)
-        )
+        return Played(ended, tuple(self._records), tuple(self._links), dict(self._seconds), counters_of(self.agent))
 
     @contextmanager
     def _timed(self, phase: str) -> Iterator[None]:

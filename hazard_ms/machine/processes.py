@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 ASK_EVERY = 1.0  # time from one look at the parent of a copy to the next [s] [ours]
 
+
 def end_with_parent() -> None:
     """Let this process end when the one that started it does, even if that was killed.
 

@@ -1,4 +1,4 @@
-"""Episodes are the same with other instructions of the processor, also with those of before AVX2 where that is forced."""
+"""Episodes are the same with other instructions of the processor, also with those of before AVX2."""
 
 from __future__ import annotations
 

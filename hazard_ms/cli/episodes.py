@@ -23,7 +23,7 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
 
     With --agent human it leads to the page of `hazard-ms serve`, on which you play.
 
-    Ends with 1 if the simulation broke.
+    Ends with 1 if the simulation broke. Raises ValueError for an output whose name is too long.
     """
     from hazard_ms.agents.base import user_path
     from hazard_ms.evaluation.result import BROKEN

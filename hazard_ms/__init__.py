@@ -18,6 +18,7 @@ from typing import Any
 from hazard_ms.registry import load, register_agent, register_hazard, register_robot, register_task
 from hazard_ms.registry.announce import announce
 from hazard_ms.registry.detectors import register_detector
+from hazard_ms.registry.instructions import agree
 from hazard_ms.registry.version import __version__
 
 _LAZY = {  # imported when they are first asked for: they need torch, SAPIEN and ManiSkill
@@ -71,4 +72,5 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *_LAZY})
 
 
+agree()
 announce()

@@ -7,6 +7,7 @@ imports it. Parameters follow the name: `agent("greedy:give_up=3")`.
 from __future__ import annotations
 
 import abc
+import math
 import os
 import re
 import sys
@@ -77,6 +78,22 @@ def note_of(player: Agent) -> str:
         raise ValueError(f"note of {type(player).__name__} must be a str or None, got a {type(note).__name__}")
     shown = "".join(c if c.isprintable() else " " for c in (note or "")[: LONGEST_NOTE + 1])
     return shown if len(shown) <= LONGEST_NOTE else shown[: LONGEST_NOTE - 1] + "…"
+
+
+def counters_of(player: Agent) -> dict[str, float]:
+    """The agent's counters, whose numbers have the units that it gives them.
+
+    Raises ValueError for names that are not short texts, and for values that are not finite numbers.
+    """
+    who, made = type(player).__name__, dict(player.counters)
+    for name, value in made.items():
+        if not isinstance(name, str) or len(name) > LONGEST_NOTE:
+            raise ValueError(
+                f"names of counters of {who} must be texts of at most {LONGEST_NOTE} characters, got {name!r:.100}"
+            )
+        if not isinstance(value, int | float) or not math.isfinite(value):
+            raise ValueError(f"counter {name!r:.100} of {who} must be a finite number, got {value!r:.100}")
+    return made
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -22,12 +23,13 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
 
     With --agent human it leads to the page of `hazard-ms serve`, on which you play.
 
-    Ends with 1 if the simulation broke.
+    Ends with 1 if the simulation broke. Raises ValueError for an output whose name is too long.
     """
     from hazard_ms.agents.base import user_path
     from hazard_ms.evaluation.result import BROKEN
     from hazard_ms.evaluation.runner import play as run
     from hazard_ms.evaluation.runner import summary
+    from hazard_ms.evaluation.sweep import LONGEST_NAME
     from hazard_ms.evaluation.watchers import Progress
 
     user_path()
@@ -35,6 +37,10 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
         print("A person plays on the page of `hazard-ms serve`, which begins here; choose the task and the seed there.")
         return serve(ServeOptions(load=options.episode.load))
     options.check()
+    if options.output is not None and len(os.fsencode(options.output.with_suffix(".html").name)) > LONGEST_NAME:
+        raise ValueError(
+            f"output must have a name of at most {LONGEST_NAME - 1} bytes, got {options.output.name!r:.100}"
+        )
     if options.output is None:
         result = run(options.episode, [Progress(options.episode.agent)])
     else:

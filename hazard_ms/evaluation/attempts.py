@@ -29,7 +29,9 @@ def attempt(job: Job, say: Say) -> Outcome:
     teller = Teller(job.options, say)
     try:
         player = None if job.actions is None else Recorded(job.actions, job.options.agent, job.waits)
-        return Outcome(play(job.options, [teller], player))
+        result = play(job.options, [teller], player)
+        result.to_json()  # what cannot be written is this agent's fault, not that of who gathers results
+        return Outcome(result)
     except KeyboardInterrupt:
         raise
     except BaseException as error:

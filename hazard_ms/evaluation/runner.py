@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
-from hazard_ms.agents.base import Agent, PrivilegedAgent, agent, note_of, staying
+from hazard_ms.agents.base import Agent, PrivilegedAgent, agent, counters_of, note_of, staying
 from hazard_ms.agents.thinking import OFF, frames_of, seconds_of
 from hazard_ms.evaluation.hashes import EVERY, extended
 from hazard_ms.evaluation.metrics import Fate, Tally
@@ -40,8 +40,7 @@ class Runner:
 
     def played(self, ended: str = RUNNING) -> Played:
         """The course of the episode up to now."""
-        counters = dict(self.agent.counters)
-        return Played(ended, tuple(self._records), tuple(self._links), dict(self._seconds), counters)
+        return Played(ended, tuple(self._records), tuple(self._links), dict(self._seconds), counters_of(self.agent))
 
     @contextmanager
     def _timed(self, phase: str) -> Iterator[None]:

@@ -3,7 +3,8 @@
 A step of a hazard in torch is some 250 operations of 3 us each, however few bodies there are; as a kernel it is one of
 10 us. A result does not depend on the number of environments. A kernel is compiled when it is first used: about 10 s
 for all, once per machine (kept in the cache folder of hazard_ms; WARP_CACHE_PATH moves it). Every module of kernels
-sets `OPTIONS`: products and sums are not fused, so that all processors round alike.
+sets `OPTIONS`: products and sums are not fused, and all processors with AVX2 run the same machine code, so that they
+round alike.
 """
 
 from __future__ import annotations
@@ -24,8 +25,17 @@ from hazard_ms.kernels.compiled import cache, verified, writable
 from hazard_ms.kernels.structs import Argument, Filled, alike, another
 from hazard_ms.machine.progress import slow
 
+# Warp's own flags of the compiler (warp.config.cpu_compiler_flags), but for a processor that is every one with AVX2
+_WITH_AVX2 = (
+    "-target-cpu x86-64-v3 -mllvm=-inline-threshold=9000 -mllvm=-inline-cold-callsite-threshold=3000"
+    " -mllvm=-slp-recursion-max-depth=4"
+)
 # Options of Warp that every module of kernels sets
-OPTIONS = {"enable_backward": False, "fuse_fp": False}
+OPTIONS = {
+    "enable_backward": False,
+    "fuse_fp": False,
+    "cpu_compiler_flags": _WITH_AVX2 if torch.backends.cpu.get_cpu_capability().startswith("AVX") else None,
+}
 
 CPU_BLOCK, GPU_BLOCK = 1, 256  # threads of a block: Warp's own choices, which name the folder of a compiled module
 

@@ -6,9 +6,11 @@ import contextlib
 import multiprocessing
 import os
 import threading
+import time
 from collections.abc import Iterator, Mapping, Sequence
 
 KEYS = ("HAZARD_MS_LLM_KEY", "HAZARD_MS_LLM_KEY_FILE")  # a key for models, and where it is
+ASK_EVERY = 1.0  # time from one look at the parent of a copy to the next [s] [ours]
 
 
 def environment(variables: Mapping[str, str] | None = None) -> dict[str, str]:
@@ -39,9 +41,11 @@ def without_keys(needed: bool = False) -> Iterator[None]:
 def end_with_parent() -> None:
     """Let this process end when the one that started it does, even if that was killed.
 
-    It would stay for ever otherwise, and go on with what it was given. For processes of `multiprocessing`.
+    It would stay for ever otherwise, and go on with what it was given. For processes of `multiprocessing`; a copy of
+    this process that somebody's code makes by os.fork ends with it likewise.
     """
     threading.Thread(target=_watch, daemon=True).start()
+    os.register_at_fork(after_in_child=_end_with_original)
 
 
 def _watch() -> None:
@@ -49,6 +53,17 @@ def _watch() -> None:
     if parent is not None:
         parent.join()
         os._exit(1)
+
+
+def _end_with_original() -> None:
+    """Threads do not live on in a copy, so it gets one of its own, which asks whether its parent is another one now."""
+    threading.Thread(target=_watch_original, args=(os.getppid(),), daemon=True).start()
+
+
+def _watch_original(process: int) -> None:
+    while os.getppid() == process:
+        time.sleep(ASK_EVERY)
+    os._exit(1)
 
 
 @contextlib.contextmanager

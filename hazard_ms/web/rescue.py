@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import secrets
 from dataclasses import asdict, dataclass, field, fields, replace
@@ -22,6 +23,7 @@ VIEWS = (ALL, ROBOT)
 PACES = (1, 2, 4, 8, 16)  # frames of the episode from one picture to the next
 JOURNALS = ".rescues"  # folder of journals in the folder of results
 END = ".journal"  # of their names: no result ends so
+LONGEST_AGENT = 120  # of its name, so that a result's file has at most 255 [bytes] [ours]
 FORMAT = 1  # of journals; goes up when a field changes its meaning
 NAME = re.compile(r"[0-9a-f]{16}")  # of a rescue
 NAMES = ("split", "physics", "severity", "robot_uids", "lighting")
@@ -71,6 +73,10 @@ class Rescue:
                 raise ValueError(f"{what} must be a name, got {getattr(e, what)!r:.100}")
         if not isinstance(e.affects_agent, bool):
             raise ValueError(f"affects_agent must be true or false, got {e.affects_agent!r:.100}")
+        if len(os.fsencode(e.agent)) > LONGEST_AGENT:
+            raise ValueError(
+                f"agent must have at most {LONGEST_AGENT} bytes, as its result is named by it, got {e.agent!r:.100}"
+            )
         e.check()
         if e.scene is not None and (not isinstance(e.scene, str) or e.scene.endswith(".json")):
             raise ValueError(f"scene must be the name of a scene of the split, got {e.scene!r:.100}")

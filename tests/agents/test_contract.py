@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from hazard_ms.agents.base import LONGEST_NOTE, Agent, agent, check_name, note_of
+from hazard_ms.agents.base import LONGEST_NOTE, Agent, agent, check_name, counters_of, note_of
 from hazard_ms.agents.greedy import Greedy
 from hazard_ms.hazards.presets import hazard
 from hazard_ms.registry import AGENTS, HAZARDS
@@ -229,3 +231,14 @@ def test_the_memory_of_the_map_cannot_be_written() -> None:
     live.forget(1)
     live.explored[3, 4] = False
     assert 1 in seen.objects and seen.explored[3, 4], "a decision keeps what was known when it was taken"
+
+
+@pytest.mark.parametrize("wrong", [{"a": math.nan}, {"a": math.inf}, {"a": "x"}, {5: 1.0}, {"a" * 3000: 1.0}])
+def test_counters_are_finite_numbers_with_short_names(wrong: dict[Any, Any]) -> None:
+    player = agent("random")
+    assert counters_of(player) == {}
+    player.counters = {"asked": 3, "cost": 0.5}
+    assert counters_of(player) == {"asked": 3, "cost": 0.5}
+    player.counters = wrong
+    with pytest.raises(ValueError, match="Random must be"):
+        counters_of(player)

@@ -13,7 +13,7 @@ record = json.loads(RECORD.read_text())
 
 
 @pytest.mark.skipif(
-    record["machine"] != machine(), reason="recorded with other packages, or on another kind of processor"
+    record["machine"] != machine(), reason="recorded with other packages, or on a processor without AVX2"
 )
 @pytest.mark.parametrize("physics", PRESETS)
 @pytest.mark.parametrize("env_id", TASKS)

@@ -103,3 +103,12 @@ def test_cameras_of_any_size_show_the_hazard() -> None:
     seen = env.reset(seed=0)[0]["sensor_data"]["head"]
     assert seen["rgb"].shape == (1, 24, 40, 3) and seen["hazard"].shape == (1, 24, 40, 1)
     env.close()
+
+
+def test_another_default_type_of_numbers_is_refused() -> None:
+    torch.set_default_dtype(torch.float64)
+    try:
+        with pytest.raises(ValueError, match="must be torch.float32, got torch.float64"):
+            gym.make("HazardFire-v1", render_backend="none")
+    finally:
+        torch.set_default_dtype(torch.float32)

@@ -52,6 +52,13 @@ def test_what_differs_is_told() -> None:
     assert compare(record, None, "ValueError: no") == (DIFFERENT, ", it could not be played: ValueError: no")
 
 
+def test_an_episode_that_failed_counts_as_replayed_only_if_it_failed_alike() -> None:
+    record = dataclasses.replace(result_of(EPISODES[0], ended="error"), error="KeyError: 'plan'")
+    assert compare(record, record, "KeyError: 'plan'") == (EXACT, "")
+    other = dataclasses.replace(record, error="ValueError: no")
+    assert compare(record, other, "ValueError: no") == (DIFFERENT, ", it could not be played: ValueError: no")
+
+
 def test_the_actions_of_a_record_are_taken_in_order_and_no_file_of_others_is_run(tmp_path: Path) -> None:
     (tmp_path / "own.py").write_text(OWN.format(mark=str(tmp_path / "mark")))
     player = Recorded(((EXPLORE, None), (WALK_ONE_STEP, "pan_1")), f"{tmp_path}/own.py:Mine")

@@ -60,6 +60,18 @@ def test_the_student_goes_on_after_its_options_from_the_third_round_on(monkeypat
     assert judges == [POLICIES["greedy"]] * 2 + [student.play] * 2
 
 
+def test_a_student_is_as_after_its_best_round_also_where_that_is_not_the_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    values, weights = iter([0.0, 0.5, 0.9, 0.3]), []  # of the judge, and after each round
+    monkeypatch.setattr(cloning, "_value", lambda *given: next(values))
+    student, scenes = Student(FIRE, 0), [random_scene(seed) for seed in range(2)]
+
+    def now() -> torch.Tensor:
+        return torch.cat([part.detach().flatten() for part in student.policy.parameters()])
+
+    train(student, scenes, scenes, chancy_times(), 0, 3, 4, lambda _: weights.append(now()))
+    assert torch.equal(now(), weights[1]) and not torch.equal(weights[1], weights[2])
+
+
 def test_training_is_repeatable() -> None:
     scenes = [random_scene(seed) for seed in range(3)]
     weights = []

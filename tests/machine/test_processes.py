@@ -37,6 +37,35 @@ def test_a_killed_process_leaves_none_of_its_own(tmp_path: Path) -> None:
     assert not Path(f"/proc/{child}").exists() or "Z" in state(child)
 
 
+FORKS = """
+import multiprocessing, os, time
+from hazard_ms.machine.processes import end_with_parent
+
+def work():
+    end_with_parent()
+    if os.fork() == 0:
+        print(os.getpid(), flush=True)
+        time.sleep(600)
+
+if __name__ == "__main__":
+    worker = multiprocessing.get_context("spawn").Process(target=work)
+    worker.start()
+    worker.join()
+"""
+
+
+def test_a_copy_that_a_process_made_of_itself_ends_with_it(tmp_path: Path) -> None:
+    (tmp_path / "parent.py").write_text(FORKS)
+    with subprocess.Popen([sys.executable, tmp_path / "parent.py"], stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        copy = int(parent.stdout.readline())
+        parent.wait()
+    until = time.monotonic() + 20.0
+    while state(copy) != "Z" and time.monotonic() < until:
+        time.sleep(0.1)
+    assert state(copy) == "Z"
+
+
 def state(process: int) -> str:
     """The letter that says what a process does: Z for one that has ended, but was not yet asked for its result."""
     try:

@@ -59,3 +59,8 @@ def test_a_person_goes_on_where_an_agent_was() -> None:
 def test_nobody_goes_on_with_a_map_that_shows_what_is_hidden() -> None:
     with pytest.raises(ValueError, match="sees no more than a person"):
         taken_over(asked_for({"kind": "watch", "agent": "oracle"}, ()), 0)
+
+
+def test_an_agent_whose_result_could_not_be_named_is_refused_before_it_plays() -> None:
+    with pytest.raises(ValueError, match="agent must have at most 120 bytes"):
+        asked_for({"kind": "watch", "agent": "greedy:give_up=" + "0" * 200 + "3"}, ())

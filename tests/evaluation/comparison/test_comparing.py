@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 from pathlib import Path
@@ -10,6 +11,7 @@ from urllib.parse import unquote
 import pytest
 
 from hazard_ms.cli.__main__ import main
+from hazard_ms.evaluation.comparison.folders import Kept, grouped
 from hazard_ms.evaluation.metrics import value
 from tests.worlds.courses import course, drawn, fate
 from tests.worlds.files.html_pages import Reader
@@ -45,6 +47,14 @@ def test_the_page_is_whole_and_stands_alone(folder: Path, capsys: pytest.Capture
     assert len(links) == 20 + 1 and all(link.is_file() for link in links)  # each episode's page, and one film
     assert film.resolve() in links and film.with_suffix(".html").resolve() in links
     assert str(page) in capsys.readouterr().out
+
+
+def test_results_with_and_without_a_clock_are_not_compared() -> None:
+    plain = drawn("greedy", 0, 0.6)
+    clocked = dataclasses.replace(drawn("rule", 0, 0.6), clock="wall")
+    made = grouped([Kept(plain, Path("a.json")), Kept(clocked, Path("b.json"))])
+    assert [list(group.agents) for group in made] == [["greedy"], ["rule"]]
+    assert made[1].title == f"{made[0].title}, clock wall"
 
 
 def test_json_holds_the_scores(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

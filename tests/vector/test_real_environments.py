@@ -93,7 +93,10 @@ def test_the_batch_of_a_gpu_has_the_same_interface(mode: AutoresetMode) -> None:
     steps = 3 * FRAMES + 1
     env = BatchedEnv(gym.make(TASK, **KEYWORDS), mode)
     single = alone(NumpyEnv(gym.make(TASK, **KEYWORDS)), 7, 0, steps, mode)
-    together = [env.reset(seed=7), *(env.step(action[:1]) for action in actions(steps))]
+    together = [
+        env.reset(seed=7, options={"lerobot_new_rollout": True}),
+        *(env.step(action[:1]) for action in actions(steps)),
+    ]
     assert env.metadata["autoreset_mode"] == mode
     for played, expected in zip(together, single, strict=True):
         obs, *numbers, info = row(played, 0)
@@ -107,7 +110,7 @@ def test_the_batch_of_a_gpu_has_the_same_interface(mode: AutoresetMode) -> None:
 
 def test_wrappers_of_gymnasium_fit(three: VectorEnv[Any, Any, Any]) -> None:
     wrapped = DictInfoToList(RecordEpisodeStatistics(three))
-    obs, told = wrapped.reset(seed=1)
+    obs, told = wrapped.reset(seed=1, options={"lerobot_new_rollout": True})  # as lerobot-eval does
     assert wrapped.observation_space.contains(obs) and [info["elapsed_steps"] for info in told] == [0] * 3
     sums = np.zeros(3)
     for action in actions(FRAMES):

@@ -66,6 +66,8 @@ def test_a_seed_chooses_the_scene_and_begins_a_series(env: Any) -> None:
     assert (played[0] != played[1]).any()
     named, _ = env.reset(seed=0, options={"scene": TWO[1]})
     assert (named != played[0]).any()
+    told, _ = env.reset(seed=0, options={"lerobot_new_rollout": True, "scene": TWO[1]})  # as lerobot-eval does
+    np.testing.assert_array_equal(told, named)
     series = [[env.reset(seed=4)[0], env.reset()[0], env.reset()[0]] for _ in range(2)]
     np.testing.assert_array_equal(*series)
 

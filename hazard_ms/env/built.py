@@ -45,6 +45,11 @@ class BuiltEnv(BaseEnv):
     observer: Observer
 
     @property
+    def task_description(self) -> str:
+        """The task in one sentence: what agents are told, and what demonstrations hold as the instruction."""
+        return self.task.text
+
+    @property
     def _default_sim_config(self) -> SimConfig:
         control, physics = FREQUENCIES[self.physics]
         return SimConfig(sim_freq=physics, control_freq=control, spacing=SPACING)

@@ -11,6 +11,7 @@ from typing import Any
 
 from hazard_ms.demonstrations.layout import Entry, shelves
 from hazard_ms.demonstrations.reading import described, entries, numbered
+from hazard_ms.evaluation.replay import other_versions
 
 NUMBER = re.compile(r"\d+(\.\d+)?")
 
@@ -76,5 +77,8 @@ class Stats:
 
 
 def stats(dataset: Path) -> str:
-    """The numbers of a dataset as text."""
-    return f"{dataset}\n\n{Stats.of(dataset).table()}\n"
+    """The numbers of a dataset as text, and the packages of which this machine has another version."""
+    found = Stats.of(dataset)
+    others = Counter(other_versions(entry.versions) for entry in found.entries)
+    told = "".join(f"\n{count} episodes recorded with {text}\n" for text, count in others.items() if text)
+    return f"{dataset}\n\n{found.table()}\n{told}"

@@ -8,7 +8,7 @@ from pathlib import Path
 from hazard_ms.demonstrations.layout import DAMAGED, FAILURES, MANIFEST, DamagedDatasetError, Entry, datasets
 from hazard_ms.demonstrations.reading import differences, entries, numbered, read_episode
 from hazard_ms.demonstrations.store import entry_of, parts
-from hazard_ms.evaluation.replay import EXACT, compare, job_of
+from hazard_ms.evaluation.replay import EXACT, apart, compare, job_of
 from hazard_ms.evaluation.spread import spread
 
 
@@ -19,14 +19,14 @@ def verify(folder: Path, replay: bool = False, workers: int = 0, load: tuple[str
     that they need. Raises ValueError for a folder without datasets.
     """
     count = wrong = 0
-    whole: list[Path] = []
+    whole: dict[Path, Entry] = {}
     for shelf in datasets(folder, failures=True):
         for name, fault in faults(shelf):
             wrong += 1
             print(f"{shelf / name}: {fault}", flush=True)
         for entry in entries(shelf):
             count += 1
-            whole += [] if differences(shelf / entry.name, entry) else [shelf / entry.name]
+            whole |= {} if differences(shelf / entry.name, entry) else {shelf / entry.name: entry}
     if replay:
         wrong += _replayed(whole, workers, load)
     told = f", {wrong} faults; `hazard-ms demos repair {folder}` puts files in order" if wrong else ", no fault"
@@ -66,9 +66,9 @@ def _unlike(folder: Path, entry: Entry) -> str:
     return f"its line in {MANIFEST} has another {', '.join(other)}" if other else ""
 
 
-def _replayed(folders: list[Path], workers: int, load: tuple[str, ...]) -> int:
+def _replayed(whole: dict[Path, Entry], workers: int, load: tuple[str, ...]) -> int:
     """Simulate episodes again, and print how each compares with its record. Returns how many are not exact."""
-    records = {folder: read_episode(folder).result for folder in folders}
+    records = {folder: read_episode(folder).result for folder in whole}
     jobs = {id(job): (folder, job) for folder, record in records.items() for job in [job_of(record, load)]}
     wrong = 0
     with spread([job for _, job in jobs.values()], workers) as outcomes:
@@ -76,5 +76,5 @@ def _replayed(folders: list[Path], workers: int, load: tuple[str, ...]) -> int:
             folder, _ = jobs[id(job)]
             verdict, why = compare(records[folder], outcome.result, outcome.error)
             wrong += verdict != EXACT
-            print(f"{folder}: {verdict}{why}", flush=True)
+            print(f"{folder}: {verdict}{why}{apart(whole[folder].versions)}", flush=True)
     return wrong

@@ -45,6 +45,11 @@ class BuiltEnv(BaseEnv):
     observer: Observer
 
     @property
+    def task_description(self) -> str:
+        """The task in one sentence: what agents are told, and what demonstrations hold as the instruction."""
+        return self.task.text
+
+    @property
     def _default_sim_config(self) -> SimConfig:
         control, physics = FREQUENCIES[self.physics]
         return SimConfig(sim_freq=physics, control_freq=control, spacing=SPACING)
@@ -127,6 +132,10 @@ class BuiltEnv(BaseEnv):
         if self.obs_mode != "state":
             return super()._flatten_raw_obs(obs)
         return torch.cat(_tensors(obs), dim=1)  # as ManiSkill's, in one step
+
+    def target_ids(self, env: int = 0) -> list[int]:
+        """The id in a segmentation of scene `env` for each target of the entries extra/target_*; 0 without one."""
+        return self.observer.target_ids(env)
 
     def place_robot(self, position: tuple[float, float], heading: float, env: int = 0) -> None:
         """Put the robot of environment `env` at `position` x, y [m] with `heading` [rad], tucked and at rest.

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 
 from hazard_ms.evaluation.options import EpisodeOptions, ReplayOptions
-from hazard_ms.evaluation.result import EpisodeResult, result_files
+from hazard_ms.evaluation.result import EpisodeResult, result_files, versions
 from hazard_ms.evaluation.spread import spread
 from hazard_ms.evaluation.workers import SILENCE, Job
 
@@ -29,7 +30,7 @@ def replay(options: ReplayOptions) -> int:
             path, record = left[id(job)]
             verdict, why = compare(record, outcome.result, outcome.error)
             found[verdict] += 1
-            print(f"{path}: {verdict}{why}", flush=True)
+            print(f"{path}: {verdict}{why}{apart(record.versions)}", flush=True)
     print(", ".join(f"{n} {verdict}" for verdict, n in found.most_common()))
     return int(found[DIFFERENT] > 0)
 
@@ -70,6 +71,18 @@ def compare(record: EpisodeResult, played: EpisodeResult | None, error: str = ""
     if record.links != played.links:
         return SAME_SCORE, _since(record, played)
     return EXACT, ""
+
+
+def other_versions(recorded: Mapping[str, str]) -> str:
+    """The packages of which a record was made with another version, as "sapien 3.0.2, here 3.0.3"; empty if none."""
+    here = versions()
+    return "; ".join(f"{n} {v}, here {here.get(n, 'absent')}" for n, v in recorded.items() if here.get(n) != v)
+
+
+def apart(recorded: Mapping[str, str]) -> str:
+    """What to add to a verdict about a record that was made with these versions of packages."""
+    others = other_versions(recorded)
+    return f"; recorded with {others}" if others else ""
 
 
 def _since(record: EpisodeResult, played: EpisodeResult) -> str:

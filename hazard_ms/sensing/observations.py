@@ -51,6 +51,11 @@ class Observer:
         """Name and category of each id of a segmentation in scene `env`."""
         return label_table(self.situation.world, self.labels, env)
 
+    def target_ids(self, env: int = 0) -> list[int]:
+        """The id in a segmentation of scene `env` for each target of the entries extra/target_*; 0 without one."""
+        numbers = self.labels[env].tolist()
+        return [numbers.index(index) if index >= 0 else 0 for index in self.table.index[env].tolist()]
+
     def show(self, spectator: bool = False) -> None:
         """Show everything as it is now; call it before a picture is taken, with `spectator` in third person."""
         self.display.show(spectator=spectator)

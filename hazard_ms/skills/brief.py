@@ -48,7 +48,7 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
     """The brief of the episode of `max_frames` that has begun in the HazardEnv `base`, in the words of `labeller`."""
     return Brief(
         task=base.task.name,
-        text=base.task.text,
+        text=base.task_description,
         targets=labeller.targets(),
         containers=labeller.containers,
         safe_place=base.task.safe_place.name,

@@ -19,6 +19,7 @@ SHOWN = 12  # names that an error lists; where there are more, it names the near
 NEAREST = 5  # names that an error suggests where it cannot list all
 LEAST_PIXELS = 16  # of a camera's image each way: the hazard image has as many samples
 OPTIONS = ("scene", "reconfigure", "env_idx", "reset_to_env_states")
+FOREIGN_OPTIONS = ("lerobot_new_rollout",)  # tools give these to every environment; ignored: lerobot-eval since 0.6.1
 # torch's numbers that actions and states may hold: all that numpy or learners compute with
 PLAIN_DTYPES = {"float16", "bfloat16", "float32", "float64"} | {
     f"{u}int{n}" for u in ("", "u") for n in (8, 16, 32, 64)
@@ -83,11 +84,15 @@ def seeds(value: Any, num_envs: int) -> Any:
 
 
 def options(value: Any, num_envs: int) -> dict[str, Any]:
-    """The `options` of a reset, the rows of `env_idx` as a tensor. Raises ValueError for any that no reset knows."""
+    """The `options` of a reset, the rows of `env_idx` as a tensor, without FOREIGN_OPTIONS.
+
+    Raises ValueError for any that no reset knows.
+    """
     if value is None:
         return {}
     if not isinstance(value, dict):
         raise ValueError(f"options must be a dict or None, got {value!r}")
+    value = {key: given for key, given in value.items() if key not in FOREIGN_OPTIONS}
     for key in value:
         one_of(key, OPTIONS, "a reset option")
     if "scene" in value and value["scene"] is None:
@@ -96,7 +101,7 @@ def options(value: Any, num_envs: int) -> dict[str, Any]:
         flag(value["reconfigure"], "reset option 'reconfigure'")
     if "env_idx" in value:
         return {**value, "env_idx": rows(value["env_idx"], num_envs, "reset option 'env_idx'")}
-    return dict(value)
+    return value
 
 
 def rows(value: Any, num_envs: int, what: str) -> Any:

@@ -43,7 +43,8 @@ class SB3VecEnv(VecEnv):
         mode = envs.metadata.get("autoreset_mode")
         if mode != AutoresetMode.SAME_STEP:
             raise ValueError(f"autoreset_mode must be SameStep for Stable-Baselines3, got {mode}")
-        self.envs, self._scale, self._bootstraps, self._masks = envs, scale, bootstraps, masks
+        self.envs, self._scale, self._bootstraps = envs, scale, bootstraps
+        self._masks = masks or getattr(envs, MASKS, None)  # a batch has masks of its own, processes are asked for them
         self._seed: int | None = None
         self._actions: Any = None
         self._returns, self._steps = np.zeros(envs.num_envs), np.zeros(envs.num_envs, np.int64)

@@ -6,16 +6,18 @@ import dataclasses
 import random
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from hazard_ms.cli.__main__ import main
-from hazard_ms.demonstrations.layout import FAILURES, datasets
+from hazard_ms.demonstrations.layout import FAILURES, MANIFEST, datasets
 from hazard_ms.demonstrations.options import RecordOptions
 from hazard_ms.demonstrations.reading import entries
 from hazard_ms.demonstrations.recording import RecordJob, attempt
-from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.evaluation.result import EpisodeResult, versions
 from results.killed_recordings import Ordeal
 from tests.worlds.files.checkout import ROOT
 from tests.worlds.recordings import content, stored
@@ -36,6 +38,29 @@ def test_a_dataset_is_looked_after_by_commands(tmp_path: Path, capsys: pytest.Ca
     assert main(["demos", "stats", str(tmp_path / "b")]) == 0 and "1 of 1" in capsys.readouterr().out
     assert main(["demos", "stats", str(tmp_path / "none")]) == 2
     assert "folder must hold a dataset" in capsys.readouterr().err
+
+
+def test_episodes_of_another_engine_are_told_beside_the_verdict(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The verdict is that of the simulation; with one action that was changed, an episode is damaged, not different."""
+    dataset = tmp_path / "HazardFire-v1" / "oracle"
+    stored(dataset, 0)
+    manifest, here = dataset / MANIFEST, version("sapien")
+    (entry,) = entries(dataset)
+    manifest.write_text(dataclasses.replace(entry, versions={**versions(), "sapien": "3.0.0"}).line())
+    told = f"recorded with sapien 3.0.0, here {here}\n"
+    assert main(["demos", "stats", str(dataset)]) == 0 and f"1 episodes {told}" in capsys.readouterr().out
+    main(["demos", "verify", str(tmp_path), "--replay", "--workers", "1"])
+    (line,) = [line for line in capsys.readouterr().out.splitlines(keepends=True) if "s000000: " in line]
+    assert line.endswith(f"; {told}")
+    frames = dataset / entry.name / "frames.npz"
+    with np.load(frames) as file:
+        arrays = dict(file)
+    arrays["action"][1, 0] += 1e-3
+    np.savez_compressed(frames, **arrays)
+    assert main(["demos", "verify", str(tmp_path), "--replay", "--workers", "1"]) == 1
+    assert "other bytes in frames.npz" in (said := capsys.readouterr().out) and "different" not in said
 
 
 @pytest.mark.render

@@ -75,6 +75,12 @@ def second(recorded: Demonstration) -> Iterator[Any]:
     env.close()
 
 
+def test_the_instruction_is_what_the_environment_tells_a_policy(recorded: Demonstration, second: Any) -> None:
+    """One sentence for training and evaluation: policies fail on other words than they were trained on."""
+    assert recorded.meta["instruction"] == second.get_wrapper_attr("task_description") == second.unwrapped.task.text
+    assert recorded.meta["prompts"][0]["text"].startswith(recorded.meta["instruction"] + "\n")
+
+
 def test_a_second_environment_passes_through_the_recorded_states(recorded: Demonstration, second: Any) -> None:
     """Bit by bit: joints, poses, observations, rewards and, every tenth frame, the state of everything."""
     frames, base = recorded.frames, second.unwrapped

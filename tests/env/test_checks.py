@@ -28,6 +28,14 @@ def test_other_seeds_are_refused(value: Any) -> None:
         checks.seeds(value, 2)
 
 
+def test_reset_options_of_other_tools_are_ignored_and_errors_in_names_are_not() -> None:
+    """lerobot-eval gives its own to every environment."""
+    assert checks.options({"lerobot_new_rollout": True, "scene": "kitchen_a/00"}, 1) == {"scene": "kitchen_a/00"}
+    for wrong in ("lerobot_rollout", "scenes", "Lerobot_new_rollout", "_scene"):
+        with pytest.raises(ValueError, match=f"a reset option must be one of .*got '{wrong}'"):
+            checks.options({wrong: True}, 1)
+
+
 def test_a_name_with_an_error_is_refused_with_the_one_that_was_meant() -> None:
     with pytest.raises(
         ValueError, match=r"task must be one of fire, flood, wind, got 'flod' \(did you mean 'flood'\?\)"

@@ -58,6 +58,22 @@ def test_check_env_has_nothing_to_say(mode: str) -> None:
     made.close()
 
 
+def test_each_target_of_the_table_has_an_id_in_pictures() -> None:
+    """The renderer's own entity of that id stands where the table says the target is; absent targets have the id 0."""
+    env = gym.make("HazardFire-v1", obs_mode="state_dict", render_backend="none")
+    obs, _ = env.reset(seed=0)
+    base: Any = env.unwrapped
+    ids, places = base.target_ids(), obs["extra"]["target_position"].reshape(-1, 3)
+    entities = {e.per_scene_id: e for e in base.scene.sub_scenes[0].entities}
+    count = int((obs["extra"]["target_value"] > 0.0).sum())
+    assert len(ids) == len(places) and 0 < count == len(set(ids[:count])) and set(ids[count:]) == {0}
+    for number, place in zip(ids[:count], places, strict=False):
+        entity, (name, category) = entities[number], base.label_table()[number]
+        assert entity.name.endswith(name) and (name, category) in {(t.name, t.category) for t in base.specs[0].targets}
+        assert np.linalg.norm(entity.pose.p[:2] - place[:2].numpy()) < 0.1
+    env.close()
+
+
 def test_observations_share_no_memory() -> None:
     made = NumpyEnv(gym.make("HazardFire-v1", obs_mode="state_dict", render_backend="none"))
     first, _ = made.reset(seed=0)

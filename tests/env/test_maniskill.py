@@ -12,6 +12,7 @@ import gymnasium as gym
 import h5py
 import numpy as np
 import pytest
+import torch
 from mani_skill.utils.wrappers.record import RecordEpisode
 
 import hazard_ms  # noqa: F401 registers the environments
@@ -120,6 +121,29 @@ def test_wrappers_of_maniskill() -> None:
     obs, _ = stacked.reset(seed=0)
     assert tuple(obs.shape) == (*single[:1], 3, *single[1:])
     assert stacked.step(stacked.action_space.sample())[0].shape == obs.shape
+    env.close()
+
+
+def test_cached_resets_begin_at_one_of_the_cached_states() -> None:
+    """What is seen is what that state shows, its hazards, and frame 1 comes after one step."""
+    from mani_skill.utils.wrappers.cached_reset import CachedResetsConfig, CachedResetWrapper
+
+    made = gym.make("HazardFire-v1", obs_mode="state", render_backend="none", deterministic=False, scene_every=0)
+    env = CachedResetWrapper(made, config=CachedResetsConfig(num_resets=2, seed=5))
+    cached = [env._cached_resets_obs_buffer[k : k + 1] for k in range(2)]
+    states = env._cached_resets_env_states["hazard_ms"]
+    seeds = states["chance"]["seed"].tolist()
+    assert seeds[0] != seeds[1]
+    for _ in range(3):
+        obs, _ = env.reset()
+        now = made.unwrapped.get_state_dict()["hazard_ms"]  # type: ignore[attr-defined]
+        number = seeds.index(now["chance"]["seed"][0].tolist())
+        assert torch.equal(obs, cached[number])
+        assert torch.equal(made.unwrapped.get_obs(made.unwrapped.get_info()), obs)  # type: ignore[attr-defined]
+        for name, numbers in now["fire"].items():
+            assert torch.equal(numbers[0], states["fire"][name][number]), name
+        env.step(env.action_space.sample())
+        assert made.unwrapped.world.frame.tolist() == [1]  # type: ignore[attr-defined]
     env.close()
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ import pytest
 from hazard_ms.evaluation.attempts import Recorded, attempt
 from hazard_ms.evaluation.hashes import EVERY
 from hazard_ms.evaluation.options import EpisodeOptions
-from hazard_ms.evaluation.replay import DIFFERENT, EXACT, SAME_SCORE, compare, episode_of, job_of
+from hazard_ms.evaluation.replay import DIFFERENT, EXACT, SAME_SCORE, compare, episode_of, job_of, other_versions
 from hazard_ms.evaluation.result import EpisodeResult, Link
 from hazard_ms.evaluation.workers import Job, Word
 from hazard_ms.skills.decision import EXPLORE, STOP, WALK_ONE_STEP, Action, Decision
@@ -57,6 +58,13 @@ def test_an_episode_that_failed_counts_as_replayed_only_if_it_failed_alike() -> 
     assert compare(record, record, "KeyError: 'plan'") == (EXACT, "")
     other = dataclasses.replace(record, error="ValueError: no")
     assert compare(record, other, "ValueError: no") == (DIFFERENT, ", it could not be played: ValueError: no")
+
+
+def test_packages_of_other_versions_are_told() -> None:
+    here = {"sapien": version("sapien"), "numpy": version("numpy")}
+    assert other_versions(here) == "" == other_versions({})
+    told = f"sapien 3.0.0, here {here['sapien']}; warp-drive 1, here absent"
+    assert other_versions({**here, "sapien": "3.0.0", "warp-drive": "1"}) == told
 
 
 def test_the_actions_of_a_record_are_taken_in_order_and_no_file_of_others_is_run(tmp_path: Path) -> None:

@@ -104,7 +104,7 @@ def test_the_rewards_of_an_episode_add_up_to_its_value(env: Any) -> None:
 
 @pytest.mark.render
 def test_info_is_plain_numbers_and_text(env: Any) -> None:
-    _, first = env.reset(seed=0)
+    _, first = env.reset(seed=0, options={"lerobot_new_rollout": True})  # as lerobot-eval does
     _, _, _, _, info = env.step(LOOK_AROUND)
     assert set(first) == set(info) and first["option"] == "" and first["value"] == 0.0
     assert info["option"] == "look" and info["ok"] is True and info["reason"] == ""

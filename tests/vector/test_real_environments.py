@@ -13,7 +13,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.wrappers.vector import DictInfoToList, RecordEpisodeStatistics
 
 from hazard_ms import NumpyEnv
-from hazard_ms.vector import make
+from hazard_ms.vector import make, make_for_sb3
 from hazard_ms.vector.batched import BatchedEnv
 
 TASK, FRAMES = "HazardFire-v1", 3  # of an episode
@@ -93,7 +93,10 @@ def test_the_batch_of_a_gpu_has_the_same_interface(mode: AutoresetMode) -> None:
     steps = 3 * FRAMES + 1
     env = BatchedEnv(gym.make(TASK, **KEYWORDS), mode)
     single = alone(NumpyEnv(gym.make(TASK, **KEYWORDS)), 7, 0, steps, mode)
-    together = [env.reset(seed=7), *(env.step(action[:1]) for action in actions(steps))]
+    together = [
+        env.reset(seed=7, options={"lerobot_new_rollout": True}),
+        *(env.step(action[:1]) for action in actions(steps)),
+    ]
     assert env.metadata["autoreset_mode"] == mode
     for played, expected in zip(together, single, strict=True):
         obs, *numbers, info = row(played, 0)
@@ -107,7 +110,7 @@ def test_the_batch_of_a_gpu_has_the_same_interface(mode: AutoresetMode) -> None:
 
 def test_wrappers_of_gymnasium_fit(three: VectorEnv[Any, Any, Any]) -> None:
     wrapped = DictInfoToList(RecordEpisodeStatistics(three))
-    obs, told = wrapped.reset(seed=1)
+    obs, told = wrapped.reset(seed=1, options={"lerobot_new_rollout": True})  # as lerobot-eval does
     assert wrapped.observation_space.contains(obs) and [info["elapsed_steps"] for info in told] == [0] * 3
     sums = np.zeros(3)
     for action in actions(FRAMES):
@@ -160,6 +163,24 @@ def test_the_sketch_is_one_batch() -> None:
     assert envs.metadata["autoreset_mode"] == AutoresetMode.SAME_STEP
     with pytest.raises(ValueError, match="must be SameStep with backend='sketch', got 'NextStep'"):
         make("HazardFireSkills-v1", 4, autoreset_mode="NextStep", **settings)
+
+
+def test_the_sketch_gives_its_masks_to_stable_baselines() -> None:
+    """Of what is seen now, also right after an episode has ended, as MaskablePPO asks for them."""
+    pytest.importorskip("sb3_contrib")
+    from sb3_contrib.common.maskable.utils import get_action_masks, is_masking_supported
+
+    envs = make_for_sb3("HazardFireSkills-v1", 4, backend="sketch", scenes=["kitchen_a/00"], max_frames=200)
+    assert is_masking_supported(envs)
+    envs.seed(0)
+    envs.reset()
+    rng, ends = np.random.default_rng(0), 0
+    while ends < 8:
+        masks = get_action_masks(envs)
+        assert masks.dtype == bool and masks.shape == (4, envs.action_space.n) and masks.any(axis=1).all()
+        np.testing.assert_array_equal(masks, envs.envs.action_masks())
+        _, _, done, _ = envs.step(np.array([rng.choice(np.flatnonzero(mask)) for mask in masks]))
+        ends += int(done.sum())
 
 
 def test_wrong_keywords_are_refused_as_by_a_single_environment() -> None:

@@ -94,9 +94,13 @@ def _sphere(count: int) -> Points:
 
 
 def write(hulls: list[trimesh.Trimesh], path: Path) -> None:
-    """Write one PLY file whose connected pieces are the hulls: SAPIEN makes a convex shape of each."""
+    """Write one PLY file whose connected pieces are the hulls: SAPIEN makes a convex shape of each.
+
+    It is in words: SAPIEN's reader of binary ones skips a first byte that is a line feed, -0.04 m for example, and
+    crashes.
+    """
     whole: Any = trimesh.util.concatenate(hulls)
-    path.write_bytes(whole.export(file_type="ply", vertex_normal=False))
+    path.write_bytes(whole.export(file_type="ply", vertex_normal=False, encoding="ascii"))
 
 
 def cook(path: Path) -> int:

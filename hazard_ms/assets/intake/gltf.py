@@ -9,13 +9,15 @@ import struct
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from hazard_ms.assets.intake.gltf_shapes import keep_plain, remedy
 from hazard_ms.assets.intake.textures import Textures
 
 LARGEST_JSON = 8_000_000  # of what describes a glTF [bytes] [ours]
 MOST_NODES = 10_000  # of a glTF [ours]
 DEEPEST = 200  # a node below others [levels] [ours]
 MOST_NUMBERS = 2_400_000  # of corners, indices and so on, in all accessors: 12 for each triangle [ours]
-EXTENSIONS = ("KHR_materials_", "KHR_lights_punctual")  # of those that a glTF may require: they do not change its shape
+WEBP = "EXT_texture_webp"  # extension that names a picture beside or instead of a PNG or JPEG
+EXTENSIONS = ("KHR_materials_", "KHR_lights_punctual", WEBP)  # that a glTF may require: they do not change its shape
 UNUSED = ("normalTexture", "occlusionTexture", "emissiveTexture")  # pictures that models here do without
 JSON_CHUNK, BINARY_CHUNK = 0x4E4F534A, 0x004E4942  # kinds of chunks of a GLB file
 MALFORMED = (ValueError, RecursionError, AttributeError, KeyError, IndexError, TypeError, OverflowError)
@@ -52,12 +54,12 @@ def _prepared(data: bytes, name: str, rest: bytes, beside: Get, textures: Textur
         counts = [int(a["count"]) for a in tree.get("accessors", [])]
         nodes = len(tree.get("nodes", []))
         uris = [str(b["uri"]) for b in tree.get("buffers", []) if "uri" in b]
-        images, shown = list(tree.get("images", [])), _shown(tree)
+        images, (shown, alone) = list(tree.get("images", [])), _shown(tree)
     except MALFORMED as error:
         raise ValueError(f"{name} must be a valid glTF, got {type(error).__name__}: {error!s:.200}") from None
-    if needed:
+    if needed := [*dict.fromkeys([*needed, *alone])]:
         raise ValueError(
-            f"{name} must be saved without compression and the like, got {', '.join(map(str, needed))!r:.200}"
+            f"{name} must be saved without compression and the like, got {', '.join(needed)!r:.200}: {remedy(needed)}"
         )
     if any(c < 0 for c in counts) or sum(counts) > MOST_NUMBERS:
         raise ValueError(
@@ -66,6 +68,7 @@ def _prepared(data: bytes, name: str, rest: bytes, beside: Get, textures: Textur
     if nodes > MOST_NODES:
         raise ValueError(f"{name} must have at most {MOST_NODES} nodes, got {nodes}")
     _check_nodes(tree, name)
+    keep_plain(tree, name)
     for uri in uris:
         if uri.startswith("data:"):
             _decoded(uri, name)
@@ -91,20 +94,28 @@ def _check_nodes(tree: Tree, name: str) -> None:
         raise ValueError(f"nodes of {name} must be trees of at most {DEEPEST} levels, got others")
 
 
-def _shown(tree: Tree) -> set[int]:
-    """Numbers of the images that materials still name once those in UNUSED are taken out of the tree."""
+def _shown(tree: Tree) -> tuple[set[int], list[str]]:
+    """Numbers of the images that materials still name once those in UNUSED are taken out of the tree.
+
+    A texture keeps its PNG or JPEG if it has one, else its WebP; the extensions that alone hold another are returned.
+    """
     textures = set()
     for material in tree.get("materials", []):
         for key in UNUSED:
             material.pop(key, None)
         textures |= {each["index"] for each in _entries(material) if "index" in each}
-    found = set()
-    for i in textures:
-        texture = tree["textures"][i]
-        found |= {each["source"] for each in (texture, *texture.get("extensions", {}).values()) if "source" in each}
+    found, alone = set(), []
+    for texture in (tree["textures"][i] for i in textures):
+        others = texture.pop("extensions", {})
+        if "source" not in texture and WEBP in others:
+            texture["source"] = others[WEBP]["source"]
+        if "source" in texture:
+            found.add(texture["source"])
+        else:
+            alone += [str(e) for e in others]
     if not all(isinstance(i, int) and 0 <= i < len(tree["images"]) for i in found):
         raise ValueError("a texture must name an image that is there")
-    return found
+    return found, alone
 
 
 def _entries(material: Tree) -> Iterator[Tree]:

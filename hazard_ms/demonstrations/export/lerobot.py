@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -9,18 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.demonstrations.export.lerobot_card import write_card
 from hazard_ms.demonstrations.export.lerobot_film import Film, picture_info, samples
-from hazard_ms.demonstrations.export.lerobot_stats import Stats, merged, stats_of
-from hazard_ms.demonstrations.export.lerobot_tables import Tables, write_episodes, write_info, write_words
+from hazard_ms.demonstrations.export.lerobot_stats import Stats, joined, merged, stats_of
+from hazard_ms.demonstrations.export.lerobot_tables import Tables, read_columns, write_episodes, write_info, write_words
 from hazard_ms.demonstrations.export.source import Common, Source, needed
 from hazard_ms.demonstrations.reading import Demonstration
 
 HEAD = "observation.images.head"
 STATE_NAMES = ("base.x", "base.y", "base.heading", "hand.x", "hand.y", "hand.z", "hand.holding")  # after the joints
-ROWS = (
-    "A row is a frame, or a picture of the head camera where pictures were recorded. Then the action of a row is the "
-    "one that was sent in the frame of its picture, and the reward is the sum over all frames up to the next picture."
-)
 Columns = dict[str, NDArray[Any]]
 
 
@@ -39,8 +37,8 @@ def write(source: Source, folder: Path) -> str:
     write_words(folder / "meta/tasks.parquet", "task_index", list(writing.tasks))
     write_words(folder / "meta/subtasks.parquet", "subtask_index", list(writing.subtasks))
     write_episodes(folder, writing.episodes, writing.stats)
-    write_info(folder, source.common.robot, rate, writing.features(source), writing.episodes, merged(writing.stats))
-    (folder / "README.md").write_text(_card(source, rate))
+    write_info(folder, source.common.robot, rate, writing.features(source), writing.episodes, writing.whole())
+    write_card(source, rate, folder)
     return ""
 
 
@@ -81,6 +79,7 @@ class _Writing:
         self.subtasks: dict[str, int] = {}
         self.episodes: list[dict[str, Any]] = []
         self.stats: list[Stats] = []
+        self._folder, self._common = folder, common
         self._step, self._rate, self._start = _step(common), rate, 0
         self._tables = Tables(folder)
         self._film = Film(folder, HEAD, rate) if common.pictures else None
@@ -100,6 +99,7 @@ class _Writing:
         task = one.meta["instruction"]
         columns["task_index"] = np.full(count, self.tasks.setdefault(task, len(self.tasks)))
         entry = {"episode_index": number, "tasks": [task], "length": count}
+        entry |= self._origin(one)
         entry |= {"dataset_from_index": self._start, "dataset_to_index": self._start + count}
         stats = {name: stats_of(column.reshape(count, -1)) for name, column in columns.items()}
         if self._film is not None:
@@ -110,6 +110,25 @@ class _Writing:
         self.episodes.append(entry | self._tables.add(columns))
         self.stats.append(stats)
         self._columns, self._start = columns, self._start + count
+
+    def _origin(self, one: Demonstration) -> dict[str, Any]:
+        """What plays an episode again, beside its actions: LeRobot itself ignores it."""
+        return {
+            "env_id": one.result.env_id,
+            "seed": one.result.seed,
+            "scene": one.result.scene,
+            "control_mode": self._common.control_mode,
+            "settings": json.dumps(dict(self._common.settings)),  # keywords of gym.make
+            "versions": json.dumps(one.result.versions),
+        }
+
+    def whole(self) -> Stats:
+        """The statistics of all rows, once their files are closed, and of pictures from those of episodes."""
+        parts: dict[str, list[dict[str, NDArray[Any]]]] = {}
+        for name, column in read_columns(self._folder):
+            parts.setdefault(name, []).append(stats_of(column))
+        made = {name: joined(found) for name, found in parts.items()}
+        return {**made, HEAD: merged([stats[HEAD] for stats in self.stats])} if self._look else made
 
     def features(self, source: Source) -> dict[str, Any]:
         """The description of each column in info.json."""
@@ -134,12 +153,3 @@ class _Writing:
 def _step(common: Common) -> int:
     """Frames from one row to the next."""
     return common.every if common.pictures else 1
-
-
-def _card(source: Source, rate: int) -> str:
-    """The dataset card that LeRobot's users read first."""
-    common = source.common
-    return (
-        f"# {common.env_id} by {common.agent}\n\n{source.count} episodes in LeRobot's format v3.0, {rate} rows a "
-        f"second.\n\n{ROWS}\n\n```text\n{source.action_text}\n```\n"
-    )

@@ -17,24 +17,29 @@ def stats_of(column: NDArray[Any], picture: bool = False) -> dict[str, NDArray[A
     count = len(column)
     if picture:
         column = column.reshape(-1, column.shape[-1]) / 255.0
-    numbers = column.astype(np.float64)
-    made = {
-        "min": numbers.min(axis=0),
-        "max": numbers.max(axis=0),
-        "mean": numbers.mean(axis=0),
-        "std": numbers.std(axis=0),
-        **dict(zip(QUANTILES, np.quantile(numbers, list(QUANTILES.values()), axis=0), strict=True)),
-    }
-    made = {name: each[:, None, None] for name, each in made.items()} if picture else made
+    each = [_numbers(column[:, k].astype(np.float64)) for k in range(column.shape[1])]  # one by one, to spare memory
+    made = {name: np.array([numbers[name] for numbers in each]) for name in each[0]}
+    made = {name: values[:, None, None] for name, values in made.items()} if picture else made
     return {**made, "count": np.array([count])}
 
 
-def merged(parts: Sequence[Stats]) -> Stats:
-    """Numbers about all episodes from those about each; quantiles are means over frames, as LeRobot merges them."""
-    return {name: _merged([part[name] for part in parts]) for name in parts[0]}
+def _numbers(values: NDArray[np.float64]) -> dict[str, float]:
+    """Numbers about `values`, [R]."""
+    quantiles = zip(QUANTILES, np.quantile(values, list(QUANTILES.values())), strict=True)
+    return {"min": values.min(), "max": values.max(), "mean": values.mean(), "std": values.std(), **dict(quantiles)}
 
 
-def _merged(parts: Sequence[dict[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
+def joined(parts: Sequence[dict[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
+    """Numbers [D] about a column from those about its parts side by side."""
+    made = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return {**made, "count": parts[0]["count"]}
+
+
+def merged(parts: Sequence[dict[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
+    """Numbers about the pictures of all episodes from those about each.
+
+    Quantiles are means over pictures, as LeRobot merges them: not those of all pictures, which are too many to keep.
+    """
     stacked = {name: np.stack([part[name] for part in parts]) for name in parts[0]}
     counts = stacked["count"][:, 0]
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.demonstrations.export.lerobot_stats import Stats
@@ -16,6 +17,7 @@ MB = 2**20  # bytes, as LeRobot counts them
 TABLE_SIZE = 100  # of a file of rows before it is compressed, at most [MB], as LeRobot's default
 FILM_SIZE = 200  # of a film of many episodes, at most [MB], as LeRobot's default
 CHUNK = 1000  # number of files in a folder, at most, as LeRobot's default
+BLOCK = 64  # width of what is read at once of a column [numbers of a row] [ours]
 INDEX = "__index_level_0__"  # column that pandas takes for the index of a table
 
 
@@ -57,6 +59,27 @@ class Tables:
         if self._writer is not None:
             self._writer.close()
             self._writer = None
+
+
+def read_columns(folder: Path) -> Iterator[tuple[str, NDArray[Any]]]:
+    """The columns of all rows of the finished dataset `folder`, [R, D], one after the other and BLOCK wide at most.
+
+    A wider one comes in several parts under the same name, so that they need not be in memory at once.
+    """
+    import pyarrow.parquet as pq
+
+    files = [pq.ParquetFile(path) for path in sorted((folder / "data").rglob("*.parquet"))]
+    for field in files[0].schema_arrow:
+        width = getattr(field.type, "list_size", 1)
+        for start in range(0, width, BLOCK):
+            yield field.name, np.concatenate([_part(file, field.name, width, start) for file in files])
+
+
+def _part(file: Any, name: str, width: int, start: int) -> NDArray[Any]:
+    """BLOCK numbers of each row of a column that is `width` wide, from `start` on."""
+    column = file.read(columns=[name])[name].combine_chunks()
+    flat = column.flatten() if width > 1 else column
+    return np.array(flat.to_numpy(zero_copy_only=False).reshape(len(column), -1)[:, start : start + BLOCK])
 
 
 def _arrow(column: NDArray[Any]) -> Any:

@@ -23,6 +23,7 @@ from hazard_ms.sketch.world import Sketch
 from hazard_ms.skills.options.choices import OPTIONS
 from hazard_ms.skills.options.environment import SEEDS
 from hazard_ms.skills.options.rewards import VALUE
+from hazard_ms.spec import checks
 from hazard_ms.spec.checks import whole
 
 MOST = 100_000  # rescues at once: any larger number must be a mistake [ours]
@@ -89,7 +90,7 @@ class SketchBatch(gym.vector.VectorEnv[NDArray[np.float32], NDArray[np.int64], N
 
         Raises ValueError for anything but a whole number, and for options.
         """
-        if options:
+        if checks.options(options, self.num_envs):
             raise ValueError(f"options must be None, got {options!r:.100}")
         if isinstance(seed, (list, tuple)):
             raise ValueError("seed must be one whole number for all rescues, got a list")

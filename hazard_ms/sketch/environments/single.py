@@ -20,6 +20,7 @@ from hazard_ms.skills.options.paper_actions import COUNT as PAPER_COUNT
 from hazard_ms.skills.options.paper_map import MapLayout
 from hazard_ms.skills.options.rewards import REWARDS, VALUE
 from hazard_ms.spec.checks import flag, one_of, options, whole
+from hazard_ms.tasks import task_of
 
 NOT_DONE = "not_done"  # reason for the failure of an option: the sketch knows no better
 
@@ -122,6 +123,11 @@ class SketchSkills(gym.Env[NDArray[np.float32], np.int64]):
 
     def render(self) -> None:
         """Nothing: the sketch has no pictures."""
+
+    @property
+    def task_description(self) -> str:
+        """The task in one sentence, as agents are told it."""
+        return task_of(self.settings.task, self.settings.physics).text
 
     def _running(self) -> Rewarded:
         if self._play is None or self._play.sketch.state.over[0]:

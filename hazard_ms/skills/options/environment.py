@@ -159,6 +159,11 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
     # ------------------------------------------------------------------ one decision
 
     @property
+    def task_description(self) -> str:
+        """The task in one sentence, as agents are told it."""
+        return self.skills.base.task_description
+
+    @property
     def decision(self) -> Decision:
         """The current decision, for agents that read more than numbers."""
         return self._decision

@@ -10,6 +10,7 @@ import os
 import subprocess
 from pathlib import Path
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
@@ -21,7 +22,7 @@ import pyarrow.parquet as pq
 
 from hazard_ms.demonstrations.export import lerobot, lerobot_film, lerobot_tables
 from hazard_ms.demonstrations.export.source import Source
-from tests.worlds.recorded import SUBTASKS, TASKS, dataset, frames_of, level, subtasks_of
+from tests.worlds.recorded import SUBTASKS, TASKS, dataset, driven, frames_of, level, subtasks_of
 
 READER = "HAZARD_MS_LEROBOT_PYTHON"
 HEAD = "observation.images.head"
@@ -98,6 +99,12 @@ def test_pandas_finds_texts_as_the_index(by_frame: Export) -> None:
         assert table.to_pydict() == {f"{name}_index": list(range(len(texts))), index: list(texts)}
 
 
+def assert_quantiles(stats: dict[str, list[float]], rows: np.ndarray) -> None:
+    """Those of all rows, not means over episodes: policies that scale by them would cut actions off."""
+    for name, share in (("q01", 0.01), ("q10", 0.1), ("q50", 0.5), ("q90", 0.9), ("q99", 0.99)):
+        np.testing.assert_allclose(stats[name], np.quantile(rows, share, axis=0), rtol=1e-9, err_msg=name)
+
+
 def test_statistics_of_episodes_and_of_all_rows(by_frame: Export) -> None:
     every = np.concatenate([frames_of(number, frames, True)["action"] for number, frames in enumerate((5, 8))])
     whole = every.astype(np.float64)
@@ -110,9 +117,42 @@ def test_statistics_of_episodes_and_of_all_rows(by_frame: Export) -> None:
     ):
         np.testing.assert_allclose(stats[name], expected, rtol=1e-9)
     assert stats["count"] == [13]
+    assert_quantiles(stats, whole)
     np.testing.assert_allclose(by_frame.episodes["stats/action/mean"][1], whole[5:].mean(0))
     np.testing.assert_allclose(by_frame.episodes["stats/action/q50"][1], np.median(whole[5:], axis=0))
     assert by_frame.episodes["stats/next.reward/max"] == [[5.0], [8.0]]
+
+
+def test_statistics_of_numbers_of_rows_episodes_and_tasks(by_frame: Export) -> None:
+    stats, rows = by_frame.stats, by_frame.rows
+    assert set(stats) == set(rows) == set(by_frame.info["features"])
+    assert (stats["episode_index"]["max"], stats["task_index"]["max"], stats["index"]["max"]) == ([1], [1], [12])
+    for name in ("episode_index", "task_index", "index", "next.reward", "next.done"):
+        assert_quantiles(stats[name], np.array(rows[name], np.float64)[:, None])
+
+
+def test_the_table_of_episodes_says_how_they_begin_again(by_frame: Export) -> None:
+    found = by_frame.episodes
+    assert (found["seed"], found["scene"]) == ([10, 11], ["kitchen_b/00"] * 2)
+    assert (found["env_id"], found["control_mode"]) == (["HazardFire-v1"] * 2, ["pd_joint_pos"] * 2)
+    assert json.loads(found["settings"][0])["physics"] == "paper"
+    card = (by_frame.folder / "README.md").read_text()
+    assert card.startswith("---\nlicense: cc-by-3.0\n") and "- LeRobot\n" in card.split("---")[1]
+    assert '"split": "train"' in card and "ATTRIBUTION.md" in card
+
+
+def test_its_actions_give_its_states_again(tmp_path: Path) -> None:
+    """As the card says, bit by bit, for an episode that was driven through the real environment."""
+    made = Export(driven(tmp_path / "driven"), tmp_path / "export")
+    row = {name: made.episodes[name][0] for name in ("env_id", "seed", "scene", "control_mode", "settings")}
+    settings = {**json.loads(row["settings"]), "obs_mode": "none", "render_backend": "none"}
+    env = gym.make(row["env_id"], control_mode=row["control_mode"], **settings)
+    env.reset(seed=row["seed"], options={"scene": row["scene"]})
+    for action, state in zip(made.rows["action"], made.rows["observation.state"], strict=True):
+        joints = env.unwrapped.agent.robot.get_qpos()[0].numpy()  # type: ignore[attr-defined]
+        np.testing.assert_array_equal(np.array(state[:15], np.float32), joints)
+        env.step(np.array(action, np.float32))
+    env.close()
 
 
 def test_a_row_for_every_picture_where_there_are_some(by_picture: Export) -> None:
@@ -153,7 +193,12 @@ def test_full_files_are_followed_by_others(pictured: Path, tmp_path: Path, monke
     monkeypatch.setattr(lerobot_film, "FILM_SIZE", 0)
     monkeypatch.setattr(lerobot_tables, "CHUNK", 2)
     monkeypatch.setattr(lerobot_film, "CHUNK", 2)
+    monkeypatch.setattr(lerobot_tables, "BLOCK", 4)  # numbers of 13 that are read at once
     found = Export(pictured, tmp_path)
+    whole = np.array(found.rows["action"], np.float64)
+    assert_quantiles(found.stats["action"], whole)
+    np.testing.assert_allclose(found.stats["action"]["mean"], whole.mean(0), rtol=1e-9)
+    assert found.stats["action"]["count"] == [sum(ROWS)]
     places = ["chunk-000/file-000", "chunk-000/file-001", "chunk-001/file-000"]
     assert found.episodes["data/chunk_index"] == found.episodes[f"videos/{HEAD}/chunk_index"] == [0, 0, 1]
     assert found.episodes["data/file_index"] == found.episodes[f"videos/{HEAD}/file_index"] == [0, 1, 0]

@@ -26,7 +26,7 @@ def test_rows_add_up_what_passes_between_pictures(tmp_path: Path) -> None:
 def test_statistics_of_parts_give_those_of_the_whole() -> None:
     rng = np.random.default_rng(0)
     whole = rng.normal(size=(30, 2)) * [1.0, 100.0]
-    found = merged([{"action": stats_of(whole[:8])}, {"action": stats_of(whole[8:])}])["action"]
+    found = merged([stats_of(whole[:8]), stats_of(whole[8:])])
     for name, expected in stats_of(whole).items():
         if not name.startswith("q"):
             np.testing.assert_allclose(found[name], expected, rtol=1e-12, err_msg=name)

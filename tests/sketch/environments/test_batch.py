@@ -109,7 +109,9 @@ def test_steps_and_resets_refuse_what_they_cannot_do() -> None:
         made.reset(seed=[1, 2])
     with pytest.raises(ValueError, match="options must be None"):
         made.reset(options={"scene": "x"})
-    made.reset(seed=0)
+    with pytest.raises(ValueError, match="a reset option must be one of"):
+        made.reset(options={"lerobot_rollout": True})
+    made.reset(seed=0, options={"lerobot_new_rollout": True})  # as lerobot-eval does
     for wrong in (np.array([0]), np.array([0, COUNT]), np.array([0.0, 1.0])):
         with pytest.raises(ValueError, match="option must be"):
             made.step(wrong)

@@ -16,6 +16,7 @@ from hazard_ms.sketch.environments.settings import Settings
 from hazard_ms.sketch.environments.single import SketchSkills
 from hazard_ms.skills.options.interface import INFO
 from hazard_ms.skills.options.options import COUNT, END, FIRST, LOOK
+from hazard_ms.tasks import task_of
 
 ID = "hazard_ms:HazardFireSkills-v1"
 TWO = ["kitchen_a/00", "kitchen_a/03"]
@@ -66,6 +67,8 @@ def test_a_seed_chooses_the_scene_and_begins_a_series(env: Any) -> None:
     assert (played[0] != played[1]).any()
     named, _ = env.reset(seed=0, options={"scene": TWO[1]})
     assert (named != played[0]).any()
+    told, _ = env.reset(seed=0, options={"lerobot_new_rollout": True, "scene": TWO[1]})  # as lerobot-eval does
+    np.testing.assert_array_equal(told, named)
     series = [[env.reset(seed=4)[0], env.reset()[0], env.reset()[0]] for _ in range(2)]
     np.testing.assert_array_equal(*series)
 
@@ -79,6 +82,10 @@ def test_what_is_forbidden_costs_time_and_says_so(env: Any) -> None:
     for wrong in (COUNT, -1, 0.5):
         with pytest.raises(ValueError, match="action"):
             env.step(wrong)
+
+
+def test_the_task_is_told_in_the_words_of_the_simulator(env: Any) -> None:
+    assert env.get_wrapper_attr("task_description") == task_of("HazardFire-v1", "paper").text != ""
 
 
 @pytest.mark.parametrize("task", TASKS)

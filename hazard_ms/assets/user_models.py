@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import re
@@ -14,7 +13,8 @@ from typing import Any
 from hazard_ms.assets.rows import Asset, read_row
 from hazard_ms.assets.shipped import shipped_index
 from hazard_ms.spec.catalogue import CATEGORIES
-from hazard_ms.spec.foreign.files import read_foreign
+from hazard_ms.spec.foreign.files import printable, read_foreign
+from hazard_ms.spec.foreign.plain import parse
 
 USER_FOLDER = "HAZARD_MS_ASSETS"  # environment variable: the folder of the user's models
 LARGEST_INDEX = 4_000_000  # of a user's index [bytes]; a row has 600
@@ -66,10 +66,7 @@ def user_rows(folder: Path) -> list[Any]:
     file = confined(folder, "index.json")
     if not file.exists():
         return []
-    try:
-        rows = json.loads(read_foreign(file, LARGEST_INDEX))
-    except (RecursionError, json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise ValueError(f"{file} is not valid JSON: {error}") from None
+    rows = parse(read_foreign(file, LARGEST_INDEX), printable(str(file)))
     if not isinstance(rows, list):
         raise ValueError(f"{file} must hold a list of rows, got {rows!r:.100}")
     return rows

@@ -27,6 +27,7 @@ from hazard_ms.perception.card import card, licences
 from hazard_ms.perception.options import CaptureOptions
 from hazard_ms.perception.scene import capture_scene
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.foreign.files import sha256_of
 from hazard_ms.tasks import task_of
 
 ELSEWHERE = "another process takes its pictures"
@@ -46,7 +47,7 @@ def capture(options: CaptureOptions) -> int:
     """
     options.check()
     coco.tools()
-    wanted = options.scenes or _scenes(options)
+    wanted = _scenes(options)
     home = options.dataset / options.env.split
     make_folder(home)
     done = {scene for scene in wanted if _whole(home / layout.folder_of(scene), options)}
@@ -67,11 +68,17 @@ def capture(options: CaptureOptions) -> int:
 
 
 def _scenes(options: CaptureOptions) -> tuple[str, ...]:
-    """Names of all scenes of the split. Raises ValueError for a split that the task does not have."""
+    """Names of the scenes: those that `options` name, or all of the split.
+
+    Raises ValueError for a split that the task does not have, and for scenes that are not in it.
+    """
     env = options.env
     task = task_of(env.env_id, env.physics, env.hazards or None, env.severity)
     one_of(options.env.split, task.splits, "split")
-    return tuple(task.scenes(options.env.split))
+    known = tuple(task.scenes(options.env.split))
+    for scene in options.scenes:
+        one_of(scene, known, f"a scene of the split {env.split!r}")
+    return tuple(dict.fromkeys(options.scenes)) or known
 
 
 def attempt(job: Job, say: Say) -> Outcome:
@@ -185,8 +192,8 @@ def _all_sums(dataset: Path, texts: dict[str, str]) -> str:
     every: dict[str, str] = {}
     for place in layout.scene_folders(dataset):
         where = place.relative_to(dataset).as_posix()
-        known = layout.read_sums((place / layout.SUMS).read_text(encoding="utf-8"))
+        known = layout.read_sums(place / layout.SUMS)
         every |= {f"{where}/{name}": digest for name, digest in known.items()}
     for path in [*dataset.glob(layout.instances("*")), *(dataset / name for name in texts)]:
-        every[path.name] = layout.sha256(path)
+        every[path.name] = sha256_of(path)
     return "".join(f"{digest}  {name}\n" for name, digest in sorted(every.items()))

@@ -12,6 +12,7 @@ from typing import Any
 
 from hazard_ms.assets.index import asset
 from hazard_ms.perception import layout
+from hazard_ms.perception.rows import COUNTED
 from hazard_ms.perception.states import MOVING
 
 TEXT = """\
@@ -46,9 +47,11 @@ COLUMNS = ("id", "category", "licence", "author", "source")
 def card(dataset: Path) -> str:
     """The text of the card of a dataset. Raises ValueError for a dataset that cannot be read."""
     splits = layout.splits_of(dataset)
-    read = {path: layout.read_instances(path) for path in splits}
+    read = {path: layout.read_instances(path, COUNTED) for path in splits}
     tables = [f"## {path.stem.removeprefix('instances_')}\n\n{table(numbers(rows))}\n" for path, rows in read.items()]
-    recipe = read[splits[0]]["info"]["recipe"]
+    recipe = (read[splits[0]].get("info") or {}).get("recipe")
+    if not isinstance(recipe, dict) or not isinstance(recipe.get("env_id"), str):
+        raise ValueError(f"info of {splits[0]} must hold the recipe of `perception capture`, got none")
     return TEXT.format(
         env_id=recipe["env_id"],
         format=layout.FORMAT,

@@ -7,11 +7,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.perception import coco, layout
+from hazard_ms.perception.reading import mask_of, pixels_of
+from hazard_ms.perception.rows import CHECKED
+from hazard_ms.spec.foreign.files import inside, printable, sha256_of
 
 FILES = ("file_name", "depth_file", "ids_file", "hazard_file")
 MOST_TOLD = 50  # faults that are printed; the others are counted [ours]
@@ -24,8 +26,8 @@ def check(dataset: Path) -> int:
     count = 0
     for count, fault in enumerate(faults(dataset), 1):
         if count <= MOST_TOLD:
-            print(fault, flush=True)
-    pictures = sum(len(layout.read_instances(path)["images"]) for path in splits)
+            print(printable(fault), flush=True)
+    pictures = sum(len(layout.read_instances(path, CHECKED)["images"]) for path in splits)
     print(f"{pictures} pictures, {f'{count} faults' if count else 'no fault'}")
     return int(count > 0)
 
@@ -36,7 +38,7 @@ def faults(dataset: Path) -> Iterator[str]:
     rooms: dict[str, str] = {}
     moments: set[str] = set()
     for path in layout.splits_of(dataset):
-        rows = layout.read_instances(path)
+        rows = layout.read_instances(path, CHECKED)
         of_image: dict[int, list[dict[str, Any]]] = {image["id"]: [] for image in rows["images"]}
         yield from _of_ids(path.name, rows)
         for annotation in rows["annotations"]:
@@ -49,8 +51,11 @@ def faults(dataset: Path) -> Iterator[str]:
             moments.add(moment)
             if rooms.setdefault(image["room"], path.name) != path.name:
                 yield f"{image['file_name']}: its room {image['room']} is in {rooms[image['room']]}, too"
-            for fault in _of_picture(dataset, image, of_image[image["id"]], known):
-                yield f"{image['file_name']}: {fault}"
+            try:
+                for fault in _of_picture(dataset, image, of_image[image["id"]], known):
+                    yield f"{image['file_name']}: {fault}"
+            except ValueError as error:
+                yield f"{image['file_name']}: {error}"
 
 
 def _of_ids(name: str, rows: Mapping[str, Any]) -> Iterator[str]:
@@ -69,15 +74,19 @@ def _of_sums(dataset: Path) -> Iterator[str]:
     """Files that are missing, changed, or not listed."""
     path = dataset / layout.SUMS
     try:
-        listed = layout.read_sums(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        listed = layout.read_sums(path)
+    except ValueError as error:
         yield f"{layout.SUMS}: {error}"
         return
     for name, digest in listed.items():
-        if not (dataset / name).is_file():
-            yield f"{name}: it is missing"
-        elif layout.sha256(dataset / name) != digest:
-            yield f"{name}: its checksum is not that in {layout.SUMS}"
+        try:
+            file = inside(dataset, name, f"a path in {layout.SUMS}")
+            if not file.is_file():
+                yield f"{name}: it is missing"
+            elif sha256_of(file) != digest:
+                yield f"{name}: its checksum is not that in {layout.SUMS}"
+        except ValueError as error:
+            yield str(error)
     for folder in layout.scene_folders(dataset):
         for file in sorted(folder.rglob("*")):
             name = file.relative_to(dataset).as_posix()
@@ -89,12 +98,12 @@ def _of_picture(
     dataset: Path, image: Mapping[str, Any], annotations: list[dict[str, Any]], known: set[int]
 ) -> Iterator[str]:
     """Faults of one picture and of its annotations."""
-    lost = [image[key] for key in FILES if not (dataset / image[key]).is_file()]
-    if lost:
+    paths = [inside(dataset, image[key], f"{key} of picture {image['id']}") for key in FILES]
+    if lost := [image[key] for key, path in zip(FILES, paths, strict=True) if not path.is_file()]:
         yield f"missing: {', '.join(lost)}"
         return
     size = image["height"], image["width"]
-    rgb, depth, ids = (_read(dataset / image[key]) for key in FILES[:3])
+    rgb, depth, ids = (pixels_of(dataset, image, key) for key in FILES[:3])
     for name, array, kind, shape in (
         ("colours", rgb, np.uint8, (*size, 3)),
         ("depth", depth, np.uint16, size),
@@ -115,18 +124,13 @@ def _of_picture(
             yield f"annotation {annotation['id']}: {fault}"
 
 
-def _read(path: Path) -> NDArray[Any]:
-    """A picture as it is; an empty one for a file that holds none."""
-    found = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
-    return np.empty(0) if found is None else found
-
-
 def _of_annotation(annotation: Mapping[str, Any], ids: NDArray[Any], known: set[int]) -> Iterator[str]:
     """Faults of one annotation, given its picture's `ids`, [H, W]."""
     if annotation["category_id"] not in known:
         yield f"there is no category {annotation['category_id']}"
     mask = ids == annotation["instance"] + 1
-    if not np.array_equal(coco.tools().decode(annotation["segmentation"]).astype(bool), mask):
+    size, where = (ids.shape[0], ids.shape[1]), f"annotation {annotation['id']}"
+    if not np.array_equal(mask_of(annotation["segmentation"], size, where).astype(bool), mask):
         yield "its segmentation is not what the ids show"
     if mask.any() and annotation["bbox"] != coco.box_of(mask):
         yield f"its box {annotation['bbox']} is not the tight one, {coco.box_of(mask)}"
@@ -135,6 +139,6 @@ def _of_annotation(annotation: Mapping[str, Any], ids: NDArray[Any], known: set[
     if not 0.0 <= annotation["attributes"]["submerged"] <= 1.0:
         yield "its submerged share is not from 0 to 1"
     if "amodal_segmentation" in annotation:
-        whole = coco.tools().decode(annotation["amodal_segmentation"]).astype(bool)
+        whole = mask_of(annotation["amodal_segmentation"], size, where).astype(bool)
         if (mask & ~whole).any():
             yield "its amodal mask does not hold its visible one"

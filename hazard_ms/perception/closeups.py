@@ -10,7 +10,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.perception import coco, layout
+from hazard_ms.perception import layout
+from hazard_ms.perception.reading import colours_of, mask_of
+from hazard_ms.perception.rows import SHOWN, by_image
 from hazard_ms.perception.states import MOVING
 
 CELL, TEXT = 112, 24  # edge of a cut-out and height of the two lines below it [pixels] [ours]
@@ -44,17 +46,14 @@ def closeups(dataset: Path, path: Path, count: int) -> list[NDArray[np.uint8]]:
 
     Raises ValueError for a file that is not a picture.
     """
-    rows = layout.read_instances(path)
+    rows = layout.read_instances(path, SHOWN)
+    by_image(rows, path.name)
     images = {image["id"]: image for image in rows["images"]}
     things = rows["annotations"]
     chosen = np.random.default_rng(0).permutation(len(things))[:count]
     made = []
     for k in chosen.tolist():
-        file = dataset / images[things[k]["image_id"]]["file_name"]
-        picture = cv2.imread(str(file))
-        if picture is None:
-            raise ValueError(f"{file} must be a picture, got a file that cannot be read; see `perception check`")
-        made.append(_closeup(np.ascontiguousarray(picture[..., ::-1]), things[k]))
+        made.append(_closeup(colours_of(dataset, images[things[k]["image_id"]]), things[k]))
     return made
 
 
@@ -68,7 +67,7 @@ def _closeup(picture: NDArray[np.uint8], thing: Mapping[str, Any]) -> NDArray[np
         for low, size, most in ((x, width, picture.shape[1]), (y, height, picture.shape[0]))
     )
     window = slice(top, top + edge), slice(left, left + edge)
-    mask = coco.tools().decode(thing["segmentation"])[window]
+    mask = mask_of(thing["segmentation"], picture.shape[:2], f"annotation {thing['id']}")[window]
     cut = cv2.resize(np.ascontiguousarray(picture[window]), (CELL, CELL), interpolation=cv2.INTER_LINEAR)
     large = cv2.resize(mask, (CELL, CELL), interpolation=cv2.INTER_NEAREST)
     outlines, _ = cv2.findContours(large, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)

@@ -11,13 +11,14 @@ OUT/HazardFire-v1/              a dataset
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from hazard_ms.perception import rows
 from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.foreign.files import printable, read_text, sha256_of
 
 FORMAT = 1  # goes up when a file or a field changes its meaning
 
@@ -25,7 +26,7 @@ RGB, DEPTH, IDS, HAZARD = "rgb", "depth", "ids", "hazard"  # folders of a scene
 ENDINGS = {RGB: ".jpg", DEPTH: ".png", IDS: ".png", HAZARD: ".npz"}
 PICTURES, SUMS = "pictures.json", "SHA256SUMS"
 CARD, LICENCES, TABLE = "README.md", "LICENSES.csv", "labels_table.json"
-HASHED_AT_ONCE = 2**20  # [bytes] [ours]
+LARGEST_SUMS = 100_000_000  # [bytes] [ours]
 FIRST_FIXTURE = 1001  # id of the first category of furniture; things that move begin at 1
 
 
@@ -66,24 +67,15 @@ def text_of(row: Any, indent: int | None = None) -> str:
     return json.dumps(row, indent=indent, allow_nan=False, separators=None if indent else (",", ":")) + "\n"
 
 
-def sha256(path: Path) -> str:
-    """The SHA-256 of a file."""
-    found = hashlib.sha256()
-    with path.open("rb") as file:
-        while part := file.read(HASHED_AT_ONCE):
-            found.update(part)
-    return found.hexdigest()
-
-
 def sums_of(folder: Path, names: Iterable[str]) -> str:
     """The checksums of files by their paths in `folder`, as `sha256sum -c` reads them."""
-    return "".join(f"{sha256(folder / name)}  {name}\n" for name in sorted(names))
+    return "".join(f"{sha256_of(folder / name)}  {name}\n" for name in sorted(names))
 
 
-def read_sums(text: str) -> dict[str, str]:
-    """Checksums by path. Raises ValueError for a line that holds none."""
+def read_sums(path: Path) -> dict[str, str]:
+    """The checksums in a file by path. Raises ValueError for a file that cannot be read, and a line that holds none."""
     found = {}
-    for line in filter(None, text.splitlines()):
+    for line in filter(None, read_text(path, LARGEST_SUMS).split("\n")):
         digest, _, name = line.partition("  ")
         if len(digest) != 64 or not name:
             raise ValueError(f"a line of {SUMS} must hold a checksum and a path, got {line!r:.100}")
@@ -99,25 +91,31 @@ def scene_folders(dataset: Path) -> list[Path]:
 def read_scene(place: Path) -> dict[str, Any]:
     """The part of the COCO file that one scene's folder holds. Raises ValueError for one that cannot be read."""
     path = place / PICTURES
-    try:
-        found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        number = found["format"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"{path} must be a file of `perception capture`, got {error!r}; delete its folder") from None
-    if number != FORMAT:
-        raise ValueError(f"the format of {path} must be {FORMAT}, got {number!r:.100}; capture it again")
+    shown = printable(str(path))
+    found: dict[str, Any] = rows.read_json(path)
+    if not isinstance(found, dict) or "format" not in found:
+        raise ValueError(f"{shown} must be a file of `perception capture`, got another; delete its folder")
+    if found["format"] != FORMAT:
+        raise ValueError(f"the format of {shown} must be {FORMAT}, got {found['format']!r:.100}; capture it again")
+    if not isinstance(found.get("scene"), str) or not isinstance(found.get("recipe"), dict):
+        raise ValueError(f"{shown} must name its scene and its recipe, got none; delete its folder")
+    rows.check_rows({"categories": [], **found}, shown, rows.COUNTED)
+    if not isinstance(found.get("things"), list):
+        raise ValueError(f"{shown} must hold a list of things, got none; delete its folder")
+    for k, thing in enumerate(found["things"]):
+        rows.typed(rows.Thing, thing, f"things[{k}] of {shown}")
     return found
 
 
-def read_instances(path: Path) -> dict[str, Any]:
-    """The COCO file at `path`. Raises ValueError for one that cannot be read, and for one without pictures."""
-    try:
-        found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        whole = all(isinstance(found[key], list) for key in ("images", "annotations", "categories"))
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"{path} must be a COCO file of `perception capture`, got {error!r:.200}") from None
-    if not whole or not found["images"]:
-        raise ValueError(f"{path} must hold images, annotations and categories, got none of some")
+def read_instances(path: Path, needs: rows.Needs) -> dict[str, Any]:
+    """The COCO file at `path`, whose rows have what a reader `needs`.
+
+    Raises ValueError for one that cannot be read, for one without pictures, and for rows of other types.
+    """
+    found: dict[str, Any] = rows.read_json(path)
+    rows.check_rows(found, printable(str(path)), needs)
+    if not found["images"]:
+        raise ValueError(f"{printable(str(path))} must hold images, annotations and categories, got no images")
     return found
 
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 import contextlib
 import copy
 import io
-import json
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from hazard_ms.perception import coco, layout
+from hazard_ms.perception.reading import check_runs, check_shape
+from hazard_ms.perception.rows import SCORED, Detection, by_image, check_unique, read_json, typed
 from hazard_ms.perception.states import MOVING
+from hazard_ms.spec.foreign.files import printable
 
 Row = Mapping[str, Any]
 STATES: dict[str, Callable[[Row], bool]] = {  # of an annotation's attributes
@@ -28,6 +30,7 @@ STATES: dict[str, Callable[[Row], bool]] = {  # of an annotation's attributes
 AREAS = (0, 256, 1024, 4096, math.inf)  # ends of the groups by visible area [pixels] [ours]
 DISTANCES = (0, 1, 2, 4, math.inf)  # ends of the groups by distance from the camera [m] [ours]
 EVERY = (0.0, math.inf)  # of areas
+KEPT = ("image_id", "category_id", "score", "bbox", "segmentation")  # of a detection
 MOST_FOUND = 100  # detections of a picture that count, as in COCO
 KINDS = {"bbox": "boxes", "segm": "masks"}
 
@@ -43,7 +46,8 @@ def score(dataset: Path, results: Path, split: str) -> str:
     if not path.is_file():
         known = ", ".join(p.stem.removeprefix("instances_") for p in layout.splits_of(dataset))
         raise ValueError(f"split must be one of {known} in {dataset}, got {split!r}")
-    truth = layout.read_instances(path)
+    truth = layout.read_instances(path, SCORED)
+    _check_truth(truth, path.name)
     found = read_results(results, truth)
     kinds = [kind for kind, key in (("bbox", "bbox"), ("segm", "segmentation")) if all(key in row for row in found)]
     return "\n".join(f"{KINDS[kind]}\n\n{table(truth, found, kind)}" for kind in kinds)
@@ -54,49 +58,42 @@ def read_results(path: Path, truth: Row) -> list[dict[str, Any]]:
 
     Raises ValueError that names the entry and what is wrong with it.
     """
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise ValueError(f"results must be a JSON file in COCO's results format, got {path}: {error}") from None
-    if not isinstance(found, list) or not found:
+    found = read_json(path)
+    if not isinstance(found, list):
         raise ValueError(f"results must be a list of detections, got {type(found).__name__} in {path}")
     sizes = {image["id"]: (image["height"], image["width"]) for image in truth["images"]}
     categories = {row["id"] for row in truth["categories"]}
     for number, row in enumerate(found):
-        fault = _fault(row, sizes, categories)
-        if fault:
-            raise ValueError(f"{fault}, in entry {number} of {path}")
+        _check(row, sizes, categories, f"entry {number} of {printable(str(path))}")
     for key in ("bbox", "segmentation"):
         if any(key in row for row in found) and not all(key in row for row in found):
             raise ValueError(f"{key} must be in all entries or in none, got some without in {path}")
-    return found
+    return [{key: row[key] for key in KEPT if key in row} for row in found]
 
 
-def _fault(row: Any, sizes: Mapping[Any, tuple[int, int]], categories: set[int]) -> str:
-    """What is wrong with a detection; empty if nothing is."""
-    if not isinstance(row, dict):
-        return f"a detection must be an object, got {row!r:.100}"
-    if row.get("image_id") not in sizes:
-        return f"image_id must be that of a picture of the split, got {row.get('image_id')!r:.100}"
-    if row.get("category_id") not in categories:
-        return f"category_id must be one of the dataset's categories, got {row.get('category_id')!r:.100}"
-    if not _finite([row.get("score")]):
-        return f"score must be a finite number, got {row.get('score')!r:.100}"
+def _check(row: Any, sizes: Mapping[int, tuple[int, int]], categories: set[int], where: str) -> None:
+    """Check a detection. Raises ValueError that says what is wrong, and `where`."""
+    found = typed(Detection, row, where)
+    if found.image_id not in sizes:
+        raise ValueError(f"image_id must be that of a picture of the split, got {found.image_id} in {where}")
+    if found.category_id not in categories:
+        raise ValueError(f"category_id must be one of the dataset's categories, got {found.category_id} in {where}")
     if "bbox" not in row and "segmentation" not in row:
-        return "bbox or segmentation must be given, got neither"
-    box = row.get("bbox", [0, 0, 0, 0])
-    if not isinstance(box, list) or len(box) != 4 or not _finite(box) or min(box[2:]) < 0:
-        return f"bbox must be left, top, width and height, got {box!r:.100}"
+        raise ValueError(f"bbox or segmentation must be given, got neither in {where}")
+    if "bbox" in row and (found.bbox is None or min(found.bbox[2:]) < 0):
+        raise ValueError(f"bbox must be left, top, width and height, got {row['bbox']!r:.100} in {where}")
     if "segmentation" in row:
-        mask, (height, width) = row["segmentation"], sizes[row["image_id"]]
-        if not isinstance(mask, dict) or "counts" not in mask or mask.get("size") != [height, width]:
-            return f"segmentation must be run lengths of size {[height, width]}, got {mask!r:.100}"
-    return ""
+        check_runs(row["segmentation"], sizes[found.image_id], where)
 
 
-def _finite(numbers: list[Any]) -> bool:
-    """Whether all of these are finite numbers."""
-    return all(isinstance(n, (int, float)) and not isinstance(n, bool) and math.isfinite(n) for n in numbers)
+def _check_truth(truth: Row, name: str) -> None:
+    """Check what pycocotools takes for granted: ids, and masks of their pictures' sizes. Raises ValueError."""
+    check_unique(truth["annotations"], f"annotations of {name}")
+    by_image(truth, name)
+    sizes = {image["id"]: (image["height"], image["width"]) for image in truth["images"]}
+    for row in truth["annotations"]:
+        if "segmentation" in row:
+            check_shape(row["segmentation"], sizes[row["image_id"]], f"annotation {row['id']} of {name}")
 
 
 def table(truth: Row, found: list[dict[str, Any]], kind: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -13,9 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.machine.files import make_folder, write
-from hazard_ms.perception import coco, layout
+from hazard_ms.perception import layout
 from hazard_ms.perception.card import numbers
 from hazard_ms.perception.closeups import COLOURS, closeups, state_of
+from hazard_ms.perception.reading import colours_of, mask_of
+from hazard_ms.perception.rows import SHOWN, by_image
 from hazard_ms.spec.checks import whole
 
 MOST_PICTURES, MOST_THINGS = 500, 5000  # of a page [ours]
@@ -54,12 +56,12 @@ def show(dataset: Path, output: Path, pictures: int, things: int = 0) -> Path:
         write(output, _encoded(sheet(close, OF_THINGS), output.suffix))
         return output
     if output.suffix != ".html":
-        shown = [drawn for path in splits for drawn, _ in _some(dataset, layout.read_instances(path), pictures)]
+        shown = [drawn for path in splits for drawn, _ in _some(dataset, layout.read_instances(path, SHOWN), pictures)]
         write(output, _encoded(sheet(shown, COLUMNS), output.suffix))
         return output
     parts = []
     for path in splits:
-        rows = layout.read_instances(path)
+        rows = layout.read_instances(path, SHOWN)
         table = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in numbers(rows))
         figures = "".join(_figure(drawn, image) for drawn, image in _some(dataset, rows, pictures))
         parts.append(f"<h2>{escape(path.stem)}</h2><table>{table}</table><p>{figures}</p>")
@@ -83,26 +85,24 @@ def _some(dataset: Path, rows: Mapping[str, Any], count: int) -> list[tuple[NDAr
     """So many pictures of a split, drawn over, evenly spread, each with its row of images."""
     images = rows["images"]
     chosen = [images[k] for k in np.unique(np.linspace(0, len(images) - 1, min(count, len(images))).astype(int))]
-    of_image: dict[int, list[Mapping[str, Any]]] = {image["id"]: [] for image in chosen}
-    for annotation in rows["annotations"]:
-        if annotation["image_id"] in of_image:
-            of_image[annotation["image_id"]].append(annotation)
-    return [(drawn(dataset / image["file_name"], of_image[image["id"]]), image) for image in chosen]
+    of_image = by_image(rows, str(dataset))
+    return [(drawn(dataset, image, of_image[image["id"]]), image) for image in chosen]
 
 
-def drawn(picture: Path, annotations: list[Mapping[str, Any]]) -> NDArray[np.uint8]:
+def drawn(dataset: Path, image: Mapping[str, Any], annotations: Sequence[Mapping[str, Any]]) -> NDArray[np.uint8]:
     """A picture of EDGE pixels, [H, W, 3], RGB, with its masks, boxes and names in the colours of their states.
 
-    Raises ValueError for a file that is not a picture.
+    Raises ValueError for a file that is not a picture of the size in its row, and for masks of other sizes.
     """
-    read = cv2.imread(str(picture))
-    if read is None:
-        raise ValueError(f"{picture} must be a picture, got a file that cannot be read; see `perception check`")
-    shown = cv2.resize(read[..., ::-1], (EDGE, EDGE), interpolation=cv2.INTER_AREA)
+    read = colours_of(dataset, image)
+    shown = cv2.resize(read, (EDGE, EDGE), interpolation=cv2.INTER_AREA)
     scale = EDGE / read.shape[0]
     for annotation in sorted(annotations, key=lambda row: -row["area"]):
         colour = COLOURS[state_of(annotation["attributes"])]
-        mask = cv2.resize(coco.tools().decode(annotation["segmentation"]), (EDGE, EDGE)).astype(bool)
+        runs = mask_of(
+            annotation["segmentation"], read.shape[:2], f"annotation {annotation['id']} of {image['file_name']}"
+        )
+        mask = cv2.resize(runs, (EDGE, EDGE)).astype(bool)
         shown[mask] = ((1.0 - COVER) * shown[mask] + COVER * np.asarray(colour)).astype(np.uint8)
         x, y, width, height = (round(scale * n) for n in annotation["bbox"])
         cv2.rectangle(shown, (x, y), (x + width, y + height), colour, 1)

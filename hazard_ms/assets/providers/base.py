@@ -8,7 +8,6 @@ from __future__ import annotations
 import abc
 import gzip
 import io
-import json
 import os
 import zlib
 from pathlib import Path
@@ -17,6 +16,7 @@ from typing import Any, ClassVar
 from hazard_ms.assets.intake.model import Model
 from hazard_ms.assets.user_models import confined
 from hazard_ms.spec.foreign.files import printable, read_foreign
+from hazard_ms.spec.foreign.plain import parse
 
 LARGEST_JSON = 256_000_000  # unpacked [bytes]; Objaverse describes 5,000 objects in one file of 60 MB [ours]
 DOWNLOAD = "python -m mani_skill.utils.download_asset"
@@ -99,6 +99,6 @@ def read_json(path: Path) -> Any:
             data = gzip.GzipFile(fileobj=io.BytesIO(data)).read(LARGEST_JSON + 1)
         if len(data) > LARGEST_JSON:
             raise ValueError(f"it must have at most {LARGEST_JSON} bytes, got more")
-        return json.loads(data)
-    except (OSError, EOFError, RecursionError, ValueError, zlib.error) as error:
+        return parse(data, "it")
+    except (OSError, EOFError, ValueError, zlib.error) as error:
         raise ValueError(f"{printable(str(path))} cannot be read: {error}") from None

@@ -10,7 +10,6 @@ Classes are the catalogue's categories, in the order in which the network number
 
 from __future__ import annotations
 
-import json
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,10 +18,8 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from hazard_ms.perception.options import LARGEST
+from hazard_ms.perception.detectors.weights import read_recipe, read_weights
 from hazard_ms.sensing.detection.detector import Detection, Detector
-from hazard_ms.spec.catalogue import CATEGORIES
-from hazard_ms.spec.checks import one_of, whole
 
 RESNET18 = "resnet18_fpn"  # smaller, for pictures of 192 pixels
 FIRST = "maskrcnn_resnet50_fpn"  # torchvision's older one
@@ -42,7 +39,7 @@ class MaskRcnn(Detector):
     def __init__(self, path: str) -> None:
         """Load the weights at `path`. Raises ValueError for files that are missing or do not fit each other."""
         file = Path(path)
-        recipe = read_recipe(file.with_suffix(".json"))
+        recipe = read_recipe(file.with_suffix(".json"), NETWORKS)
         made = network(recipe["network"], 1 + len(recipe["classes"]), recipe.get("size"))
         try:
             made.load_state_dict(read_weights(file))
@@ -73,40 +70,6 @@ class MaskRcnn(Detector):
         boxes = [tuple(box) for box in found["boxes"].tolist()]
         every = zip(names, found["scores"].tolist(), boxes, masks, strict=True)
         return [Detection(name, score, box, mask) for name, score, box, mask in every]
-
-
-def read_recipe(path: Path, networks: tuple[str, ...] = NETWORKS) -> dict[str, Any]:
-    """One of `networks` and its classes, from the file beside the weights. Raises ValueError for another file."""
-    try:
-        recipe: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        classes = recipe["classes"]
-        one_of(recipe["network"], networks, "network")
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ValueError(
-            f"{path} must hold the network {' or '.join(networks)} and its classes, got {error!r:.200}"
-        ) from None
-    if not isinstance(classes, list) or not classes or len(set(map(str, classes))) < len(classes):
-        raise ValueError(f"classes in {path} must be a list of different categories, got {classes!r:.100}")
-    for name in classes:
-        one_of(name, CATEGORIES, f"a class in {path}")
-    if recipe.get("size") is not None:
-        whole(recipe["size"], 1, LARGEST, f"size in {path}")
-    return recipe
-
-
-def read_weights(path: Path) -> dict[str, torch.Tensor]:
-    """The weights in a file .pth or .safetensors, [...] [-], by name. Raises ValueError for other files."""
-    try:
-        if path.suffix == ".safetensors":
-            from safetensors.torch import load_file
-
-            return load_file(path)
-        weights = torch.load(path, map_location="cpu", weights_only=True)
-    except Exception as error:  # torch raises many kinds for what is no file of weights
-        raise ValueError(f"weights must be a file .pth or .safetensors, got {path}: {error!r:.200}") from None
-    if not isinstance(weights, dict) or not all(isinstance(value, torch.Tensor) for value in weights.values()):
-        raise ValueError(f"weights must be tensors by name, got {type(weights).__name__} in {path}")
-    return weights
 
 
 def network(name: str, classes: int, size: int | None = None) -> Any:

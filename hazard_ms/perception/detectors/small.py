@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from torch.nn import functional
 
-from hazard_ms.perception.detectors.mask_rcnn import read_recipe, read_weights
 from hazard_ms.perception.detectors.small_network import SCALE, SmallNetwork, features, without_normalisation
+from hazard_ms.perception.detectors.weights import read_recipe, read_weights
 from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
 
 NETWORK = "small"  # in the file beside the weights

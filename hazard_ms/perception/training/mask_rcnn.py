@@ -14,7 +14,8 @@ from torch import Tensor
 from torchvision import tv_tensors
 from torchvision.transforms import v2
 
-from hazard_ms.perception.detectors.mask_rcnn import NETWORKS, RESNET18, MaskRcnn, network, read_recipe, read_weights
+from hazard_ms.perception.detectors.mask_rcnn import NETWORKS, RESNET18, MaskRcnn, network
+from hazard_ms.perception.detectors.weights import read_recipe, read_weights
 from hazard_ms.perception.layout import category_ids
 from hazard_ms.perception.training.pictures import Picture, classes_of, names_of
 from hazard_ms.perception.training.student import Student, device, half_precision
@@ -114,7 +115,7 @@ def begun(path: Path, size: int | None) -> tuple[str, dict[str, Tensor], int | N
     network that they fit. Raises ValueError if none does.
     """
     beside = path.with_suffix(".json")
-    recipe = read_recipe(beside) if beside.is_file() else {}
+    recipe = read_recipe(beside, NETWORKS) if beside.is_file() else {}
     names, size = (recipe["network"],) if recipe else NETWORKS, size or recipe.get("size")
     kept = {name: value for name, value in read_weights(path).items() if not name.startswith(HEADS)}
     faults = []

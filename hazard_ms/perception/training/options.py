@@ -14,6 +14,7 @@ from hazard_ms.perception.options import LARGEST, SMALLEST
 
 UNTRAINED = "none"  # weights to begin with
 MOST_STEPS, MOST_BATCH = 10**8, 4096  # [ours]
+SIDES = 16  # of which those of the crops of small are multiples [pixels]
 SIZES = {"small": 128, "mask_rcnn": 192}  # usual sizes of the networks that begin untrained [pixels] [ours]
 
 
@@ -72,6 +73,8 @@ class TrainOptions:
             whole(self.size, SMALLEST, LARGEST, "size")
         if self.model == "small" and self.weights != UNTRAINED:
             raise ValueError(f"weights must be {UNTRAINED} for the model small, got {self.weights}")
+        if self.model == "small" and (self.size or 0) % SIDES:
+            raise ValueError(f"size must be a multiple of {SIDES} for the model small, got {self.size}")
 
     @property
     def batch_size(self) -> int:

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import functools
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.perception import layout
+from hazard_ms.perception.reading import colours_of, pixels_of
+from hazard_ms.perception.rows import LEARNT, by_image, read_json
+from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.checks import one_of
+
+MOST_NUMBER = 65535  # in a picture of ids, which has 16 bits
 
 
 @dataclass(frozen=True)
@@ -26,27 +30,45 @@ class Picture:
 
     def rgb(self) -> NDArray[np.uint8]:
         """Colours, [H, W, 3]."""
-        return np.ascontiguousarray(_read(self.dataset / self.row["file_name"], cv2.IMREAD_COLOR)[..., ::-1])
+        return colours_of(self.dataset, self.row)
 
     def depth(self) -> NDArray[np.float32]:
         """Depth along the optical axis [m], [H, W]; 0: nothing."""
-        return _read(self.dataset / self.row["depth_file"], cv2.IMREAD_UNCHANGED).astype(np.float32) * 1e-3
+        return self._plane("depth_file").astype(np.float32) * 1e-3
 
     def ids(self) -> NDArray[np.uint16]:
         """Index of the thing that is seen, plus 1, [H, W]; 0: floor, walls, sky."""
-        return _read(self.dataset / self.row["ids_file"], cv2.IMREAD_UNCHANGED)
+        return self._plane("ids_file")
 
     def intrinsic(self) -> NDArray[np.float32]:
         """The camera's matrix [pixels], [3, 3]."""
-        return np.asarray(self.row["camera"]["intrinsic"], np.float32)
+        return np.asarray(self._camera()["intrinsic"], np.float32)
 
     def cam2world(self) -> NDArray[np.float32]:
         """The camera's pose [m], [4, 4]; it looks along its -z axis with y up."""
-        return np.asarray(self.row["camera"]["cam2world"], np.float32)
+        return np.asarray(self._camera()["cam2world"], np.float32)
 
     def categories(self) -> dict[int, str]:
         """The category of every number in `ids` but 0."""
-        return _table(self.dataset)[self.row["scene"]]
+        scenes = _table(self.dataset)
+        if self.row["scene"] not in scenes:
+            raise ValueError(
+                f"{self.dataset / layout.TABLE} must name the things of {self.row['scene']!r:.100}, got none"
+            )
+        return scenes[self.row["scene"]]
+
+    def _plane(self, key: str) -> NDArray[np.uint16]:
+        """One number of 16 bits for each pixel, [H, W]. Raises ValueError for another picture."""
+        found = pixels_of(self.dataset, self.row, key)
+        if found.ndim != 2 or found.dtype != np.uint16:
+            raise ValueError(f"{key} of picture {self.row['id']} must have one channel of 16 bits, got {found.dtype}")
+        return found
+
+    def _camera(self) -> dict[str, Any]:
+        if self.row.get("camera") is None:
+            raise ValueError(f"picture {self.row['id']} in {self.dataset} must have its camera, got none")
+        camera: dict[str, Any] = self.row["camera"]
+        return camera
 
 
 def read(datasets: Sequence[Path], split: str) -> list[Picture]:
@@ -55,12 +77,13 @@ def read(datasets: Sequence[Path], split: str) -> list[Picture]:
     for dataset in datasets:
         path = dataset / layout.instances(split)
         if not path.is_file():
-            known = ", ".join(p.stem.removeprefix("instances_") for p in layout.splits_of(dataset))
-            raise ValueError(f"split must be one of {known} in {dataset}, got {split!r}")
-        rows = layout.read_instances(path)
-        things: dict[int, list[dict[str, Any]]] = {image["id"]: [] for image in rows["images"]}
-        for thing in rows["annotations"]:
-            things[thing["image_id"]].append(thing)
+            splits = ", ".join(p.stem.removeprefix("instances_") for p in layout.splits_of(dataset))
+            raise ValueError(f"split must be one of {splits} in {dataset}, got {split!r}")
+        rows = layout.read_instances(path, LEARNT)
+        things = by_image(rows, str(path))
+        known = set(layout.category_ids().values())
+        if bad := next((t for t in rows["annotations"] if t["category_id"] not in known), None):
+            raise ValueError(f"category_id must be one of the catalogue's, got {bad['category_id']} in {path}")
         found += [Picture(dataset, image, tuple(things[image["id"]])) for image in rows["images"]]
     return found
 
@@ -102,14 +125,18 @@ def _table(dataset: Path) -> dict[str, dict[int, str]]:
     """The categories of the numbers in the ids pictures of a dataset, by scene."""
     path = dataset / layout.TABLE
     try:
-        scenes = json.loads(path.read_text(encoding="utf-8"))["scenes"]
-        return {scene: {int(k): row["category"] for k, row in rows.items()} for scene, rows in scenes.items()}
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        scenes = read_json(path)["scenes"]
+        return {scene: {_number(k): _category(row) for k, row in rows.items()} for scene, rows in scenes.items()}
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"{path} must name the things of every scene, got {error!r:.200}") from None
 
 
-def _read(path: Path, mode: int) -> NDArray[Any]:
-    picture = cv2.imread(str(path), mode)
-    if picture is None:
-        raise ValueError(f"{path} must be a picture that can be read; `hazard-ms perception check` lists what is wrong")
-    return picture
+def _number(text: str) -> int:
+    """A number of an ids picture. Raises ValueError for another text."""
+    if not (text.isascii() and text.isdigit() and int(text) <= MOST_NUMBER):
+        raise ValueError(f"a number of a thing must be from 0 to {MOST_NUMBER}, got {text!r:.100}")
+    return int(text)
+
+
+def _category(row: Any) -> str:
+    return one_of(row["category"], CATEGORIES, "a category")

@@ -21,12 +21,17 @@ from safetensors.torch import save
 
 from hazard_ms.machine.files import make_folder, write_together
 from hazard_ms.perception import coco
+from hazard_ms.perception.detectors.mask_rcnn import NETWORKS
+from hazard_ms.perception.detectors.small import NETWORK
+from hazard_ms.perception.detectors.weights import checked_recipe, read_saved
 from hazard_ms.perception.score import KINDS, average_precision, table
 from hazard_ms.perception.training.curve import csv_of, svg_of
-from hazard_ms.perception.training.options import SIZES, UNTRAINED, TrainOptions
+from hazard_ms.perception.training.options import MOST_STEPS, SIZES, UNTRAINED, TrainOptions
 from hazard_ms.perception.training.pictures import Picture, read, truth_of
 from hazard_ms.perception.training.student import Student
 from hazard_ms.perception.training.validation import results_of, spread
+from hazard_ms.spec.checks import whole
+from hazard_ms.spec.foreign.plain import made
 
 MAX_GRADIENT_NORM = 10.0  # to which longer gradients are cut [ours]
 SCORED = 60  # validation pictures on which a network is scored on the way; at the end it is on all of them [ours]
@@ -42,11 +47,13 @@ def train(options: TrainOptions) -> int:
     options.check()
     if options.validate:
         coco.tools()
+    path = options.output / f"{options.model}{ENDING}"
+    before = _before(path, options.command)
+    if before is None and options.weights != UNTRAINED and not Path(options.weights).is_file():
+        raise ValueError(f"weights must be a file .pth or .safetensors, got none at {options.weights}")
     pictures = read(options.data, options.split)
     validation = read(options.validate, options.validate_split) if options.validate else []
     make_folder(options.output)
-    path = options.output / f"{options.model}{ENDING}"
-    before = _before(path, options.command)
     torch.manual_seed(options.seed)
     run = Run(path, options, student(options, pictures, before), validation)
     if before is not None:
@@ -85,9 +92,10 @@ def _before(path: Path, command: str) -> dict[str, Any] | None:
     if not kept.exists():
         return None
     try:
-        found: dict[str, Any] = torch.load(kept, map_location="cpu", weights_only=True)
-        made_by = found["command"]
-    except Exception as error:  # torch raises errors of many kinds for a damaged file
+        found: dict[str, Any] = read_saved(kept)
+        made_by = made(str, found["command"], "command")
+        checked_recipe(found["recipe"], "the recipe", (*NETWORKS, NETWORK))
+    except (ValueError, KeyError, TypeError) as error:
         raise ValueError(f"{kept} must be the state of a training, got {error!r:.200}; delete it") from None
     if made_by != command:
         raise ValueError(
@@ -111,7 +119,9 @@ class Run:
         """Go on from what was kept. Raises ValueError for what does not fit."""
         try:
             self.student.resume(before["student"])
-            self.rows, self._step, self._seconds = before["rows"], int(before["step"]), float(before["seconds"])
+            self.rows = list(made(tuple[dict[str, float], ...], before["rows"], "rows"))
+            self._step = whole(before["step"], 0, MOST_STEPS, "step")
+            self._seconds = made(float, before["seconds"], "seconds")
         except Exception as error:  # torch raises errors of many kinds for what does not fit
             kept = self.path.with_suffix(RESUMABLE)
             raise ValueError(f"{kept} must be the state of this training, got {error!r:.200}; delete it") from None

@@ -83,7 +83,8 @@ def made(kind: Any, value: Any, where: str, limits: Limits | None = None) -> Any
     """A value of the type `kind` from plain data that errors call `where`.
 
     `kind` is a frozen dataclass, a tuple, a dict with keys of text, a number, a truth value, text, one of these or
-    None, one of these `Within` bounds, or Any. Raises ValueError that names the place of the first value that is of another type or past `limits`.
+    None, one of these `Within` bounds, or Any. Raises ValueError that names the place of the first value that is of
+    another type, out of its bounds or past `limits`.
     """
     limits = limits or Limits()
     if dataclasses.is_dataclass(kind):

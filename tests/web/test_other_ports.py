@@ -22,7 +22,8 @@ from hazard_ms.web.rescue import asked_for, keep
 from tests.worlds.serving import browsing, needs_browser, serving, text, until
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(300), needs_browser]
-LURE = b"<!doctype html><img src=/pixel><script>fetch('/stored?' + encodeURIComponent(JSON.stringify(sessionStorage)))</script>"
+LURE = b"""<!doctype html><img src=/pixel>
+<script>fetch('/stored?' + encodeURIComponent(JSON.stringify(sessionStorage)))</script>"""
 
 
 class Listener:
@@ -39,8 +40,6 @@ class Listener:
                 self.send_header("Content-Type", "text/html")
                 self.end_headers()
                 self.wfile.write(LURE)
-
-            do_POST = do_GET
 
             def log_message(self, *words: Any) -> None:
                 """Stay silent."""
@@ -77,11 +76,10 @@ def shakes(address: str, word: str) -> bool:
     """Whether a WebSocket that offers a word is opened."""
     host = urlsplit(address).netloc
     with socket.create_connection(("127.0.0.1", int(host.rpartition(":")[2])), timeout=20) as made:
-        made.sendall(
-            f"GET /api/rescues/{'a' * 16}/live HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\n"
-            f"Connection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n"
-            f"Sec-WebSocket-Protocol: hazard_ms, {word}\r\n\r\n".encode()
-        )
+        head = f"GET /api/rescues/{'a' * 16}/live HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\n"
+        upgrade = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+        offer = f"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: hazard_ms, {word}\r\n\r\n"
+        made.sendall(f"{head}{upgrade}{offer}".encode())
         return b" 403 " not in made.recv(300).splitlines()[0]
 
 

@@ -105,16 +105,17 @@ def test_who_takes_the_port_over_receives_nothing_that_opens_the_next_server(tmp
     """It gets the token of the server that has ended, also out of the tab's storage, and that opens nothing."""
     (tmp_path / "kept.json").write_text("{}")
     keep(tmp_path, rescue := asked_for({}, ()))
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
     with browsing() as browser:
-        with serving(tmp_path) as first:
+        with serving(tmp_path, "--port", str(port)) as first:
             browser.get(first.address)
             until(lambda: browser.find_elements("css selector", "#play ul.plain button"), 60)
             browser.find_element("css selector", "#play ul.plain button").click()
             until(lambda: text(browser, "#play .title"), 30)
-            port = urlsplit(first.address).port
             first.kill()
         time.sleep(0.5)
-        other = Listener(int(port or 0))
+        other = Listener(port)
         with serving(tmp_path) as second:
             until(lambda: any("websocket" in row.lower() for row in other.received), 30)
             browser.refresh()

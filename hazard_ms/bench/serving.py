@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 from hazard_ms.evaluation.report import machine_line
+from hazard_ms.web.guard import PROTOCOL
 
 ROOM = ord("r")  # first byte of a picture of the third person
 SILENCE = 600.0  # longest time without a word of a rescue [s] [ours]
@@ -57,7 +58,7 @@ def _server(folder: Path) -> Iterator[tuple[Any, str]]:
     try:
         assert process.stdout is not None
         address = process.stdout.readline().strip()
-        if not re.match(r"http://127\.0\.0\.1:\d+/\?token=", address):
+        if not re.match(r"http://127\.0\.0\.1:\d+/#token=", address):
             raise ValueError(f"the server must print its address, got {address!r:.100}")
         yield process, address
     finally:
@@ -69,14 +70,13 @@ def _play(address: str, process: Any, env_id: str, seed: int, course: Course, en
     """Play one rescue, or a part of it until `end`, by the clock of `time.monotonic` [s]."""
     from websockets.sync.client import connect
 
-    origin, token = re.split(r"/\?token=", address)
-    port = origin.rpartition(":")[2]
-    headers = {"Origin": origin, "Cookie": f"hazard_ms_{port}={token}", "Content-Type": "application/json"}
+    origin, token = address.split("/#token=")
+    headers = {"Origin": origin, "Authorization": f"Bearer {token}", "Content-Type": "application/json"}
     wanted = json.dumps({"env_id": env_id, "seed": seed}).encode()
     with urllib.request.urlopen(urllib.request.Request(f"{origin}/api/rescues", wanted, headers)) as answer:
         name = json.load(answer)["name"]
     live = f"ws://{origin.removeprefix('http://')}/api/rescues/{name}/live"
-    with connect(live, origin=origin, additional_headers={"Cookie": headers["Cookie"]}, max_size=None) as socket:  # type: ignore[arg-type]
+    with connect(live, origin=origin, subprotocols=[PROTOCOL, token], max_size=None) as socket:  # type: ignore[arg-type]
         chosen = doing = 0.0
         while True:
             message = socket.recv(SILENCE)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 
 from starlette.applications import Starlette
@@ -16,7 +16,7 @@ from starlette.staticfiles import StaticFiles
 
 from hazard_ms.web import compare
 from hazard_ms.web.files import file_routes
-from hazard_ms.web.guard import Guard
+from hazard_ms.web.guard import Guard, file_key
 from hazard_ms.web.live import live_routes
 from hazard_ms.web.options import ServeOptions
 from hazard_ms.web.sessions import Sessions
@@ -24,8 +24,13 @@ from hazard_ms.web.sessions import Sessions
 STATIC = Path(__file__).parent / "static"
 
 
-def application(options: ServeOptions, token: str, port: int) -> Starlette:
-    """The application that serves the folders of `options` at `port`, to whom knows the `token`."""
+def application(
+    options: ServeOptions, token: str, port: int, admitted: Callable[[object], None] = lambda client: None
+) -> Starlette:
+    """The application that serves the folders of `options` at `port`, to whom knows the `token`.
+
+    `admitted` is told of each connection that has shown it.
+    """
     folders, sessions = options.folders, Sessions(options)
 
     @contextlib.asynccontextmanager
@@ -35,15 +40,19 @@ def application(options: ServeOptions, token: str, port: int) -> Starlette:
         looking.cancel()
         sessions.end()
 
+    async def entered(request: Request) -> Response:
+        return JSONResponse({"file_key": file_key(token)})
+
     return Starlette(
         routes=[
             Route("/", _index),
+            Route("/api/enter", entered),
             *live_routes(sessions, options.load),
             *file_routes(folders),
             *compare.routes(folders),
             Mount("/static", StaticFiles(directory=STATIC)),
         ],
-        middleware=[Middleware(Guard, token=token, port=port)],
+        middleware=[Middleware(Guard, token=token, port=port, admitted=admitted)],
         exception_handlers={ValueError: _refused},
         lifespan=life,
     )

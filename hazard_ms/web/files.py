@@ -32,9 +32,12 @@ def inside(folders: Sequence[Path], number: int, path: str) -> Path | None:
     """The file that an address means; None where the folder has no such file, or it may not be shown."""
     if not 0 <= number < len(folders) or any(part.startswith(".") for part in path.split("/")) or "\0" in path:
         return None
-    root = folders[number].resolve()
-    found = (root / path).resolve()
-    shown = found.is_relative_to(root) and found.suffix in KINDS and found.is_file()
+    try:
+        root = folders[number].resolve()
+        found = (root / path).resolve()
+        shown = found.is_relative_to(root) and found.suffix in KINDS and found.is_file()
+    except (OSError, RuntimeError, UnicodeError):  # a name that is too long, links in a circle
+        return None
     return found if shown else None
 
 

@@ -7,6 +7,7 @@ import json
 from typing import Any
 
 from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route, WebSocketRoute
@@ -14,6 +15,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from hazard_ms.evaluation.choices import LIGHTINGS, PRESETS, SEVERITIES
 from hazard_ms.registry import AGENTS, ROBOTS, TASKS, load
+from hazard_ms.web.guard import PROTOCOL
 from hazard_ms.web.playing.link import LONGEST
 from hazard_ms.web.rescue import PACES, asked_for
 from hazard_ms.web.session import Page, Session
@@ -41,12 +43,14 @@ def live_routes(sessions: Sessions, plugins: tuple[str, ...]) -> list[BaseRoute]
             sessions.jump(name, content.get("decisions"))
         elif what == "take_over":
             name = sessions.take_over(name, content.get("decisions")).rescue.name
-        else:
+        elif what == "end":
             sessions.close(name)
+        else:
+            raise HTTPException(404, "there is no such address")
         return JSONResponse({"name": name})
 
     async def live(socket: WebSocket) -> None:
-        await socket.accept()
+        await socket.accept(PROTOCOL)
         try:
             session = sessions.find(str(socket.path_params["name"]))
         except ValueError as error:

@@ -15,7 +15,7 @@ class ServeOptions:
     """Options of `hazard-ms serve`."""
 
     port: int = 0
-    """Port on this machine; 0: the last one of this folder if it is free, else any."""
+    """Port on this machine; 0: one that is free, another one at each start."""
     folder: tuple[Path, ...] = ()
     """Folders of results; rescues are written to the first one. By default `rescues`."""
     sessions: int = MOST_SESSIONS

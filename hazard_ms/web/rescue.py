@@ -59,8 +59,7 @@ class Rescue:
         """Raises ValueError for what cannot be played, or may not be asked for by a page."""
         one_of(self.kind, KINDS, "kind")
         one_of(self.view, VIEWS, "view")
-        if self.every not in PACES:
-            raise ValueError(f"every must be one of {PACES}, got {self.every!r:.100}")
+        pace(self.every)
         for what in ("runs_on", "over"):
             if not isinstance(getattr(self, what), bool):
                 raise ValueError(f"{what} must be true or false, got {getattr(self, what)!r:.100}")
@@ -125,6 +124,13 @@ def taken_over(rescue: Rescue, decisions: int) -> Rescue:
         every=rescue.every,
         taken=rescue.taken[:decisions],
     )
+
+
+def pace(every: object) -> int:
+    """The frames from one picture to the next. Raises ValueError for anything but one of PACES."""
+    if not isinstance(every, int) or isinstance(every, bool) or every not in PACES:
+        raise ValueError(f"every must be one of {PACES}, got {every!r:.100}")
+    return every
 
 
 def journal(folder: Path, name: str) -> Path:

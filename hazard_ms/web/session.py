@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from hazard_ms.machine.processes import few_threads, needs_key, without_keys
-from hazard_ms.web.playing.link import PICTURES
+from hazard_ms.web.playing.link import LONGEST_BYTES, PICTURES
 from hazard_ms.web.playing.process import main
 from hazard_ms.web.rescue import Rescue, Taken
 
@@ -95,11 +95,14 @@ class Session:
         self.looked_at = time.monotonic()
 
     def ask(self, message: dict[str, Any]) -> None:
-        """Pass on what a page asks for. Raises ValueError where the process is too far behind."""
+        """Pass on what a page asks for. Raises ValueError where it is too long, or the process too far behind."""
+        content = json.dumps(message).encode()
+        if len(content) > LONGEST_BYTES:
+            raise ValueError(f"a message must have at most {LONGEST_BYTES} bytes, got {len(content)}")
         with self._sending:
             if len(self._waiting) >= MOST_WAITING:
                 raise ValueError(f"a page must have at most {MOST_WAITING} messages waiting, got more")
-            self._waiting.append(json.dumps(message).encode())
+            self._waiting.append(content)
             self._sending.notify()
 
     def post(self, kind: str, **content: Any) -> None:

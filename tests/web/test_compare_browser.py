@@ -121,7 +121,7 @@ def _compare(address: str, browser: Any) -> None:
 def test_nothing_is_wider_than_the_page(width: int, address: str) -> None:
     with browsing(width) as browser:
         browser.get(address)
-        browser.get(f"{address.split('?')[0]}#compare")
+        browser.get(f"{address.split('#')[0]}#compare")
         browser.refresh()
         keyboard = Keyboard(browser)
         keyboard.until("#compare .compare-scores", "human")

@@ -61,6 +61,10 @@ def deep(changed: Callable[[dict[str, Any]], None]) -> str:
         (deep(lambda r: r["decisions"][0].update(value=float("inf"))), "value at a decision must be .* got inf"),
         (deep(lambda r: r["decisions"][0].update(note="z" * 100_001)), "note of a decision must be a text of at most"),
         (deep(lambda r: r["decisions"][0].update(verb=7)), "verb = 7"),
+        (deep(lambda r: [target.update(value=0) for target in r["targets"]]), "."),
+        (deep(lambda r: r["targets"][0].update(value=10**400)), "."),
+        (deep(lambda r: r["targets"][0].update(frame=10**400)), "."),
+        (deep(lambda r: r["decisions"][0].update(note=10**400)), "."),
     ],
 )
 def test_a_broken_result_is_named_and_left_out(text: str, said: str, tmp_path: Path) -> None:

@@ -35,6 +35,12 @@ def test_nothing_else_is(folder: Path, path: str) -> None:
     assert inside([folder], 1, "a.json") is None
 
 
+def test_names_that_no_file_can_have_are_not_found(folder: Path) -> None:
+    (folder / "circle.json").symlink_to(folder / "circle.json")
+    for path in ("a" * 300 + ".json", "circle.json", "circle.json/a.json"):
+        assert inside([folder], 0, path) is None
+
+
 def test_a_file_elsewhere_has_no_address(folder: Path) -> None:
     with pytest.raises(ValueError, match="path must be in one of the folders"):
         address([folder], folder.parent / "secret.json")

@@ -17,6 +17,7 @@ from urllib.parse import urlsplit
 import pytest
 from websockets.sync.client import ClientConnection, connect
 
+from hazard_ms.web.guard import PROTOCOL
 from hazard_ms.web.rescue import journal
 from hazard_ms.web.sessions import LOOK_ROUND
 from tests.worlds.serving import Server, serving
@@ -32,12 +33,12 @@ class Client:
 
     def __init__(self, server: Server) -> None:
         parts = urlsplit(server.address)
-        self.server, self.host, self.token = server, parts.netloc, parts.query
+        self.server, self.host, self.token = server, parts.netloc, parts.fragment.removeprefix("token=")
 
     def begin(self) -> str:
         """Begin a rescue. Returns its name; raises ValueError with the words in which the server refuses it."""
-        origin = {"Origin": f"http://{self.host}"}
-        request = urllib.request.Request(f"http://{self.host}/api/rescues?{self.token}", b"{}", origin)
+        origin = {"Origin": f"http://{self.host}", "Authorization": f"Bearer {self.token}"}
+        request = urllib.request.Request(f"http://{self.host}/api/rescues", b"{}", origin)
         try:
             with urllib.request.urlopen(request, timeout=60) as answer:
                 return str(json.load(answer)["name"])
@@ -47,8 +48,11 @@ class Client:
     @contextlib.contextmanager
     def looking(self, name: str) -> Iterator[ClientConnection]:
         """A page that shows the rescue called `name`, from the first word about it on."""
-        address = f"ws://{self.host}/api/rescues/{name}/live?{self.token}"
-        with connect(address, origin=f"http://{self.host}", max_size=None, open_timeout=60) as socket:
+        address = f"ws://{self.host}/api/rescues/{name}/live"
+        shown = [PROTOCOL, self.token]
+        with connect(
+            address, origin=f"http://{self.host}", subprotocols=shown, max_size=None, open_timeout=60
+        ) as socket:  # type: ignore[arg-type]
             assert json.loads(socket.recv(60))["type"] == "building"
             yield socket
 

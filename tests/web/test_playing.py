@@ -16,6 +16,7 @@ import pytest
 from hazard_ms import registry
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.web.compare.shelf import Librarian, film_of
+from hazard_ms.web.playing import keeping
 from hazard_ms.web.playing.link import PICTURES, Link
 from hazard_ms.web.playing.process import main, play
 from hazard_ms.web.rescue import Rescue, Taken, asked_for, journal, keep, read
@@ -59,6 +60,8 @@ class Page(threading.Thread):
         self.ask(do="point", picture="r", across=2.0, down=0.5)
         self.ask(do="point", picture="r", across=0.5, down=0.9)
         self.ask(do="thing", name="<img src=x onerror=alert(1)>")
+        if row["number"]:
+            self.ask(do="choose", number=row["number"] - 1, key=words["look around here"])
         self.ask(do="choose", number=row["number"], key=words["stop" if row["number"] else "look around here"])
 
     def ask(self, **message: Any) -> None:
@@ -78,7 +81,8 @@ def test_a_rescue_is_played_and_kept_and_its_replay_is_equal(tmp_path: Path) -> 
     page.join(10)
     assert page.pictures == {*PICTURES}
     assert [row["verb"] for row in page.heard["row"]] == ["explore", "stop"]
-    assert len([w for w in page.heard["refused"] if "choice must be one of" in w["why"]]) == 2
+    assert len([w for w in page.heard["refused"] if "choice must be one of" in w["why"]]) == 3
+    assert len([w for w in page.heard["refused"] if "got one of an earlier one" in w["why"]]) == 1
     assert "two numbers from 0 to 1" in page.heard["refused"][1]["why"]
     assert page.heard["pointed"][1]["why"] == "the robot has not seen it yet"
     kept = page.heard["kept"][0]
@@ -131,13 +135,26 @@ def test_a_process_that_dies_before_the_film_is_there_costs_nothing(tmp_path: Pa
 
 
 @pytest.mark.render
-@pytest.mark.long
 @pytest.mark.timeout(300)
-def test_a_process_that_dies_before_the_result_is_there_costs_nothing(tmp_path: Path) -> None:
-    taken = (Taken("explore", None), Taken("stop", None))
-    page = played(replace(asked_for({"seed": 0, "every": 16}, ()), taken=taken, over=True), tmp_path)
+def test_a_process_that_dies_before_the_result_is_there_costs_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Waits are simulated again, too; the folder may be called `.`, and only an exact replay is a demonstration."""
+    (tmp_path / "rescues").mkdir()
+    monkeypatch.chdir(tmp_path / "rescues")
+    taken = (Taken("explore", None, 7), Taken("stop", None))
+    rescue = replace(asked_for({"seed": 0, "every": 16}, ()), taken=taken, over=True)
+    page = played(rescue, Path())
     assert [row["phase"] for row in page.heard["state"]] == ["over"]
-    assert page.heard["kept"][0]["replay"] == "exact" and next(tmp_path.glob("*.json"))
+    assert page.heard["kept"][0]["replay"] == "exact"
+    assert Path(page.heard["kept"][0]["demonstration"]).is_relative_to(tmp_path / "rescues_demos")
+    result = EpisodeResult.read(next(Path().glob("*.json")))
+    assert [(d.verb, d.waited) for d in result.decisions] == [("explore", 7), ("stop", 0)]
+    other = tmp_path / "other" / "changed.json"
+    other.parent.mkdir()
+    changed = replace(result, links=result.links[:-1])
+    verdict, demonstration = keeping.film(other, rescue.episode, changed, lambda frame: None, teaches=True)
+    assert verdict.startswith("same score") and demonstration is None and not (tmp_path / "other_demos").exists()
 
 
 @pytest.fixture

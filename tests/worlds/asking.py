@@ -37,7 +37,7 @@ class Asking:
     def get(self, address: str, token: str = TOKEN) -> Answer:
         """Ask for an address, which may have a query."""
         parts = urlsplit(address)
-        headers = [(b"host", f"127.0.0.1:{PORT}".encode()), (b"cookie", f"hazard_ms_{PORT}={token}".encode())]
+        headers = [(b"host", f"127.0.0.1:{PORT}".encode()), (b"authorization", f"Bearer {token}".encode())]
         scope = {
             "type": "http",
             "asgi": {"version": "3.0", "spec_version": "2.4"},

@@ -38,7 +38,7 @@ class Server:
         ready, _, _ = select.select([self.process.stdout], [], [], START)
         assert ready, "the server must print its address"
         self.address = self.process.stdout.readline().strip()
-        assert re.fullmatch(r"http://127\.0\.0\.1:\d+/\?token=[\w-]{32}", self.address)
+        assert re.fullmatch(r"http://127\.0\.0\.1:\d+/#token=[\w-]{32}", self.address)
 
     def kill(self) -> None:
         """End the server as a power failure would."""

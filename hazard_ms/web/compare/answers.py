@@ -111,5 +111,6 @@ def _page(folders: Sequence[Path], shelf: Shelf, key: str) -> Response:
     if key not in shelf.books:
         raise HTTPException(404, "there is no such episode")
     book = shelf.books[key]
-    made = page(book.kept.result, _links(folders, book)["film_link"])
+    film = _links(folders, book)["film_link"]
+    made = page(book.kept.result, film and f"../{film.removeprefix(FILES)}")  # relative: the key of files stays in it
     return HTMLResponse(made.encode("utf-8", "replace"))

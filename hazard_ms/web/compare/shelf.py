@@ -19,6 +19,8 @@ MOST_FILES = 5_000  # results that are read [ours]
 MOST_ENTRIES = 200_000  # files and folders that are looked at [ours]
 LARGEST = 8 * 1024 * 1024  # of a file [bytes] [ours]
 LARGEST_IN_ALL = 160 * 1024 * 1024  # of all files together; those of 1,000 episodes take about 40 MB [bytes] [ours]
+# what readers of odd files raise: such a file is named, and all others are shown
+UNREADABLE = (OSError, ValueError, ArithmeticError, TypeError, LookupError, AttributeError, RecursionError)
 
 Stamp = tuple[int, ...]  # of a file and of its regret: they are read again when it changes
 
@@ -120,11 +122,11 @@ class Librarian:
             return known[path]
         try:
             result = checked(EpisodeResult.read(path))
-        except (OSError, ValueError) as error:
+        except UNREADABLE as error:
             return _Read(stamp, None, (_plain(error, path),))
         try:
             regret = judged(path) if stamp[-1] else None
-        except (OSError, ValueError) as error:
+        except UNREADABLE as error:
             return _Read(stamp, Kept(result, path), (f"its regret: {_plain(error, path)}",))
         return _Read(stamp, Kept(result, path, regret), ())
 

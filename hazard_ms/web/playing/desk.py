@@ -20,7 +20,7 @@ from hazard_ms.web import rescue as rescues
 from hazard_ms.web.playing.link import PICTURES, Link
 from hazard_ms.web.playing.menu import Choice, Choices
 from hazard_ms.web.playing.pictures import Pictures
-from hazard_ms.web.rescue import ALL, PACES, PLAY, Rescue, Taken
+from hazard_ms.web.rescue import ALL, PLAY, Rescue, Taken
 
 ROW = ("frame", "verb", "target", "ok", "reason", "frames", "waited", "note", "value")  # of a decision, that pages show
 ASKED = ("choose", "point", "thing", "pace", "pause", "go", "step", "world", "end")
@@ -191,9 +191,7 @@ class Desk(Watcher):
         elif what == "thing":
             self._about(str(message.get("name")))
         elif what == "pace":
-            if message.get("every") not in PACES:
-                raise ValueError(f"every must be one of {PACES}, got {message.get('every')!r:.100}")
-            self.every = message["every"]
+            self.every = rescues.pace(message.get("every"))
         elif what in ("pause", "go", "step"):
             self.paused, self.steps = what != "go", self.steps + (what == "step")
         elif what == "world":

@@ -6,6 +6,7 @@ The film is made afterwards: the episode is simulated again by its decisions, wh
 from __future__ import annotations
 
 import contextlib
+import os
 import re
 import time
 from collections.abc import Callable
@@ -102,7 +103,7 @@ def film(
     if verdict != EXACT or not teaches:
         return f"{verdict}{why}", None
     seconds = {**result.phase_seconds, "verify": time.perf_counter() - start}
-    output = path.parent.with_name(path.parent.name + DEMOS)
+    output = Path(f"{os.path.abspath(path.parent)}{DEMOS}")  # the folder may be called `.`
     return verdict, _demonstrate(output, options, result, (recorder, foresight), seconds)
 
 

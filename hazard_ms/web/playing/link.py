@@ -12,6 +12,7 @@ from typing import Any
 ROOM, HEAD, HAZARD, MAP = "r", "h", "z", "m"  # of the third person, the head camera, the hazard, the semantic map
 PICTURES = (ROOM, HEAD, HAZARD, MAP)
 LONGEST = 4096  # characters of a message of a page [ours]
+LONGEST_BYTES = 4 * LONGEST  # of a message of a page as the process gets it [ours]
 
 
 class Link:
@@ -35,5 +36,5 @@ class Link:
         """
         if not self._connection.poll(seconds):
             return None
-        message = json.loads(self._connection.recv_bytes(LONGEST * 4))
+        message = json.loads(self._connection.recv_bytes(LONGEST_BYTES))
         return message if isinstance(message, dict) else None

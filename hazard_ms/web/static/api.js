@@ -1,11 +1,38 @@
-// Requests to the server; the cookie that the first page has set holds the token.
+// Requests to the server. The token comes in the address that hazard-ms serve printed, behind the #, which browsers send to
+// nobody. It stays in this tab, is sent as a header, never as a cookie, and is worth nothing after the server has ended.
+
+const TOKEN = "hazard_ms token" // in sessionStorage, which belongs to this port alone
+let fileKey = ""
+
+// Takes a token out of the address, if there is one. Returns whether there was.
+export function takeToken() {
+  const found = /^#token=([\w-]+)$/.exec(location.hash)
+  if (!found) return false
+  sessionStorage.setItem(TOKEN, found[1])
+  history.replaceState(null, "", location.pathname)
+  return true
+}
+
+const token = () => sessionStorage.getItem(TOKEN) || ""
+
+// Shows the server the token, and learns with which key the browser may open files.
+export async function enter() {
+  fileKey = (await api("/api/enter")).file_key
+}
+
+// The address at which the browser can open a file that the server names /files/...
+export const opened = address => address.replace(/^\/files\//, `/files/${fileKey}/`)
+
+// A WebSocket, to which the token is shown as the name of a protocol.
+export const socket = path => new WebSocket(`ws://${location.host}${path}`, token() ? ["hazard_ms", token()] : ["hazard_ms"])
 
 export async function api(path, options = {}) {
   const { body, ...rest } = options
-  const sent = body === undefined ? {} : { method: "POST", body: JSON.stringify(body), headers: { "Content-Type": "application/json" } }
+  const sent = body === undefined ? {} : { method: "POST", body: JSON.stringify(body) }
+  const headers = { Authorization: `Bearer ${token()}`, "Content-Type": "application/json" }
   let answer
   try {
-    answer = await fetch(path, { credentials: "same-origin", ...sent, ...rest })
+    answer = await fetch(path, { credentials: "omit", headers, ...sent, ...rest })
   } catch {
     throw new Error("the server does not answer: has hazard-ms serve ended?")
   }

@@ -1,6 +1,6 @@
 // The decisions of chosen episodes over one another on one axis of time, with rescues, damage and regret.
 
-import { element } from "./api.js"
+import { element, opened } from "./api.js"
 import { partWords } from "./compare_charts.js"
 import { drawn, legend, named, percent, verbClass, words } from "./compare_words.js"
 
@@ -181,7 +181,7 @@ export class Timelines {
 }
 
 function head(one, remove) {
-  const link = (address, said) => (address ? element("a", { href: address, target: "_blank", rel: "noopener" }, said) : null)
+  const link = (address, said) => (address ? element("a", { href: opened(address), target: "_blank", rel: "noopener" }, said) : null)
   const left = one.left_out ? `, ${one.left_out} more decisions are not drawn` : ""
   return element("div", { class: "row compare-head" }, element("h3", {}, named(one.agent, one.person)),
     element("span", { class: "soft" }, element("bdi", {}, `${one.scene}, seed ${one.seed}`), ` · Value ${percent(one.value)} % · `, element("bdi", {}, `ended: ${one.ended}`), ` at frame ${one.frames}${left}`),

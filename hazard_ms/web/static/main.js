@@ -1,6 +1,6 @@
 // The page: three tabs, each filled by a module of its own when it is first shown.
 
-import { api } from "./api.js"
+import { api, element, enter, takeToken } from "./api.js"
 
 const PARTS = ["play", "watch", "compare"]
 const mounted = new Set()
@@ -13,7 +13,7 @@ async function show(name, focus = false) {
     tab.tabIndex = chosen ? 0 : -1
     if (chosen && focus) tab.focus()
   }
-  history.replaceState(null, "", `${location.pathname}#${name}`) // the token leaves the address
+  history.replaceState(null, "", `${location.pathname}#${name}`)
   if (mounted.has(name)) return
   mounted.add(name)
   const part = await import(`./${name}.js`)
@@ -28,5 +28,19 @@ for (const [number, part] of PARTS.entries()) {
     if (step) show(PARTS[(number + step + PARTS.length) % PARTS.length], true)
   })
 }
-const wanted = location.hash.slice(1)
-show(PARTS.includes(wanted) ? wanted : "play")
+async function start() {
+  try {
+    await enter()
+  } catch (error) {
+    const why = element("div", { class: "banner bad", role: "alert" }, `${error.message}. Open the address that hazard-ms serve printed when it was started last.`)
+    document.querySelector(".tabs").hidden = true
+    document.getElementById("main").replaceChildren(why)
+    return
+  }
+  const wanted = location.hash.slice(1)
+  await show(PARTS.includes(wanted) ? wanted : "play")
+}
+
+addEventListener("hashchange", () => { if (takeToken()) location.reload() }) // another address was opened in this tab
+takeToken()
+void start()

@@ -1,6 +1,6 @@
 // One rescue on the page: its pictures, what can be chosen, what has been decided. Shared by Play and Watch.
 
-import { element } from "./api.js"
+import { element, opened, socket } from "./api.js"
 
 const PICTURES = { r: "third person", h: "head camera", z: "hazard", m: "map of what the robot has seen" }
 const NOTHING = "data:image/gif;base64,R0lGODlhAQABAIAAAAAAAP///yH5BAEAAAAALAAAAAABAAEAAAIBRAA7" // one clear pixel
@@ -57,8 +57,7 @@ export class Rescue {
 
   connect() {
     if (this.ended) return
-    const scheme = location.protocol === "https:" ? "wss" : "ws"
-    this.socket = new WebSocket(`${scheme}://${location.host}/api/rescues/${this.name}/live`)
+    this.socket = socket(`/api/rescues/${this.name}/live`)
     this.socket.binaryType = "blob"
     this.socket.addEventListener("open", () => this.on_again()) // the server tells everything from the beginning
     this.socket.addEventListener("message", event => {
@@ -67,7 +66,7 @@ export class Rescue {
     })
     this.socket.addEventListener("close", () => {
       if (this.ended) return
-      this.say("The server does not answer: it has ended, or was killed. This page tries again; start hazard-ms serve with the same folder to go on.", true)
+      this.say("The server does not answer: it has ended, or was killed. To go on, start hazard-ms serve with the same folder and open the address that it prints.", true)
       this.timer = setTimeout(() => this.connect(), RETRY)
     })
   }
@@ -231,7 +230,7 @@ export class Rescue {
   }
 
   link(files) {
-    const links = files.map(file => element("li", {}, element("a", { href: file.address, target: "_blank", rel: "noopener" }, file.name)))
+    const links = files.map(file => element("li", {}, element("a", { href: opened(file.address), target: "_blank", rel: "noopener" }, file.name)))
     this.files.replaceChildren(element("h3", {}, files.length ? "Files of this rescue" : ""), element("ul", {}, ...links), element("p", { class: "soft film" }))
   }
 

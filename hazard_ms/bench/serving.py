@@ -69,6 +69,7 @@ def _server(folder: Path) -> Iterator[tuple[Any, str]]:
 def _play(address: str, process: Any, env_id: str, seed: int, course: Course, end: float) -> None:
     """Play one rescue, or a part of it until `end`, by the clock of `time.monotonic` [s]."""
     from websockets.sync.client import connect
+    from websockets.typing import Origin, Subprotocol
 
     origin, token = address.split("/#token=")
     headers = {"Origin": origin, "Authorization": f"Bearer {token}", "Content-Type": "application/json"}
@@ -76,7 +77,8 @@ def _play(address: str, process: Any, env_id: str, seed: int, course: Course, en
     with urllib.request.urlopen(urllib.request.Request(f"{origin}/api/rescues", wanted, headers)) as answer:
         name = json.load(answer)["name"]
     live = f"ws://{origin.removeprefix('http://')}/api/rescues/{name}/live"
-    with connect(live, origin=origin, subprotocols=[PROTOCOL, token], max_size=None) as socket:  # type: ignore[arg-type]
+    protocols = [Subprotocol(PROTOCOL), Subprotocol(token)]
+    with connect(live, origin=Origin(origin), subprotocols=protocols, max_size=None) as socket:
         chosen = doing = 0.0
         while True:
             message = socket.recv(SILENCE)

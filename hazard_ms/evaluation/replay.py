@@ -42,8 +42,8 @@ def episode_of(record: EpisodeResult, load: tuple[str, ...] = ()) -> EpisodeOpti
     """
     settings = dict(record.settings)
     scene = settings.pop("scenes", record.scene)
-    hazards = tuple(settings.pop("hazards", ()))
     try:
+        hazards = tuple(settings.pop("hazards", ()))
         return EpisodeOptions(
             env_id=record.env_id,
             **settings,

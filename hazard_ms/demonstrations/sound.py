@@ -84,8 +84,10 @@ def _is(value: Any, kind: type, inner: type | None = None) -> bool:
     """Whether a value is of a type, where whole numbers count as floats; and whether all entries are of `inner`."""
     if type(value) is not kind and not (kind is float and type(value) is int):
         return False
+    if inner is None:
+        return True
     entries: Iterable[Any] = value.values() if isinstance(value, dict) else value
-    return inner is None or all(type(entry) is inner for entry in entries)
+    return all(type(entry) is inner for entry in entries)
 
 
 def check_arrays(meta: Mapping[str, Any], decisions: Arrays, frames: Arrays) -> None:

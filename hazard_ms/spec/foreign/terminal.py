@@ -51,7 +51,7 @@ def plain_output() -> Iterator[None]:
     """Make the standard output and the standard error streams of `Plain` text in the block, where they are open."""
     kept = sys.stdout, sys.stderr
     output, errors = (None if stream is None else Plain(stream, stream is sys.stderr) for stream in kept)
-    sys.stdout, sys.stderr = output, errors  # type: ignore[assignment]
+    sys.stdout, sys.stderr = output, errors
     try:
         yield
     finally:

@@ -1,8 +1,8 @@
-"""What an episode's files must hold to be read: types, shapes that fit each other, and indices that point somewhere."""
+"""Checks of the content of an episode's files: types, shapes that fit each other, and indices that point somewhere."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -86,8 +86,7 @@ def _is(value: Any, kind: type, inner: type | None = None) -> bool:
         return False
     if inner is None:
         return True
-    entries: Iterable[Any] = value.values() if isinstance(value, dict) else value
-    return all(type(entry) is inner for entry in entries)
+    return all(type(entry) is inner for entry in (value.values() if isinstance(value, dict) else value))
 
 
 def check_arrays(meta: Mapping[str, Any], decisions: Arrays, frames: Arrays) -> None:

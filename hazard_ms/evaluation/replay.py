@@ -80,7 +80,7 @@ def other_versions(recorded: Mapping[str, str]) -> str:
 
 
 def apart(recorded: Mapping[str, str]) -> str:
-    """What to add to a verdict about a record that was made with these versions of packages."""
+    """The words to add to a verdict about a record that was made with these versions of packages."""
     others = other_versions(recorded)
     return f"; recorded with {others}" if others else ""
 

@@ -1,4 +1,4 @@
-"""What a decoder of JSON is told, so that numbers are finite and short, and the keys of an object differ."""
+"""Hooks for a decoder of JSON, so that numbers are finite and short, and the keys of an object differ."""
 
 from __future__ import annotations
 

@@ -146,7 +146,7 @@ def read_episode(folder: Path) -> Demonstration:
 
 
 def described(folder: Path) -> tuple[EpisodeResult, dict[str, Any]]:
-    """The content of episode.json in a folder: the result, and all else. Raises DamagedDatasetError as `read_episode`."""
+    """The result in episode.json of a folder, and all else. Raises DamagedDatasetError as `read_episode`."""
     files_of(folder)
     path = folder / EPISODE
     try:

@@ -1,7 +1,8 @@
 """Reads hostile files one by one, each in a process of its own, and says how each ended and what it cost.
 
-`python -m tests.worlds.hostile.corpus models|scenes|originals [FIRST] [COUNT]` prints the sums; it ends with 1 if one
-ended otherwise than documented, needed a gigabyte or a minute of processor time.
+`python -m tests.worlds.hostile.corpus NAME [FIRST] [COUNT]`, with one of CORPORA, prints the sums; it ends with 1 if one
+ended otherwise than documented, needed a gigabyte, or too much processor time. Reading records of earlier runs
+must not write or start anything outside of their folder, nor import what a file names.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import resource
 import signal
 import sys
 import tempfile
@@ -17,10 +19,12 @@ from collections import Counter
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 MEMORY = 1_000_000_000  # that reading one file may take [bytes]
-PROCESSOR_TIME = 60.0  # likewise [s]
+PROCESSOR_TIME, RECORD_TIME = 60.0, 10.0  # likewise, and for records [s]
+ADDRESSES = 8_000_000_000  # that reading a record may ask for, so that no bomb takes the machine along [bytes]
 HANGING = 600  # when a process is ended [s]
 READ, REFUSED, UNDOCUMENTED = 0, 3, 4  # how a process ends
 
@@ -33,6 +37,7 @@ class Outcome:
     code: int  # of the process; negative: the signal that ended it
     seconds: float  # of processor time
     memory: int  # [bytes]
+    most_seconds: float = PROCESSOR_TIME
 
     @property
     def word(self) -> str:
@@ -43,7 +48,7 @@ class Outcome:
     @property
     def good(self) -> bool:
         """Whether that is documented, and within the budget."""
-        return self.word in ("read", "refused", "stopped") and self.memory < MEMORY and self.seconds < PROCESSOR_TIME
+        return self.word in ("read", "refused", "stopped") and self.memory < MEMORY and self.seconds < self.most_seconds
 
 
 def read_model(number: int, folder: Path) -> tuple[str, Callable[[], int]]:
@@ -112,7 +117,41 @@ def read_original(number: int, folder: Path) -> tuple[str, Callable[[], int]]:
     return kind, bring
 
 
+def read_record(corpus: str, number: int, folder: Path) -> tuple[str, Callable[[], int]]:
+    """The hostile record of a number, and what reads it."""
+    from tests.worlds.hostile.audit import watch
+    from tests.worlds.hostile.records import record
+
+    inside, outside = folder / "inside", folder / "outside"
+    inside.mkdir()
+    outside.mkdir()
+    secret, module = outside / "secret", outside / "evilmod.py"
+    secret.write_text("of its reader")
+    module.write_text("open(__file__ + '.run', 'w')\n")
+    kind, act = record(corpus, number, inside, secret, module)
+
+    def read() -> int:
+        os.chdir(inside)
+        resource.setrlimit(resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
+        done, code = watch(inside, module.stem), READ
+        try:
+            with redirect_stdout(io.StringIO()):
+                act()
+        except ValueError as error:
+            code = answer(str(error))
+        assert done == []
+        assert sorted(os.listdir(outside)) == ["evilmod.py", "secret"] and secret.read_text() == "of its reader"
+        return code
+
+    return kind, read
+
+
+RECORDS = (
+    *("results", "regrets", "journals", "datasets", "arrays", "timelines", "sketches", "skill-times", "probes"),
+    *("policies", "states", "traces", "answers"),
+)
 CORPORA = {"models": read_model, "scenes": read_scene, "originals": read_original}
+CORPORA |= {name: partial(read_record, name) for name in RECORDS}
 
 
 def answer(words: str) -> int:
@@ -138,7 +177,8 @@ def outcome(corpus: str, number: int) -> Outcome:
                 os._exit(code)
         _, status, cost = os.wait4(child, 0)
     seconds = cost.ru_utime + cost.ru_stime
-    return Outcome(f"{kind} {number}", os.waitstatus_to_exitcode(status), seconds, cost.ru_maxrss * 1024)
+    most = RECORD_TIME if corpus in RECORDS else PROCESSOR_TIME
+    return Outcome(f"{kind} {number}", os.waitstatus_to_exitcode(status), seconds, cost.ru_maxrss * 1024, most)
 
 
 def main(corpus: str, first: int = 0, count: int = 12) -> int:

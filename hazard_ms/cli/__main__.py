@@ -6,6 +6,7 @@ quick.
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import sys
@@ -28,11 +29,12 @@ from hazard_ms.cli.sketch import SketchCommand
 from hazard_ms.cli.train import TrainCommand
 from hazard_ms.cli.validate import validate
 from hazard_ms.registry.version import __version__
-from hazard_ms.spec.foreign.files import printable
+from hazard_ms.spec.foreign.terminal import plain, plain_output
 
 DESCRIPTION = (
     "Rescue tasks in fire, flood and wind. `hazard-ms COMMAND --help` describes a command, --version the version."
 )
+HELP = {"-h", "--help"}  # what is then printed is our own text, in colours
 
 
 def doctor(json: bool = False, draw: bool = True) -> int:
@@ -130,7 +132,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # frames of help texts where the locale knows ASCII only
     try:
-        code = _run(words)
+        with contextlib.nullcontext() if HELP & set(words) else plain_output():
+            code = _run(words)
         if sys.stdout is not None:  # it may be closed
             sys.stdout.flush()
     except BrokenPipeError:  # whoever reads the output has read enough, as `head` does
@@ -157,7 +160,7 @@ def _run(words: list[str]) -> int:
     try:
         done = tyro.extras.subcommand_cli_from_dict(COMMANDS, prog="hazard-ms", description=DESCRIPTION, args=words)
     except ValueError as error:  # its text says everything: no traceback
-        print("hazard-ms:", "\n".join(map(printable, str(error).split("\n"))), file=sys.stderr)
+        print("hazard-ms:", plain(str(error)), file=sys.stderr)
         return 2
     return int(done or 0)
 

@@ -25,7 +25,7 @@ def report(
         folders: Folders that `hazard-ms evaluate` wrote; folders in them are read, too.
         output: Page to write, NAME.html.
         json: Print everything as JSON instead, and write no page.
-        pages: Write the page of each episode that has none, into a folder NAME_episodes beside the page.
+        pages: Write the page of each episode, into a folder NAME_episodes beside the page.
     """
     from json import dumps
 

@@ -1,4 +1,4 @@
-"""What an episode's files must hold to be read: types, shapes that fit each other, and indices that point somewhere."""
+"""Checks of the content of an episode's files: types, shapes that fit each other, and indices that point somewhere."""
 
 from __future__ import annotations
 
@@ -9,11 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.demonstrations.layout import DECISIONS, EPISODE, FRAMES, DamagedDatasetError
-from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.skills.options.options import COUNT
 
-MOST_FRAMES = 100_000  # of an episode [ours]
-MOST_DECISIONS = 20_000  # likewise [ours]
 Arrays = Mapping[str, NDArray[Any]]
 
 # types of the entries of episode.json; docs/demonstrations.md says what they mean
@@ -87,21 +84,9 @@ def _is(value: Any, kind: type, inner: type | None = None) -> bool:
     """Whether a value is of a type, where whole numbers count as floats; and whether all entries are of `inner`."""
     if type(value) is not kind and not (kind is float and type(value) is int):
         return False
-    entries = value.values() if isinstance(value, dict) else value
-    return inner is None or all(type(entry) is inner for entry in entries)
-
-
-def check_result(result: EpisodeResult) -> None:
-    """Check that the frames of an episode are numbers that an episode can have. Raises ValueError."""
-    if not result.targets or result.tally.value_total <= 0:
-        raise ValueError("targets must have a value, got none")
-    if len(result.decisions) > MOST_DECISIONS:
-        raise ValueError(f"decisions must be at most {MOST_DECISIONS}, got {len(result.decisions)}")
-    frames = {"frames": (result.frames,), "max_frames": (result.max_frames,)}
-    frames["a decision"] = tuple(n for d in result.decisions for n in (d.frame, d.frames, d.waited))
-    for name, numbers in frames.items():
-        if any(not 0 <= n <= MOST_FRAMES for n in numbers):
-            raise ValueError(f"frames of {name} must be from 0 to {MOST_FRAMES}, got others")
+    if inner is None:
+        return True
+    return all(type(entry) is inner for entry in (value.values() if isinstance(value, dict) else value))
 
 
 def check_arrays(meta: Mapping[str, Any], decisions: Arrays, frames: Arrays) -> None:

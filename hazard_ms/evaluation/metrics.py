@@ -16,11 +16,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
+from hazard_ms.spec.foreign.plain import Within
 
 RESAMPLES = 10_000  # of the bootstrap: the ends of a 95 % interval are then known to about 1 % of its width
 LEVEL = 0.95  # of the interval
@@ -32,11 +34,11 @@ class Fate:
 
     name: str
     category: str
-    value: float  # 1 or 5
+    value: Annotated[float, Within(1e-6, 1e6)]  # 1 or 5 in our tasks
     rescued: bool
     damaged: bool  # when it was rescued, or at the end
-    frame: int | None = None  # of the rescue
-    damaged_frame: int | None = None  # of the first damage
+    frame: Annotated[int | None, Within(0, 10_000_000)] = None  # of the rescue
+    damaged_frame: Annotated[int | None, Within(0, 10_000_000)] = None  # of the first damage
 
     def __post_init__(self) -> None:
         if self.rescued != (self.frame is not None):

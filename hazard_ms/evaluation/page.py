@@ -65,8 +65,8 @@ def address(video: Path, name: str) -> str:
 
 
 def link(target: Path, source: Path) -> str | None:
-    """The address of a file for the page `source`; None where there is no such file."""
-    if not target.is_file():
+    """The address of a file for the page `source`; None where there is no such file, or only a link to one."""
+    if not target.is_file() or target.is_symlink():
         return None
     return quote(os.path.relpath(target.resolve(), source.resolve().parent), errors="surrogateescape")
 

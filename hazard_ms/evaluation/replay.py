@@ -42,8 +42,8 @@ def episode_of(record: EpisodeResult, load: tuple[str, ...] = ()) -> EpisodeOpti
     """
     settings = dict(record.settings)
     scene = settings.pop("scenes", record.scene)
-    hazards = tuple(settings.pop("hazards", ()))
     try:
+        hazards = tuple(settings.pop("hazards", ()))
         return EpisodeOptions(
             env_id=record.env_id,
             **settings,
@@ -80,7 +80,7 @@ def other_versions(recorded: Mapping[str, str]) -> str:
 
 
 def apart(recorded: Mapping[str, str]) -> str:
-    """What to add to a verdict about a record that was made with these versions of packages."""
+    """The words to add to a verdict about a record that was made with these versions of packages."""
     others = other_versions(recorded)
     return f"; recorded with {others}" if others else ""
 

@@ -6,8 +6,6 @@
 from __future__ import annotations
 
 import dataclasses
-import functools
-import hashlib
 import importlib.metadata
 import json
 import os
@@ -16,13 +14,16 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Annotated, Any
 
 from hazard_ms.agents.thinking import OFF
 from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
 from hazard_ms.machine.files import write
 from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.registry.version import __version__
+from hazard_ms.spec.foreign import plain
+from hazard_ms.spec.foreign.files import printable, read_foreign, sha256_of
+from hazard_ms.spec.foreign.plain import Within
 
 FORMAT = 2  # goes up when a field changes its meaning
 BROKEN = "simulation error"  # how an episode ends if its simulation breaks
@@ -31,8 +32,13 @@ ERROR, TOO_SLOW, DIED = "error", "too slow", "worker died"
 FAILED = (ERROR, TOO_SLOW, DIED)  # how an episode ends that its agent, or the process playing it, did not finish
 PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "warp-lang", "numpy")  # whose versions can change an episode
 
-# fields that hold more data
-PLAIN = ("settings", "targets", "decisions", "links", "phase_seconds", "counters", "versions", "machine", "files")
+LARGEST = 64_000_000  # of a result's file [bytes]; one of a long episode has 200,000 [ours]
+LONGEST_SETTINGS = 4_000  # [characters] [ours]
+LIMITS = plain.Limits(longest_text=100_000)  # characters of a note [ours]
+Frame = Annotated[int, Within(0, 10_000_000)]  # [ours]
+Seconds = Annotated[float, Within(0, 1e9)]  # [s] [ours]
+Share = Annotated[float, Within(0, 1 + 1e-9)]  # of the value of all targets
+Name = Annotated[str, Within(0, 1_000)]  # [characters] [ours]
 
 
 class DamagedResultError(ValueError):
@@ -43,18 +49,18 @@ class DamagedResultError(ValueError):
 class DecisionRecord:
     """One decision: what was chosen when, why, and how it went."""
 
-    frame: int  # at which it was taken
-    verb: str
-    target: str | None
+    frame: Frame  # at which it was taken
+    verb: Name
+    target: Annotated[str | None, Within(0, 1_000)]
     ok: bool
-    reason: str  # of a failure
-    frames: int  # that the action took
+    reason: Name  # of a failure
+    frames: Frame  # that the action took
     note: str = ""  # the agent's own words
-    held: str | None = None  # at the decision
-    value: float = 0.0  # rescued by then, as a share of all
-    waited: int = 0  # frames that passed while the agent chose
+    held: Annotated[str | None, Within(0, 1_000)] = None  # at the decision
+    value: Share = 0.0  # rescued by then, as a share of all
+    waited: Frame = 0  # frames that passed while the agent chose
     fallback: bool = False  # whether it stands in for an answer that could not be read
-    thought: float = 0.0  # time that the agent took to choose, by the clock of the episode [s]; 0 without one
+    thought: Seconds = 0.0  # time that the agent took to choose, by the clock of the episode [s]; 0 without one
 
 
 REGRET = ".regret.json"  # end of the names of the files that `hazard-ms regret` writes beside results
@@ -64,7 +70,7 @@ REGRET = ".regret.json"  # end of the names of the files that `hazard-ms regret`
 class Link:
     """One link of the chain of hashes: the state of everything at `frame`, and all links before it."""
 
-    frame: int
+    frame: Frame
     sha256: str
 
 
@@ -95,24 +101,24 @@ class EpisodeResult:
     last three all is as it was at the last decision, and scored as it was then.
     """
 
-    env_id: str
-    agent: str
-    seed: int
-    scene: str
+    env_id: Name
+    agent: Name
+    seed: Annotated[int, Within(0, 2**32 - 1)]
+    scene: Name
     settings: dict[str, Any]  # keywords of gym.make; lighting and effects only where they are not the usual ones
-    frames: int
-    max_frames: int
-    ended: str  # why
-    targets: tuple[Fate, ...]
-    decisions: tuple[DecisionRecord, ...]
+    frames: Frame
+    max_frames: Annotated[int, Within(1, 10_000_000)]
+    ended: Name  # why
+    targets: Annotated[tuple[Fate, ...], Within(1, 1_000)]
+    decisions: Annotated[tuple[DecisionRecord, ...], Within(0, 20_000)]
     command: str  # that plays it again
     links: tuple[Link, ...] = ()  # by which a replay is known to be the same episode
     error: str = ""  # the agent's, or why there was no answer
-    wall_seconds: float = 0.0
-    phase_seconds: dict[str, float] = field(default_factory=dict)  # wall time by phase, as in `Played` [s]
+    wall_seconds: Seconds = 0.0
+    phase_seconds: dict[str, Seconds] = field(default_factory=dict)  # wall time by phase, as in `Played` [s]
     clock: str = OFF  # by which hazards went on while the agent thought
     perception: str = TRUTH  # what told the agent of things
-    counters: dict[str, Any] = field(default_factory=dict)  # the agent's own counts, such as calls of a model
+    counters: dict[str, float] = field(default_factory=dict)  # the agent's own counts, such as calls of a model
     files: dict[str, str] = field(default_factory=dict)  # SHA-256 of those that agent and perception name, by path
     versions: dict[str, str] = field(default_factory=lambda: versions())
     machine: dict[str, Any] = field(default_factory=lambda: machine())
@@ -156,44 +162,36 @@ class EpisodeResult:
 
         Raises ValueError for a file of another format, and a DamagedResultError for one that holds no whole result.
         """
+        shown = printable(str(path))
         try:
-            content = path.read_bytes()
+            content = read_foreign(path, LARGEST)
             if not content.strip(b"\0 \n"):  # what a power failure leaves
                 raise ValueError("an empty file")
-            row = json.loads(content)
+            row = plain.parse(content, "it")
+            if not isinstance(row, dict) or "format" not in row:
+                raise ValueError("no object with a format")
             number = row["format"]
             if number == FORMAT:
                 return cls.from_dict(row)
-        except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
-            raise DamagedResultError(
-                f"{path} must hold the result of an episode, got {type(error).__name__}: {error}"
-            ) from None
+        except ValueError as error:
+            raise DamagedResultError(f"{shown} must hold the result of an episode: {error}") from None
         raise ValueError(
-            f"the format of {path} must be {FORMAT}, got {number!r:.100}; play its episode again, in another folder"
+            f"the format of {shown} must be {FORMAT}, got {number!r:.100}; play its episode again, in another folder"
         )
 
     @classmethod
-    def from_dict(cls, row: dict[str, Any]) -> EpisodeResult:
-        """The result that `to_dict` gave. Raises LookupError, TypeError, AttributeError or ValueError for all else."""
-        row = {name: entry for name, entry in row.items() if name != "score"}
-        row["targets"] = tuple(_made(Fate, t) for t in row["targets"])
-        row["decisions"] = tuple(_made(DecisionRecord, d) for d in row["decisions"])
-        row["links"] = tuple(_made(Link, each) for each in row["links"])
-        found: EpisodeResult = _made(cls, row)
-        found.to_dict()
+    def from_dict(cls, row: Any) -> EpisodeResult:
+        """The result that `to_dict` gave. Raises ValueError that names the first value that no episode has."""
+        if not isinstance(row, dict):
+            raise ValueError(f"a result must be an object, got {type(row).__name__}")
+        found: EpisodeResult = plain.made(
+            cls, {name: entry for name, entry in row.items() if name != "score"}, "result", LIMITS
+        )
+        if len(repr(found.settings)) > LONGEST_SETTINGS:
+            raise ValueError(f"settings must have at most {LONGEST_SETTINGS} characters, got more")
+        if found.frames > found.max_frames:
+            raise ValueError(f"frames must be at most max_frames, {found.max_frames}, got {found.frames}")
         return found
-
-
-def _made(kind: Any, row: dict[str, Any]) -> Any:
-    """A dataclass from its fields. Raises TypeError or ValueError for fields and types that it does not have."""
-    for name, hint in _hints(kind).items():
-        plain = (dict, tuple) if name in PLAIN else None
-        if name in row and not isinstance(row[name], plain or (int | float if hint is float else hint)):
-            raise ValueError(f"{name} = {row[name]!r:.100}")
-    return kind(**row)
-
-
-_hints = functools.cache(get_type_hints)  # which takes longer than all else about reading a result
 
 
 def versions() -> dict[str, str]:
@@ -218,7 +216,7 @@ def machine() -> dict[str, Any]:
 def file_hashes(*texts: str) -> dict[str, str]:
     """SHA-256 of the files that the texts of an agent and a perception name, such as weights, by path."""
     named = {part for text in texts for part in re.split("[:,=]", text)}
-    return {part: hashlib.sha256(Path(part).read_bytes()).hexdigest() for part in sorted(named) if Path(part).is_file()}
+    return {part: sha256_of(Path(part)) for part in sorted(named) if Path(part).is_file()}
 
 
 def result_files(folders: Sequence[Path]) -> list[Path]:

@@ -6,6 +6,7 @@ that raises, calls sys.exit, kills its process or hangs costs that episode alone
 
 from __future__ import annotations
 
+import json
 import os
 from collections import Counter
 from pathlib import Path
@@ -83,6 +84,9 @@ def kept(options: SweepOptions, episode: EpisodeOptions) -> EpisodeResult | None
     except DamagedResultError as damaged:
         print(f"{damaged}: its episode is played again", flush=True)
         return None
+    if found is not None and not _is_of(found, episode):
+        print(f"{place} holds another episode than its name says: its episode is played again", flush=True)
+        return None
     if found is not None and found.ended in FAILED:
         print(f"{place} holds an episode that failed ({found.error}): it is played again", flush=True)
         return None
@@ -90,6 +94,13 @@ def kept(options: SweepOptions, episode: EpisodeOptions) -> EpisodeResult | None
         print(f"{place} was played with other files than there are now: its episode is played again", flush=True)
         return None
     return found
+
+
+def _is_of(result: EpisodeResult, episode: EpisodeOptions) -> bool:
+    """Whether a result is that of an episode, by what both name."""
+    e = episode
+    told = (result.env_id, result.agent, result.seed, result.clock, result.perception, result.settings)
+    return told == (e.env_id, e.agent, e.seed, e.clock, e.perception, json.loads(json.dumps(e.settings)))
 
 
 def _play_all(episodes: list[EpisodeOptions], options: SweepOptions) -> dict[EpisodeOptions, str]:

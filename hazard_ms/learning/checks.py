@@ -23,7 +23,10 @@ class Check:
 
 
 def curve_of(packed: bytes) -> list[Check]:
-    """The curve of a training up to where its state was saved. Raises errors of many kinds for anything else."""
+    """The curve of a training up to where its state was saved.
+
+    Raises ValueError for numbers that are not finite, and errors of many kinds for anything else.
+    """
     found = [Check(**check) for check in unpacked_state(packed)["curve"]]
     if not all(isinstance(value, int | float) and math.isfinite(value) for check in found for value in astuple(check)):
         raise ValueError("the curve of a training must hold finite numbers, got others")

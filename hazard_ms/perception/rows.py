@@ -27,7 +27,7 @@ Pose = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class Camera:
-    """Where a picture was taken from."""
+    """The place of the camera that took a picture."""
 
     intrinsic: tuple[Row, Row, Row]  # [pixels]
     cam2world: tuple[Pose, Pose, Pose, Pose]  # [m]
@@ -56,7 +56,7 @@ class Image:
 
 @dataclass(frozen=True)
 class Attributes:
-    """What a hazard has done to a thing; None: not given."""
+    """The state of a thing that a hazard has changed; None: not given."""
 
     target: bool | None = None
     status: str | None = None

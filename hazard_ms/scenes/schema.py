@@ -26,7 +26,6 @@ LONGEST_TEXT = 200  # of a name [characters]
 MOST_THINGS = 2000  # of any list
 FARTHEST = 1000.0  # any number's absolute value, in its unit
 STRONGEST_WIND = 70.0  # [m/s] a tropical cyclone of category 5
-LONGEST_NUMBER = 30  # of a whole number [characters]
 ROOM_SIZES, ROOM_HEIGHTS = (1.0, 100.0), (1.5, 20.0)  # least and most [m] [ours]
 SURROUNDINGS = (0.0, 100.0)  # how far things can be carried around a place in the open [m] [ours]
 # no part begins with a dot: no path upwards

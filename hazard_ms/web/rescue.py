@@ -15,6 +15,8 @@ from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.machine.files import make_folder, write
 from hazard_ms.registry import AGENTS, TASKS
 from hazard_ms.spec.checks import one_of, whole
+from hazard_ms.spec.foreign import plain
+from hazard_ms.spec.foreign.files import inside, printable
 
 PLAY, WATCH = "play", "watch"
 KINDS = (PLAY, WATCH)
@@ -27,6 +29,8 @@ LONGEST_AGENT = 120  # of its name, so that a result's file has at most 255 [byt
 FORMAT = 1  # of journals; goes up when a field changes its meaning
 NAME = re.compile(r"[0-9a-f]{16}")  # of a rescue
 NAMES = ("split", "physics", "severity", "robot_uids", "lighting")
+LARGEST = 8_000_000  # of a journal [bytes] [ours]
+ELSEWHERE = ("base_url", "cache", "trace")  # parameters of agents by which something leaves the folder of results
 EPISODE = ("env_id", *NAMES, "affects_agent", "agent", "seed", "scene")  # options that a page may choose
 
 
@@ -80,7 +84,11 @@ class Rescue:
         if e.scene is not None and (not isinstance(e.scene, str) or e.scene.endswith(".json")):
             raise ValueError(f"scene must be the name of a scene of the split, got {e.scene!r:.100}")
         if self.kind == WATCH:
-            one_of(e.agent.partition(":")[0], AGENTS, "agent")
+            _registered(e.agent, "agent")
+        elif not isinstance(e.agent, str) or e.agent.partition(":")[0] != HUMAN:
+            raise ValueError(f"agent of a person's rescue must be {HUMAN}, got {e.agent!r:.100}")
+        if self.after != "":
+            _registered(self.after, "after")
 
     def to_json(self) -> str:
         """The journal: plain data."""
@@ -126,6 +134,26 @@ def taken_over(rescue: Rescue, decisions: int) -> Rescue:
     )
 
 
+def _registered(agent: Any, what: str) -> dict[str, str]:
+    """The parameters of an agent, as text by name. Raises ValueError for all but registered ones: no file is loaded."""
+    from hazard_ms.agents.base import PARAMETERS
+
+    name, *given = PARAMETERS.split(agent, maxsplit=1) if isinstance(agent, str) else [agent]
+    one_of(name, AGENTS, what)
+    pairs = (part.partition("=") for part in "".join(given).replace(";", ",").split(","))
+    return {key: value for key, _, value in pairs}
+
+
+def _check_stays(agent: str) -> None:
+    """Check that an agent of a journal, which a stranger may have written, asks nobody and writes nothing elsewhere.
+
+    Raises ValueError for parameters that name an address or a place: the key for models would be sent there.
+    """
+    for key, value in _registered(agent, "agent").items():
+        if key in ELSEWHERE or "/" in value:
+            raise ValueError(f"an agent of a journal must name no address and no path, got {key}; begin a new rescue")
+
+
 def pace(every: object) -> int:
     """The frames from one picture to the next. Raises ValueError for anything but one of PACES."""
     if not isinstance(every, int) or isinstance(every, bool) or every not in PACES:
@@ -148,18 +176,23 @@ def keep(folder: Path, rescue: Rescue) -> None:
 
 def read(folder: Path, name: str, load: tuple[str, ...]) -> Rescue:
     """The rescue of a journal. Raises ValueError where there is none, or none that can be gone on with."""
-    path = journal(folder, name)
+    path = inside(folder, f"{JOURNALS}/{journal(folder, name).name}", "rescue")
     if not path.exists():
         raise ValueError(f"rescue must be one that is under way, got {name}: it is over, or has been deleted")
     try:
-        row = json.loads(path.read_text(encoding="utf-8"))
-        if row.pop("format") != FORMAT:
+        row = plain.read(path, LARGEST)
+        if row.pop("format", None) != FORMAT:
             raise ValueError("another format")
         episode = EpisodeOptions(**row.pop("episode"), load=load)
-        made = Rescue(episode=episode, taken=tuple(Taken(**t) for t in row.pop("taken")), **row)
+        taken = plain.made(tuple[Taken, ...], row.pop("taken"), "taken")
+        made = Rescue(episode=episode, taken=taken, **row)
         made.check()
+        for agent in (made.episode.agent if made.kind == WATCH else "", made.after):
+            if agent:
+                _check_stays(agent)
         if made.name != name:
             raise ValueError("another name")
-    except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
-        raise ValueError(f"{path.name} must be the journal of a rescue, got {type(error).__name__}: {error}") from None
+    except (ValueError, TypeError, KeyError) as error:
+        words = printable(f"{type(error).__name__}: {error}")
+        raise ValueError(f"{path.name} must be the journal of a rescue, got {words}") from None
     return made

@@ -131,7 +131,7 @@ WHOLE = result_of(SweepOptions().episode_options()[0]).to_json().encode()
 )
 def test_a_damaged_file_is_no_result(damaged: bytes, tmp_path: Path) -> None:
     (tmp_path / "one.json").write_bytes(damaged)
-    with pytest.raises(DamagedResultError, match=f"{tmp_path}/one.json must hold the result of an episode, got"):
+    with pytest.raises(DamagedResultError, match=f"{tmp_path}/one.json must hold the result of an episode: "):
         EpisodeResult.read(tmp_path / "one.json")
 
 
@@ -145,9 +145,9 @@ def test_files_that_hold_no_whole_result_are_named_and_played_again(
     refill(options, {0: b"", 2: WHOLE[:100]})
     assert sweep.evaluate(options) == 1
     printed = capsys.readouterr().out
-    for k, told in ((0, "an empty file"), (2, "JSONDecodeError")):
+    for k, told in ((0, "an empty file"), (2, "it must be valid JSON")):
         place = options.place(options.episode_options()[k])
-        assert f"{place} must hold the result of an episode, got" in printed and told in printed
+        assert f"{place} must hold the result of an episode: " in printed and told in printed
         assert f"no result: {tmp_path}/own.py:Quits, seed {k}: RuntimeError: the agent {tmp_path}/own.py" in printed
     assert printed.count("is played again") == 2 and printed.count("got sys.exit(0) (own.py, line 5)") == 4
     assert "ended by 2 error, 1 time" in printed
@@ -236,3 +236,14 @@ def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(ValueError, match=f"a folder that can be written, got {tmp_path}/file"):
         sweep.evaluate(SweepOptions(agents=("greedy",), episodes=1, output=tmp_path / "file"))
+
+
+@pytest.mark.parametrize("other", [{"seed": 9}, {"env_id": "HazardFlood-v1"}, {"agent": "greedy"}, {"settings": {}}])
+def test_a_result_counts_as_that_of_its_episode_only_if_it_is(tmp_path: Path, other: dict[str, object]) -> None:
+    options = SweepOptions(agents=("random",), episodes=1, output=tmp_path)
+    (episode,) = options.episode_options()
+    own = result_of(episode)
+    own.write(options.place(episode))
+    assert sweep.kept(options, episode) == EpisodeResult.read(options.place(episode))
+    replace(own, **other).write(options.place(episode))  # type: ignore[arg-type]
+    assert sweep.kept(options, episode) is None

@@ -23,5 +23,7 @@ def result_of(episode: EpisodeOptions, saved: bool = False, ended: str = "time")
         targets=(fate, lost),
         decisions=(),
         command="",
+        clock=episode.clock,
+        perception=episode.perception,
         files=file_hashes(episode.agent, episode.perception),
     )

@@ -74,7 +74,7 @@ def sees_map(path: Path) -> bool:
 
 
 def told(path: Path) -> dict[str, Any]:
-    """What NAME.json beside NAME.safetensors says. Raises ValueError where there is none, or a damaged one."""
+    """The content of NAME.json beside NAME.safetensors. Raises ValueError where there is none, or a damaged one."""
     return plain.read(path.with_suffix(".json"), LARGEST_TOLD)
 
 

@@ -25,7 +25,7 @@ Tree = dict[str, Any]
 
 
 def remedy(extensions: list[str]) -> str:
-    """What a user can do about a file that needs these extensions."""
+    """The advice to a user whose file needs these extensions."""
     tools = dict.fromkeys(REMEDIES.get(e, ELSE) for e in extensions or [""])
     return f"save it without, with {' and '.join(tools)}"
 

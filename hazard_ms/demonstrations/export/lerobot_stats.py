@@ -36,7 +36,7 @@ def joined(parts: Sequence[dict[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
 
 
 def merged(parts: Sequence[dict[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
-    """Numbers about the pictures of all episodes from those about each.
+    """Numbers about the pictures of all episodes, [C, 1, 1] each, shares of full brightness, from those about each.
 
     Quantiles are means over pictures, as LeRobot merges them: not those of all pictures, which are too many to keep.
     """

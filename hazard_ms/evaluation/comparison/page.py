@@ -43,16 +43,14 @@ def page(
 
 
 def episode_pages(found: Sequence[Group], output: Path) -> dict[Path, Path]:
-    """The page of each episode, by its result's file: the one beside that file, or one in a new folder beside `output`.
+    """The page of each episode, by its result's file, in a new folder beside `output`.
 
-    Raises ValueError where it cannot be written.
+    Pages beside results are not used: whoever made the results may have made them, scripts included. Raises ValueError
+    where a page cannot be written.
     """
     folder, made, taken = output.with_name(f"{output.stem}_episodes"), dict[Path, Path](), set[str]()
     for kept in (kept for group in found for own in group.agents.values() for kept in own.values()):
         beside = kept.path.with_suffix(".html")
-        if beside.is_file():
-            made[kept.path] = beside
-            continue
         name, number = beside.name, 2
         while name in taken:
             name, number = f"{beside.stem}-{number}.html", number + 1

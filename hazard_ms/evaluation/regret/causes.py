@@ -7,15 +7,18 @@ what was rescued, is the sum of all parts of `EpisodeRegret.lost`.
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
-from hazard_ms.evaluation.result import REGRET
+from hazard_ms.evaluation.result import LARGEST, LIMITS, REGRET, Frame
 from hazard_ms.machine.files import write
+from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.foreign import plain
+from hazard_ms.spec.foreign.files import printable, sha256_of
+from hazard_ms.spec.foreign.plain import Within
 
 FORMAT = 1  # goes up when a field changes its meaning
 LEAST = 0.02  # share of the value of all targets, beyond which a decision's regret has a cause
@@ -25,6 +28,7 @@ PERCEPTION, MEMORY, BY_FORMAT, LATENCY, PLANNING = "perception", "memory", "form
 UNSEEN, SMALL, EXECUTION, ENDED = "unseen", "small", "execution", "ended"
 CAUSES = (PERCEPTION, MEMORY, BY_FORMAT, LATENCY, PLANNING)  # of a decision, the first that fits
 PARTS = (*CAUSES, UNSEEN, SMALL, EXECUTION, ENDED)
+Share = Annotated[float, Within(-1000, 1000)]  # of the value of all targets; what was lost or gained by it [ours]
 
 
 @dataclass(frozen=True)
@@ -57,13 +61,13 @@ class DecisionRegret:
     `execution` is negative where the skill went better than usual.
     """
 
-    frame: int
+    frame: Frame
     verb: str
     target: str | None
-    best: float
-    regret: float
-    unseen: float
-    execution: float
+    best: Share
+    regret: Share
+    unseen: Share
+    execution: Share
     cause: str = ""  # one of CAUSES, or UNSEEN; empty where the regret is small
     evidence: str = ""  # a sentence
 
@@ -76,10 +80,10 @@ class EpisodeRegret:
     agent: str
     seed: int
     scene: str
-    start: float  # value that the best plan reached from the start
-    value: float  # that was rescued
-    lost: dict[str, float]
-    decisions: tuple[DecisionRegret, ...]
+    start: Share  # value that the best plan reached from the start
+    value: Share  # that was rescued
+    lost: dict[str, Share]
+    decisions: Annotated[tuple[DecisionRegret, ...], Within(0, 20_000)]
     format: int = FORMAT
 
     def write(self, path: Path) -> None:
@@ -90,13 +94,19 @@ class EpisodeRegret:
     def read(cls, path: Path) -> EpisodeRegret:
         """The regret that `write` wrote. Raises ValueError that names the file for any other content."""
         try:
-            row: dict[str, Any] = json.loads(path.read_bytes())
-            if row["format"] != FORMAT:
-                raise ValueError(f"format {row['format']!r:.100} instead of {FORMAT}")
-            decisions = tuple(DecisionRegret(**decision) for decision in row.pop("decisions"))
-            return cls(**row, decisions=decisions)
-        except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
-            raise ValueError(f"{path} must hold what `hazard-ms regret` wrote, got {error}; delete it") from None
+            row = plain.read(path, LARGEST)
+            if row.get("format") != FORMAT:
+                raise ValueError(f"format {row.get('format')!r:.100} instead of {FORMAT}")
+            found: EpisodeRegret = plain.made(cls, row, "regret", LIMITS)
+            for part in PARTS:
+                one_of(part, found.lost, "a part of what was lost")
+            for decision in found.decisions:
+                one_of(decision.cause, (*CAUSES, UNSEEN, ""), "cause of a regret")
+        except ValueError as error:
+            raise ValueError(
+                f"{printable(str(path))} must hold what `hazard-ms regret` wrote: {error}; delete it"
+            ) from None
+        return found
 
 
 def place_of(result: Path) -> Path:
@@ -107,9 +117,9 @@ def place_of(result: Path) -> Path:
 def digest(result: Path) -> str:
     """The SHA-256 of a result's file. Raises ValueError where it cannot be read."""
     try:
-        return hashlib.sha256(result.read_bytes()).hexdigest()
-    except OSError as error:
-        raise ValueError(f"{result} must hold the result of an episode, got {error}") from None
+        return sha256_of(result)
+    except ValueError as error:
+        raise ValueError(f"{printable(str(result))} must hold the result of an episode: {error}") from None
 
 
 def beside(result: Path) -> EpisodeRegret | None:

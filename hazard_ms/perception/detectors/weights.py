@@ -66,7 +66,7 @@ def read_weights(path: Path) -> dict[str, torch.Tensor]:
 
 
 def read_saved(path: Path) -> Any:
-    """What torch.save wrote: plain data and tensors. Raises ValueError for other files, and for other things in it."""
+    """The plain data and tensors that torch.save wrote. Raises ValueError for other files, and other things in them."""
     content = read_foreign(path, LARGEST_WEIGHTS)
     try:
         if content.startswith(b"PK"):

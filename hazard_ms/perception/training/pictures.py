@@ -49,7 +49,7 @@ class Picture:
         return np.asarray(self._camera()["cam2world"], np.float32)
 
     def categories(self) -> dict[int, str]:
-        """The category of every number in `ids` but 0."""
+        """The category of every number in `ids` but 0. Raises ValueError where the dataset does not name its things."""
         scenes = _table(self.dataset)
         if self.row["scene"] not in scenes:
             raise ValueError(

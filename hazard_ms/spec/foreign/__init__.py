@@ -3,6 +3,7 @@
     files     bytes of regular files up to a limit, names that stay inside a folder, text that is safe on a terminal
     plain     JSON with limits on size, depth and numbers, and dataclasses from it by their types
     arrays    .npz files and zip archives, whose sizes are compared with a limit before anything is unpacked
+    terminal  the output of a command without what a terminal would act on
     pictures  PNG and JPEG files, whose pixels are counted before anything is decoded
 
 Everything that is wrong with a file is one ValueError that names the file. Nothing that a file names is imported, run

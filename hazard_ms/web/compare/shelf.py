@@ -11,9 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from hazard_ms.evaluation.comparison.folders import Kept
-from hazard_ms.evaluation.regret.causes import place_of
+from hazard_ms.evaluation.regret.causes import beside, place_of
 from hazard_ms.evaluation.result import REGRET, EpisodeResult
-from hazard_ms.web.compare.soundness import checked, judged
 
 MOST_FILES = 5_000  # results that are read [ours]
 MOST_ENTRIES = 200_000  # files and folders that are looked at [ours]
@@ -121,11 +120,11 @@ class Librarian:
         if path in known and known[path].stamp == stamp:
             return known[path]
         try:
-            result = checked(EpisodeResult.read(path))
+            result = EpisodeResult.read(path)
         except UNREADABLE as error:
             return _Read(stamp, None, (_plain(error, path),))
         try:
-            regret = judged(path) if stamp[-1] else None
+            regret = beside(path) if stamp[-1] else None
         except UNREADABLE as error:
             return _Read(stamp, Kept(result, path), (f"its regret: {_plain(error, path)}",))
         return _Read(stamp, Kept(result, path, regret), ())

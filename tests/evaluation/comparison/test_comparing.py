@@ -35,7 +35,7 @@ def folder(tmp_path: Path) -> Path:
 def test_the_page_is_whole_and_stands_alone(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     film = folder / "results" / "first" / "95-0.mp4"
     film.write_bytes(b"12345")
-    film.with_suffix(".html").write_text("made with the film")
+    film.with_suffix(".html").write_text("<script>what a stranger wrote</script>")
     page = folder / "made" / "a page.html"
     assert main(["report", str(folder / "results"), "-o", str(page)]) == 0
     reader, text = Reader(), page.read_text(encoding="utf-8")
@@ -45,7 +45,8 @@ def test_the_page_is_whole_and_stands_alone(folder: Path, capsys: pytest.Capture
         assert told in reader.text
     links = [(page.parent / unquote(link)).resolve() for link in reader.links]
     assert len(links) == 20 + 1 and all(link.is_file() for link in links)  # each episode's page, and one film
-    assert film.resolve() in links and film.with_suffix(".html").resolve() in links
+    assert film.resolve() in links and film.with_suffix(".html").resolve() not in links
+    assert not any("stranger" in link.read_text("utf-8") for link in links if link.suffix == ".html")
     assert str(page) in capsys.readouterr().out
 
 

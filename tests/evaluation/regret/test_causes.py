@@ -104,7 +104,7 @@ def test_a_file_belongs_to_its_result(tmp_path: Path) -> None:
     result.write_text("two")
     assert beside(result) is None
     place_of(result).write_text("{}")
-    with pytest.raises(ValueError, match=r"0003.regret.json must hold what `hazard-ms regret` wrote, got .*delete it"):
+    with pytest.raises(ValueError, match=r"0003.regret.json must hold what `hazard-ms regret` wrote: .*delete it"):
         beside(result)
 
 

@@ -48,6 +48,7 @@ KNOWN: dict[str, tuple[set[str], str]] = {
     "demonstrations.store": ({"os.open"}, "the last byte of a manifest, to append to it; links are not followed"),
     "effects.shaders.pack": ({".read_text"}, OWN),
     "evaluation.page": ({".read_bytes"}, "films that this run made, of a size that is asked first"),
+    "evaluation.sweep": ({"json.loads"}, "settings of this run, as a result holds them"),
     "kernels.compiled": ({".open", "os.open"}, "bytes that are hashed or compared; " + LOCK),
     "machine.activity": ({".read_text"}, SYSTEM),
     "machine.drivers": ({".read_bytes", ".read_text"}, SYSTEM + "; a package that is compared with its SHA-256"),

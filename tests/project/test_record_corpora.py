@@ -1,4 +1,4 @@
-"""Thousands of hostile records of earlier runs end as is documented, within a gigabyte and ten seconds, and do nothing."""
+"""Thousands of hostile records of earlier runs end as is documented, within a gigabyte and ten seconds."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from tests.worlds.hostile.corpus import RECORDS
 from tests.worlds.hostile.reading import read_corpus
 
 
-@pytest.mark.parametrize("corpus", RECORDS)
-def test_forty_hostile_records(corpus: str) -> None:
-    read_corpus(corpus, 0, 40)
+def test_ten_hostile_records_of_each_kind() -> None:
+    read_corpus("records", 0, 10 * len(RECORDS))
 
 
 @pytest.mark.long

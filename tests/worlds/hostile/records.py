@@ -32,12 +32,13 @@ from hazard_ms.demonstrations.verify import verify
 from hazard_ms.evaluation.decision_page import decision_page, read_trace
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.page import page
-from hazard_ms.evaluation.regret.causes import DecisionRegret, EpisodeRegret, beside, digest, place_of
+from hazard_ms.evaluation.regret.causes import PARTS, DecisionRegret, EpisodeRegret, beside, digest, place_of
 from hazard_ms.evaluation.result import DecisionRecord, EpisodeResult, Link
 from hazard_ms.learning.checks import Check, curve_of
-from hazard_ms.sketch import fit_times, keeping, skill_times, timeline
+from hazard_ms.sketch import columns, fit_times, keeping, skill_times, timeline
 from hazard_ms.skills.options.options import COUNT
 from hazard_ms.spec.foreign.arrays import read_arrays
+from hazard_ms.spec.foreign.files import read_foreign
 from hazard_ms.web import rescue
 from tests.worlds.halls import future, hall
 from tests.worlds.hostile.mutations import mutated, replaced
@@ -64,16 +65,8 @@ SAID = {
     "refused": False,
     "truncated": False,
 }
-TRACED = {
-    "frame": 0,
-    "asked": [{"role": "user", "content": "Choose."}],
-    "options": {"A": "stop"},
-    "replies": [SAID],
-    "letter": "A",
-    "action": "stop",
-    "note": "",
-    "fallback": False,
-}
+TRACED = {"frame": 0, "asked": [{"role": "user", "content": "Choose."}], "options": {"A": "stop"}, "replies": [SAID]}
+TRACED |= {"letter": "A", "action": "stop", "note": "", "fallback": False}
 PROBED = {"robot": "fetch", "verb": "pick_up", "ok": True, "reason": "", "frames": 90, "height": 0.5, "clearance": 0.3}
 
 
@@ -89,7 +82,7 @@ class Kind:
 def make_regret(folder: Path) -> None:
     RESULT.write(folder / "one.json")
     judged = DecisionRegret(0, "walk_to", "book_1", 0.9, 0.1, 0.0, 0.0, "planning", "It went elsewhere.")
-    lost = {"planning": 0.1, "unseen": 0.0}
+    lost = dict.fromkeys(PARTS, 0.05)
     made = EpisodeRegret(digest(folder / "one.json"), "greedy", 3, "kitchen_b/00", 0.9, 0.5, lost, (judged,))
     made.write(place_of(folder / "one.json"))
 
@@ -130,7 +123,7 @@ def _read_all(folder: Path) -> None:
 
 
 def make_policies(folder: Path) -> None:
-    for name, policy in (("one", SetPolicy(Shape(((20.0, 600.0),)))), ("map", MapPolicy(MapShape()))):
+    for name, policy in (("one", SetPolicy(Shape(((20.0, 600.0),)))), ("map", MapPolicy(MapShape(((20.0, 600.0),))))):
         packed, told = weights.contents(policy, FIRE, {"command": "none"})
         (folder / f"{name}.safetensors").write_bytes(packed)
         (folder / f"{name}.json").write_text(told)
@@ -179,11 +172,11 @@ KINDS = {
         lambda f: np.savez(f / "a.npz", a=np.ones((3, 2)), b=np.arange(5)), lambda f: read_arrays(f / "a.npz")
     ),
     "timelines": Kind(
-        lambda f: future(hall((1.0, 2.0))).write(f / "a.timeline"), lambda f: timeline.read(f / "a.timeline")
+        lambda f: future(hall(1.0, 2.0)).write(f / "a.timeline"), lambda f: timeline.read(f / "a.timeline")
     ),
     "sketches": Kind(
         lambda f: (f / "a.scene").write_bytes(keeping.to_bytes(scene([(0.0, 0.0), (1.0, 2.0)], (1,)))),
-        lambda f: keeping.from_bytes((f / "a.scene").read_bytes()),
+        lambda f: keeping.from_bytes(read_foreign(f / "a.scene", columns.LARGEST)),
     ),
     "skill-times": Kind(
         lambda f: shutil.copyfile(skill_times.SHIPPED, f / "times.json"),
@@ -203,7 +196,7 @@ KINDS = {
 }
 
 
-@functools.lru_cache(maxsize=1)
+@functools.cache
 def honest(corpus: str) -> dict[str, bytes]:
     """Honest files of a corpus by their paths; they are read once."""
     with tempfile.TemporaryDirectory() as name:
@@ -228,7 +221,7 @@ def record(corpus: str, number: int, folder: Path, secret: Path, module: Path) -
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content)
-    victim = draw.choice(sorted(files))
+    victim = draw.choice(sorted(name for name in files if files[name]))
     if draw.random() < 0.05:
         replaced(folder / victim, secret, draw)
     else:

@@ -22,9 +22,9 @@ from typing import Any
 import numpy as np
 
 from hazard_ms.evaluation.report import machine_line
-from hazard_ms.web.guard import PROTOCOL
 
 ROOM = ord("r")  # first byte of a picture of the third person
+PROTOCOL = "hazard_ms"  # of the page's WebSockets
 SILENCE = 600.0  # longest time without a word of a rescue [s] [ours]
 
 

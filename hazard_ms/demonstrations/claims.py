@@ -7,10 +7,12 @@ end with the process that holds them, however it ends, so that none can be left 
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
 import json
 import os
 import socket
+import stat
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -56,9 +58,12 @@ def tag(seed: int) -> str:
 
 
 def _taken(path: Path) -> int:
-    """A locked descriptor of the file at `path`, made if need be. Raises BlockingIOError where it is locked."""
+    """A locked descriptor of the file at `path`, made if need be.
+
+    Raises BlockingIOError where it is locked, and ValueError for what is no regular file.
+    """
     while True:
-        opened = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+        opened = _opened(path)
         try:
             _lock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if path.exists() and os.path.samestat(os.stat(path), os.fstat(opened)):
@@ -71,12 +76,26 @@ def _taken(path: Path) -> int:
 
 @contextlib.contextmanager
 def _locked(path: Path, kind: int) -> Iterator[None]:
-    opened = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+    opened = _opened(path)
     try:
         _lock(opened, kind)
         yield
     finally:
         os.close(opened)
+
+
+def _opened(path: Path) -> int:
+    """A descriptor of the file at `path`, made if need be. Raises ValueError for what is no regular file."""
+    try:
+        opened = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
+    except OSError as error:
+        if error.errno not in (errno.ELOOP, errno.EISDIR, errno.ENXIO):
+            raise
+    else:
+        if stat.S_ISREG(os.fstat(opened).st_mode):
+            return opened
+        os.close(opened)
+    raise ValueError(f"{path} must be a regular file, got a link, a folder or a pipe; delete it")
 
 
 def _lock(opened: int, kind: int) -> None:

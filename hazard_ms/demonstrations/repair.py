@@ -33,7 +33,7 @@ def repair(dataset: Path) -> Counter[str]:
 
     Whole folders without a line are entered, damaged ones moved to damaged/, lines without a folder dropped, what
     killed processes left is deleted. Returns how many there were of each kind. Raises ValueError for a link in place of
-    one of the dataset's own folders.
+    one of the dataset's own folders or locks.
     """
     for name in (FAILURES, DAMAGED):
         if (dataset / name).is_symlink():

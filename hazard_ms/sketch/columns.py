@@ -7,15 +7,17 @@ from __future__ import annotations
 
 import hashlib
 import io
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.spec.foreign import arrays as foreign
+from hazard_ms.spec.foreign.files import printable
 
 LARGEST = foreign.LARGEST_FILE  # of a file [bytes]
+Made = TypeVar("Made")
 DIGEST_BYTES = hashlib.sha256().digest_size  # at the start of a file
 
 
@@ -41,3 +43,16 @@ def from_bytes(what: str, version: int, content: bytes) -> dict[str, NDArray[Any
     if found != version:
         raise ValueError(f"format of {what} must be {version}, got {found}: make it anew")
     return columns
+
+
+def made_from(
+    kind: Callable[..., Made], what: str, columns: Mapping[str, NDArray[Any]], plain: Mapping[str, Callable[[Any], Any]]
+) -> Made:
+    """The record of a `kind` from its columns, [...] each, of which those in `plain` become what is given there.
+
+    Raises ValueError that names `what` for columns that it does not have, and for those that cannot become that.
+    """
+    try:
+        return kind(**{name: plain[name](column) if name in plain else column for name, column in columns.items()})
+    except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError) as error:
+        raise ValueError(f"{what} must have its own columns, got {printable(str(error)):.200}") from None

@@ -56,8 +56,8 @@ def to_bytes(scene: SketchScene) -> bytes:
 
 def from_bytes(content: bytes) -> SketchScene:
     """The scene that `to_bytes` gave. Raises ValueError for any other content."""
-    found: dict[str, Any] = columns.from_bytes("a scene of the sketch", FORMAT, content)
-    return SketchScene(**{name: PLAIN.get(name, lambda array: array)(value) for name, value in found.items()})
+    what = "a scene of the sketch"
+    return columns.made_from(SketchScene, what, columns.from_bytes(what, FORMAT, content), PLAIN)
 
 
 @functools.lru_cache(maxsize=1)

@@ -10,6 +10,7 @@ A file is the digest of its contents, then the contents: a file in which a singl
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,11 @@ from hazard_ms.spec.foreign.files import read_foreign
 
 FORMAT = 1  # goes up when older files can no longer be read
 STRIDE = 10  # frames from sample to sample: water and flames change every 10 frames [ours]
-TEXTS = ("scene", "task", "physics", "suite")
+PLAIN: dict[str, Callable[[Any], Any]] = {  # fields that are no arrays
+    **dict.fromkeys(("scene", "task", "physics", "suite"), str),
+    **dict.fromkeys(("seed", "first", "stride"), int),
+    "names": lambda column: tuple(map(str, column.tolist())),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,12 +100,8 @@ class Timeline:
 
 def from_bytes(content: bytes) -> Timeline:
     """The record that `to_bytes` gave. Raises ValueError for any other content."""
-    found: dict[str, Any] = columns.from_bytes("a timeline", FORMAT, content)
-    for name in TEXTS:
-        found[name] = str(found[name])
-    for name in ("seed", "first", "stride"):
-        found[name] = int(found[name])
-    return Timeline(**{**found, "names": tuple(found["names"].tolist())})
+    what = "a timeline"
+    return columns.made_from(Timeline, what, columns.from_bytes(what, FORMAT, content), PLAIN)
 
 
 def read(path: Path) -> Timeline:

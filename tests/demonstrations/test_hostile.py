@@ -131,13 +131,23 @@ def test_locks_and_failures_that_are_links_are_not_followed(dataset: Path, tmp_p
         repair(dataset)
     (dataset / FAILURES).unlink()
     (secret / "file").write_text("of its reader")
-    (dataset / ".s000003.lock").symlink_to(secret / "file")
     (dataset / ".s000004.part-1").symlink_to(secret)
-    with pytest.raises(OSError, match=r"s000003\.lock"):
-        repair(dataset)
-    (dataset / ".s000003.lock").unlink()
     repair(dataset)
     assert everything(secret) == {"file": b"of its reader"}
+
+
+@pytest.mark.parametrize("name", [".s000003.lock", ".lock"])
+@pytest.mark.parametrize("kind", [pipe, link, folder_link, Path.mkdir])
+def test_a_lock_that_is_no_file_is_named(
+    dataset: Path, kind: Callable[[Path], None], name: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = dataset / name
+    path.unlink(missing_ok=True)
+    kind(path)
+    before = everything(tmp_path)
+    assert main(["demos", "repair", str(dataset)]) == 2
+    assert f"hazard-ms: {path} must be a regular file" in capsys.readouterr().err
+    assert everything(tmp_path) == before
 
 
 def test_a_dataset_in_a_dataset_is_not_moved_aside(dataset: Path) -> None:

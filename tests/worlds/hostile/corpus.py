@@ -1,7 +1,8 @@
 """Reads hostile files one by one, each in a process of its own, and says how each ended and what it cost.
 
-`python -m tests.worlds.hostile.corpus models|scenes|originals [FIRST] [COUNT]` prints the sums; it ends with 1 if one
-ended otherwise than documented, needed a gigabyte or a minute of processor time.
+`python -m tests.worlds.hostile.corpus NAME [FIRST] [COUNT]`, NAME one of CORPORA, prints the sums; it ends with 1 if
+one ended otherwise than documented, needed a gigabyte, or too much processor time. Reading records of earlier runs
+must not write or start anything outside of their folder, nor import what a file names.
 """
 
 from __future__ import annotations
@@ -9,18 +10,23 @@ from __future__ import annotations
 import io
 import json
 import os
+import resource
 import signal
 import sys
 import tempfile
+import time
 import traceback
 from collections import Counter
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 MEMORY = 1_000_000_000  # that reading one file may take [bytes]
-PROCESSOR_TIME = 60.0  # likewise [s]
+PROCESSOR_TIME, RECORD_TIME = 60.0, 10.0  # likewise, and for records [s]
+BATCH = 40  # records that one process reads
+ADDRESSES = 8_000_000_000  # that reading a record may ask for, so that no bomb takes the machine along [bytes]
 HANGING = 600  # when a process is ended [s]
 READ, REFUSED, UNDOCUMENTED = 0, 3, 4  # how a process ends
 
@@ -33,6 +39,7 @@ class Outcome:
     code: int  # of the process; negative: the signal that ended it
     seconds: float  # of processor time
     memory: int  # [bytes]
+    most_seconds: float = PROCESSOR_TIME
 
     @property
     def word(self) -> str:
@@ -43,7 +50,7 @@ class Outcome:
     @property
     def good(self) -> bool:
         """Whether that is documented, and within the budget."""
-        return self.word in ("read", "refused", "stopped") and self.memory < MEMORY and self.seconds < PROCESSOR_TIME
+        return self.word in ("read", "refused", "stopped") and self.memory < MEMORY and self.seconds < self.most_seconds
 
 
 def read_model(number: int, folder: Path) -> tuple[str, Callable[[], int]]:
@@ -112,7 +119,59 @@ def read_original(number: int, folder: Path) -> tuple[str, Callable[[], int]]:
     return kind, bring
 
 
+def read_records(corpus: str, number: int, folder: Path) -> tuple[str, Callable[[], int]]:
+    """The hostile records of a number, BATCH of them, since starting a process takes longer; and what reads them."""
+    from tests.worlds.hostile.audit import watch
+    from tests.worlds.hostile.records import record
+
+    inside, outside = folder / "inside", folder / "outside"
+    outside.mkdir()
+    secret, module = outside / "secret", outside / "evilmod.py"
+    secret.write_text("of its reader")
+    module.write_text("open(__file__ + '.run', 'w')\n")
+    acts = {}
+    for each in range(BATCH * number, BATCH * (number + 1)):
+        (inside / str(each)).mkdir(parents=True)
+        acts[each] = record(corpus, each, inside / str(each), secret, module)
+
+    def read() -> int:
+        resource.setrlimit(resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
+        done = watch(inside, module.stem)
+        ends, slowest = Counter[int](), 0.0
+        for each, (name, act) in acts.items():
+            start = time.process_time()
+            ends[code := _ending(inside / str(each), act)] += 1
+            slowest = max(slowest, seconds := time.process_time() - start)
+            if code == UNDOCUMENTED or seconds > RECORD_TIME or done:
+                print(f"{corpus} {each}, {name}: {code}, {seconds:.1f} s, {done}", flush=True)
+                return UNDOCUMENTED
+        print(f"{corpus}: {ends[READ]} read, {ends[REFUSED]} refused, at most {slowest:.1f} s", flush=True)
+        assert sorted(os.listdir(outside)) == ["evilmod.py", "secret"] and secret.read_text() == "of its reader"
+        return READ
+
+    return corpus, read
+
+
+def _ending(folder: Path, act: Callable[[], object]) -> int:
+    os.chdir(folder)
+    try:
+        with redirect_stdout(io.StringIO()):
+            act()
+    except ValueError as error:
+        return answer(str(error))
+    except BaseException:
+        traceback.print_exc()
+        return UNDOCUMENTED
+    return READ
+
+
+RECORDS = (
+    *("results", "regrets", "journals", "datasets", "arrays", "timelines", "sketches", "skill-times", "probes"),
+    *("policies", "states", "traces", "answers"),
+)
 CORPORA = {"models": read_model, "scenes": read_scene, "originals": read_original}
+CORPORA |= {name: partial(read_records, name) for name in RECORDS}
+CORPORA["records"] = lambda number, folder: read_records(RECORDS[number % len(RECORDS)], number // len(RECORDS), folder)
 
 
 def answer(words: str) -> int:
@@ -138,7 +197,8 @@ def outcome(corpus: str, number: int) -> Outcome:
                 os._exit(code)
         _, status, cost = os.wait4(child, 0)
     seconds = cost.ru_utime + cost.ru_stime
-    return Outcome(f"{kind} {number}", os.waitstatus_to_exitcode(status), seconds, cost.ru_maxrss * 1024)
+    most = RECORD_TIME * BATCH if corpus in (*RECORDS, "records") else PROCESSOR_TIME
+    return Outcome(f"{kind} {number}", os.waitstatus_to_exitcode(status), seconds, cost.ru_maxrss * 1024, most)
 
 
 def main(corpus: str, first: int = 0, count: int = 12) -> int:

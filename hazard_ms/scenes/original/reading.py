@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from hazard_ms.spec.foreign.files import printable, read_foreign
-from hazard_ms.spec.foreign.plain import HOOKS
+from hazard_ms.spec.foreign.hooks import HOOKS
 
 LARGEST_FILE = 8_000_000  # [bytes]; the largest published log has 200,000
 FARTHEST = 10_000.0  # any number's absolute value, in its unit; ids are larger

@@ -5,22 +5,21 @@ from __future__ import annotations
 import dataclasses
 import functools
 import json
-import math
 import types
 import typing
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.foreign.files import printable, read_foreign
+from hazard_ms.spec.foreign.hooks import HOOKS
 
 MOST_MEMORY = 800_000_000  # that the values of one file may take [bytes] [ours]
 # [bytes] of CPython 3.11: an object with one key, an empty list, a place in a list with its number, a character
 OBJECT, LIST, ENTRY, CHARACTER = 240, 64, 48, 4
 DEEPEST = 64  # objects and lists in one another [ours]
-LONGEST_NUMBER = 30  # of a whole number [characters]
 SHOWN = 100  # characters of a bad value in an error
 
 
@@ -222,39 +221,3 @@ def _check_depth(value: Any, what: str) -> None:
 
 def _parts(value: dict[str, Any] | list[Any]) -> Any:
     return value.values() if isinstance(value, dict) else value
-
-
-def _not_finite(word: str) -> NoReturn:
-    raise ValueError(f"numbers must be finite, got {word}")
-
-
-def _finite(digits: str) -> float:
-    if math.isinf(number := float(digits)):
-        raise ValueError(f"numbers must be finite, got {digits[:SHOWN]}")
-    return number
-
-
-def _whole_number(digits: str) -> int:
-    """The whole number that JSON writes with `digits`. Raises ValueError for one that is absurdly long."""
-    if len(digits) > LONGEST_NUMBER:
-        raise ValueError(f"a whole number must have at most {LONGEST_NUMBER} digits, got {len(digits)}")
-    return int(digits)
-
-
-def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object of JSON. Raises ValueError for a key that occurs twice."""
-    found: dict[str, Any] = {}
-    for key, value in pairs:
-        if key in found:
-            raise ValueError(f"keys of an object must differ, got {key!r:.100} twice")
-        found[key] = value
-    return found
-
-
-# what a decoder of JSON is told, for numbers that are finite and short, and keys that differ
-HOOKS: dict[str, Any] = {
-    "parse_constant": _not_finite,
-    "parse_int": _whole_number,
-    "parse_float": _finite,
-    "object_pairs_hook": _unique_keys,
-}

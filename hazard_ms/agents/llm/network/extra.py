@@ -6,7 +6,8 @@ import json
 from typing import Any
 
 from hazard_ms.spec.foreign.files import printable
-from hazard_ms.spec.foreign.plain import HOOKS, parse
+from hazard_ms.spec.foreign.hooks import HOOKS
+from hazard_ms.spec.foreign.plain import parse
 
 OURS = ("model", "messages", "stream", "n", "tools", "response_format")  # fields that the agent itself must know
 

@@ -91,7 +91,8 @@ def made(kind: Any, value: Any, where: str, limits: Limits | None = None) -> Any
     origin = typing.get_origin(kind)
     if origin is typing.Annotated:
         inner, bounds = typing.get_args(kind)
-        bounds.check(found := made(inner, value, where, limits), where)
+        found = made(inner, value, where, limits)
+        bounds.check(value, where)
         return found
     if origin in (types.UnionType, typing.Union):
         (inner,) = (k for k in typing.get_args(kind) if k is not type(None))

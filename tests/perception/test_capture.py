@@ -145,6 +145,15 @@ def test_frames_that_no_episode_has_are_refused(last_frame: int) -> None:
         CaptureOptions(last_frame=last_frame).check()
 
 
+@pytest.mark.parametrize("scene", ["nowhere", "../../elsewhere", ""])
+def test_scenes_that_the_split_does_not_have_are_refused_before_anything_is_written(
+    options: CaptureOptions, tmp_path: Path, scene: str
+) -> None:
+    with pytest.raises(ValueError, match="a scene of the split 'train' must be one of .*got"):
+        capture(replace(options, scenes=(*options.scenes, scene), dataset=tmp_path / "data"))
+    assert not (tmp_path / "data").exists()
+
+
 @pytest.mark.long
 def test_pictures_depend_on_neither_workers_nor_order(dataset: Path, options: CaptureOptions, tmp_path: Path) -> None:
     """Two processes take another scene beside: the files of the shared scene have the same checksums."""

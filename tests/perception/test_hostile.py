@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import resource
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -65,6 +66,32 @@ def test_weights_name_nothing_but_tensors(tmp_path: Path) -> None:
     for old in (True, False):
         torch.save({"a": torch.ones(2)}, tmp_path / "c.pth", _use_new_zipfile_serialization=not old)
         assert read_weights(tmp_path / "c.pth")["a"].sum() == 2
+
+
+class Large:
+    """What a pickle can ask for although torch calls it safe: 10 GB of zeros."""
+
+    def __reduce__(self) -> Any:
+        return bytearray, (10**10,)
+
+
+@pytest.mark.parametrize("new", [True, False])
+def test_a_pickle_that_asks_for_memory_is_refused_before_it_gets_any(new: bool, tmp_path: Path) -> None:
+    torch.save({"a": Large()}, tmp_path / "a.pth", _use_new_zipfile_serialization=new)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with pytest.raises(ValueError, match="tensors alone may be in it, got __builtin__ bytearray"):
+        read_weights(tmp_path / "a.pth")
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000, "kB"
+
+
+def test_a_tensor_larger_than_its_file_is_refused(tmp_path: Path) -> None:
+    torch.save({"a": torch.zeros(1).expand(10**10)}, tmp_path / "a.pth")
+    with pytest.raises(ValueError, match=r"weights must be plain tensors, got a of shape \(10000000000,\)"):
+        read_weights(tmp_path / "a.pth")
+    head = json.dumps({"a": {"dtype": "F32", "shape": [10**6, 10**6], "data_offsets": [0, 4 * 10**12]}}).encode()
+    (tmp_path / "a.safetensors").write_bytes(len(head).to_bytes(8, "little") + head + bytes(16))
+    with pytest.raises(ValueError, match="weights must be a file .pth or .safetensors"):
+        read_weights(tmp_path / "a.safetensors")
 
 
 @pytest.mark.parametrize("count", [50, pytest.param(2000, marks=pytest.mark.long)])

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import copy
 import json
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -123,8 +125,46 @@ def test_bad_detections_are_named(truth: dict[str, Any], tmp_path: Path, spoilt:
     found[2] |= spoilt
     path = tmp_path / "found.json"
     path.write_text(json.dumps(found))
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises(ValueError, match=told) as refusal:
         read_results(path, truth)
+    assert "entry 2 of" in str(refusal.value) or "NaN" in told
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"iscrowd": None}, r"annotations\[1\] of .* must have iscrowd, got none"),
+        ({"id": 0}, "ids of annotations of .* must be from 1 on and differ, got 0"),
+        ({"id": -3}, "must be from 1 on and differ, got -3"),
+        ({"id": 1}, "must be from 1 on and differ, got 1"),
+    ],
+)
+def test_ids_and_crowds_that_pycocotools_needs_are_asked_for(
+    truth: dict[str, Any], tmp_path: Path, change: dict[str, Any], told: str
+) -> None:
+    """Pycocotools ignores a thing with the id 0, and one of two with the same id, without a word (cocoapi 442, 418)."""
+    truth["annotations"][1] |= change
+    (tmp_path / layout.instances("test")).write_text(json.dumps(truth))
+    (tmp_path / "found.json").write_text(json.dumps(found_in(truth)))
+    with pytest.raises(ValueError, match=told):
+        score(tmp_path, tmp_path / "found.json", "test")
+
+
+def test_the_command_scores_an_empty_list(truth: dict[str, Any], tmp_path: Path) -> None:
+    (tmp_path / layout.instances("test")).write_text(json.dumps(truth))
+    (tmp_path / "found.json").write_text("[]")
+    command = [
+        sys.executable,
+        "-m",
+        "hazard_ms.cli",
+        "perception",
+        "score",
+        str(tmp_path),
+        str(tmp_path / "found.json"),
+    ]
+    run = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.count("| all | 4 | 0.000 | 0.000 | 0.000 |") == 2, "boxes and masks"
 
 
 @pytest.mark.parametrize("text", ["", "{}", '{"annotations": []}', "[1]", '[{"image_id": 1}]'])

@@ -130,7 +130,8 @@ def test_a_finished_training_goes_on_with_more_steps_and_not_with_another_seed(
 )
 def test_options_that_cannot_be_are_refused(data: Path, tmp_path: Path, given: dict[str, Any], told: str) -> None:
     with pytest.raises(ValueError, match=told):
-        train(options(data, tmp_path, given))
+        train(options(data, tmp_path / "output", given))
+    assert not (tmp_path / "output").exists()
 
 
 @pytest.mark.long

@@ -50,7 +50,7 @@ def train(options: TrainOptions) -> int:
     path = options.output / f"{options.model}{ENDING}"
     before = _before(path, options.command)
     if before is None and options.weights != UNTRAINED and not Path(options.weights).is_file():
-        raise ValueError(f"weights must be a file .pth or .safetensors, got none at {options.weights}")
+        raise ValueError(f"weights must be a file .pth or .safetensors, got {options.weights}: there is no such file")
     pictures = read(options.data, options.split)
     validation = read(options.validate, options.validate_split) if options.validate else []
     make_folder(options.output)

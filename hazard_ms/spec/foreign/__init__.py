@@ -2,6 +2,7 @@
 
     files     bytes of regular files up to a limit, names that stay inside a folder, text that is safe on a terminal
     plain     JSON with limits on size, depth and numbers, and dataclasses from it by their types
+    hooks     what the decoder of JSON is told: numbers that are finite and short, keys that differ
     arrays    .npz files and zip archives, whose sizes are compared with a limit before anything is unpacked
     terminal  the output of a command without what a terminal would act on
     pictures  PNG and JPEG files, whose pixels are counted before anything is decoded

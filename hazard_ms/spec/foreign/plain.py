@@ -16,8 +16,9 @@ from hazard_ms.spec.foreign.files import printable, read_foreign
 from hazard_ms.spec.foreign.json_hooks import HOOKS
 
 MOST_MEMORY = 800_000_000  # that the values of one file may take [bytes] [ours]
-# [bytes] of CPython 3.11: an object with one key, an empty list, a place in a list with its number, a character
-OBJECT, LIST, ENTRY, CHARACTER = 240, 64, 48, 4
+# [bytes] of CPython 3.11: an object, a key of it with its value, a list, a place in a list with its number
+OBJECT, KEY, LIST, ENTRY = 96, 200, 64, 48
+PLAIN_CHARACTER, CHARACTER = 2, 8  # [bytes] of a text and of what is made of it: of ASCII, and where one is wider
 DEEPEST = 64  # objects and lists in one another [ours]
 SHOWN = 100  # characters of a bad value in an error
 
@@ -90,7 +91,8 @@ def made(kind: Any, value: Any, where: str, limits: Limits | None = None) -> Any
     origin = typing.get_origin(kind)
     if origin is typing.Annotated:
         inner, bounds = typing.get_args(kind)
-        bounds.check(found := made(inner, value, where, limits), where)
+        found = made(inner, value, where, limits)
+        bounds.check(value, where)
         return found
     if origin in (types.UnionType, typing.Union):
         (inner,) = (k for k in typing.get_args(kind) if k is not type(None))
@@ -204,9 +206,12 @@ def _show(value: Any) -> str:
 
 def _check_memory(content: str | bytes, what: str) -> None:
     """Raises ValueError for text whose values could take more than MOST_MEMORY, before they are made."""
-    marks: tuple[Any, ...] = ("{", "[", ",") if isinstance(content, str) else (b"{", b"[", b",")
-    objects, lists, entries = (content.count(mark) for mark in marks)
-    needed = CHARACTER * len(content) + OBJECT * objects + LIST * lists + ENTRY * entries
+    marks: tuple[Any, ...] = (
+        ("{", ":", "[", ",", "\\u") if isinstance(content, str) else (b"{", b":", b"[", b",", b"\\u")
+    )
+    objects, keys, lists, entries, escapes = (content.count(mark) for mark in marks)
+    each = PLAIN_CHARACTER if content.isascii() and not escapes else CHARACTER
+    needed = each * len(content) + OBJECT * objects + KEY * keys + LIST * lists + ENTRY * entries
     if needed > MOST_MEMORY:
         raise ValueError(f"{what} must need at most {MOST_MEMORY} bytes of memory, got up to {needed}")
 

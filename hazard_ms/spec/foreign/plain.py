@@ -46,7 +46,8 @@ class Within:
         number = isinstance(value, (int, float))
         if value is not None and not self.low <= (value if number else len(value)) <= self.high:
             what = "a number from" if number else "of length"
-            raise ValueError(f"{where} must be {what} {self.low:g} to {self.high:g}, got {_show(value)}")
+            got = f"{len(value)} characters" if isinstance(value, str) else _show(value)
+            raise ValueError(f"{where} must be {what} {self.low:g} to {self.high:g}, got {got}")
 
 
 def parse(content: str | bytes, what: str) -> Any:

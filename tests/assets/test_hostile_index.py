@@ -61,7 +61,7 @@ ROWS: dict[str, tuple[Any, str]] = {
     "id in letters of elsewhere": ({"id": "thıng"}, "thıng"),
     "id of a shipped model": ({"id": "bottle_1"}, "bottle_1"),
     "mass": ({"mass": "heavy"}, "heavy"),
-    "mass not finite": ({"mass": NAN}, "mass"),
+    "mass not finite": ({"mass": NAN}, "must be finite"),
     "extent": ({"extent": [0.1, 0.1]}, "3 numbers"),
     "boxes": ({"boxes": [[0, 0, 0, INF, 1, 1]]}, "must be finite"),
     "boxes short": ({"boxes": [[0, 0]]}, "6 numbers"),

@@ -86,7 +86,8 @@ def _is(value: Any, kind: type, inner: type | None = None) -> bool:
         return False
     if inner is None:
         return True
-    return all(type(entry) is inner for entry in (value.values() if isinstance(value, dict) else value))
+    entries: Any = value.values() if isinstance(value, dict) else value
+    return all(type(entry) is inner for entry in entries)
 
 
 def check_arrays(meta: Mapping[str, Any], decisions: Arrays, frames: Arrays) -> None:

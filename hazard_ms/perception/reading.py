@@ -28,7 +28,7 @@ LONGEST_WAY = 1e6  # around all polygons of a mask [pixels] [ours]
 def pixels_of(dataset: Path, image: Mapping[str, Any], key: str) -> NDArray[Any]:
     """The picture that `image` names under `key`, as it is stored, [H, W] or [H, W, C], red first.
 
-    Raises ValueError for a file outside `dataset`, for one that is no picture, and for one of another size.
+    Raises ValueError for a file outside `dataset`, for a file that is not a picture, and for one of another size.
     """
     path = inside(dataset, image.get(key), f"{key} of picture {image['id']}")
     content = read_foreign(path, LARGEST_FILE)

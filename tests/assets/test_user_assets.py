@@ -144,7 +144,7 @@ def test_nothing_shipped_changes(filled: Path, tmp_path: Path, monkeypatch: pyte
     splits.scene.cache_clear()
     assert to_json(splits.scene("kitchen_a/00")) == with_them
     assert asset_path(asset("bottle_1").visual).is_relative_to(shipped.root())
-    with pytest.raises(ValueError, match="is not valid JSON"):
+    with pytest.raises(ValueError, match="index.json must be valid JSON"):
         asset("my_flask")
 
 

@@ -58,9 +58,10 @@ def test_growth_is_what_later_rounds_take() -> None:
 
 
 def test_memory_that_is_kept_shows() -> None:
+    resets.resident()  # gives back what the tests before have left
     before = resets.resident()
-    kept = b"x" * (64 * 2**20)
-    assert resets.resident() - before == pytest.approx(64, abs=8) and kept
+    kept = b"x" * (256 * 2**20)
+    assert resets.resident() - before == pytest.approx(256, abs=48) and kept
 
 
 def test_the_table_tells_first_times_from_later_ones() -> None:

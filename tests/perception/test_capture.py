@@ -150,7 +150,7 @@ def test_scenes_that_the_split_does_not_have_are_refused_before_anything_is_writ
     options: CaptureOptions, tmp_path: Path, scene: str
 ) -> None:
     with pytest.raises(ValueError, match="a scene of the split 'train' must be one of .*got"):
-        capture(replace(options, scenes=(*options.scenes, scene), dataset=tmp_path / "data"))
+        capture(replace(options, scenes=(*options.scenes, scene), output=tmp_path / "data"))
     assert not (tmp_path / "data").exists()
 
 

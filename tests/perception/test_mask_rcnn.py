@@ -50,8 +50,8 @@ def test_weights_may_be_safetensors(weights: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("recipe", "told"),
     [
-        (None, "must hold the network .* and its classes"),
-        ({"network": "yolo", "classes": CLASSES}, "network must be one of"),
+        (None, "there is no file .*mugs.json"),
+        ({"network": "yolo", "classes": CLASSES}, "must hold the network maskrcnn_resnet50_fpn_v2 or .*got .*yolo"),
         ({"network": RESNET18}, "must hold the network .* and its classes"),
         ({"network": RESNET18, "classes": ["bowl", "bowl"]}, "must be a list of different categories"),
         ({"network": RESNET18, "classes": ["bowl", "unicorn"]}, "a class in .* must be one of"),

@@ -69,5 +69,5 @@ def test_other_endings_are_refused(dataset: Path, tmp_path: Path, name: str) -> 
 
 def test_a_file_that_is_no_picture_is_refused(tmp_path: Path) -> None:
     np.save(tmp_path / "picture.npy", np.zeros(3))
-    with pytest.raises(ValueError, match="must be a picture"):
+    with pytest.raises(ValueError, match="must be a PNG or JPEG picture"):
         drawn(tmp_path, {"id": 1, "width": 3, "height": 1, "file_name": "picture.npy"}, [])

@@ -187,7 +187,7 @@ def test_the_weights_take_less_than_three_megabytes(weights: Path) -> None:
 @pytest.mark.parametrize(
     ("recipe", "told"),
     [
-        (None, "must hold the network small and its classes"),
+        (None, "there is no file .*small.json"),
         ({"network": "resnet18_fpn", "classes": CLASSES}, "must hold the network small and its classes"),
         ({"network": "small", "classes": ["apple", "apple"]}, "must be a list of different categories"),
         ({"network": "small", "classes": ["apple", "unicorn"]}, "a class in .* must be one of"),

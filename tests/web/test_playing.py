@@ -28,6 +28,7 @@ class Page(threading.Thread):
     def __init__(self, connection: Connection) -> None:
         super().__init__(daemon=True)
         self.connection, self.heard, self.pictures = connection, dict[str, list[Any]](), set[str]()
+        self.looking = ""  # the key of the first choice
         self.told = threading.Condition()
         self.start()
 
@@ -61,8 +62,10 @@ class Page(threading.Thread):
         self.ask(do="point", picture="r", across=0.5, down=0.9)
         self.ask(do="thing", name="<img src=x onerror=alert(1)>")
         if row["number"]:
-            self.ask(do="choose", number=row["number"] - 1, key=words["look around here"])
-        self.ask(do="choose", number=row["number"], key=words["stop" if row["number"] else "look around here"])
+            self.ask(do="choose", number=row["number"] - 1, key=self.looking)
+        else:
+            self.looking = words["look around here"]
+        self.ask(do="choose", number=row["number"], key=words["stop"] if row["number"] else self.looking)
 
     def ask(self, **message: Any) -> None:
         self.connection.send_bytes(json.dumps(message).encode())

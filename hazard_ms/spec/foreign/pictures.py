@@ -56,9 +56,9 @@ def size_of(content: bytes, what: str) -> tuple[int, int]:
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
             with Image.open(io.BytesIO(content), formats=FORMATS) as picture:
                 return picture.size
-    except Exception as error:  # of whatever kind PIL raises for broken files
+    except Exception:  # of whatever kind PIL raises for broken files
         raise ValueError(
-            f"{printable(what)} must be a PNG or JPEG picture, got {printable(repr(error))[:200]}"
+            f"{printable(what)} must be a PNG or JPEG picture, got one that begins {content[:8]!r}"
         ) from None
 
 

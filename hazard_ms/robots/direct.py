@@ -21,6 +21,8 @@ from mani_skill.agents.controllers.base_controller import BaseController, Combin
 from numpy.typing import NDArray
 from torch import Tensor
 
+from hazard_ms.spec import rounding
+
 Floats = NDArray[np.float32]
 ONE, MINUS_ONE = np.float32(1.0), np.float32(-1.0)  # numbers of Python would be converted each time
 
@@ -139,14 +141,16 @@ class BaseForwardVel(DirectController, PDBaseForwardVelController):
         action = self._preprocess_action(action)
         heading = self.qpos[:, 2:3]
         # ManiSkill turns (forward, 0) by a matrix, whose sums with a product of 0 have no negative zeros
-        along = torch.cat([heading.cos(), heading.sin()], dim=1) * action[:, :1] + 0.0
+        along = torch.cat([rounding.cos(heading), rounding.sin(heading)], dim=1) * action[:, :1] + 0.0
         self.set_drive_velocity_targets(torch.cat([along, action[:, 1:]], dim=1))
 
     def act(self, action: Floats) -> None:
         """Drive as `action` says, [2]."""
         forward, turn = self._commands(action)
-        heading = torch.from_numpy(self._joints_now()[2:3])  # numpy's cosine differs from torch's in the last bit
-        along = (float(np.float32(way.item()) * forward) + 0.0 for way in (heading.cos(), heading.sin()))
+        heading = torch.from_numpy(self._joints_now()[2:3])
+        along = (
+            float(np.float32(way.item()) * forward) + 0.0 for way in (rounding.cos(heading), rounding.sin(heading))
+        )
         for motor, speed in zip(self._motors, (*along, float(turn)), strict=True):
             motor.set_drive_velocity_target(speed)
 

@@ -17,6 +17,7 @@ from torch import Tensor
 
 from hazard_ms.robots.direct import DirectController, JointPos
 from hazard_ms.robots.g1_description import DOWN
+from hazard_ms.spec import rounding
 
 THIGH, SHIN = 0.30698, 0.30007  # hips' axis to knee, knee to ankle [m] (the installed URDF)
 STANDING = 0.59942  # hips' axis above the ankle [m] (the installed URDF)
@@ -32,8 +33,8 @@ def leg_angles(crouch: Tensor) -> Tensor:
     back, height = -DOWN[0] * crouch, STANDING + DOWN[2] * crouch
     span = torch.hypot(back, height)
     tilt = torch.atan2(back, height)
-    thigh = tilt + torch.acos(((THIGH**2 - SHIN**2 + span**2) / (2.0 * THIGH * span)).clamp(max=1.0))
-    shin = tilt - torch.acos(((SHIN**2 - THIGH**2 + span**2) / (2.0 * SHIN * span)).clamp(max=1.0))
+    thigh = tilt + rounding.acos(((THIGH**2 - SHIN**2 + span**2) / (2.0 * THIGH * span)).clamp(max=1.0))
+    shin = tilt - rounding.acos(((SHIN**2 - THIGH**2 + span**2) / (2.0 * SHIN * span)).clamp(max=1.0))
     hip = THIGH_TILT - thigh
     knee = SHIN_TILT - hip - shin
     return torch.stack([hip, knee, -hip - knee], dim=-1)

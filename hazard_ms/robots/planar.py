@@ -21,6 +21,7 @@ from torch import Tensor
 from hazard_ms.robots.chain import Chain
 from hazard_ms.robots.direct import Part, going_on, parts_of
 from hazard_ms.robots.robot import Robot
+from hazard_ms.spec import rounding
 from hazard_ms.spec.checks import one_of
 
 FORWARD_STEP = 1.0 / 62.0  # walking speed of the benchmark [m per frame]
@@ -152,7 +153,9 @@ class PlanarRobot(Robot):
         position, heading = self.base_pose()
         velocity = self._drive()
         around = torch.arange(RIM, device=position.device) * (2.0 * np.pi / RIM)
-        rim = self.build.radius * torch.stack([around.cos(), around.sin(), torch.zeros_like(around)], dim=-1)
+        rim = self.build.radius * torch.stack(
+            [rounding.cos(around), rounding.sin(around), torch.zeros_like(around)], dim=-1
+        )
         points = torch.cat([rim, torch.zeros_like(rim[:1])])
         now = position[:, None] + points
         then = now.clone()
@@ -241,6 +244,6 @@ class PlanarRobot(Robot):
 
 def turned(vector: Tensor, heading: Tensor) -> Tensor:
     """The `vector`, [E, 3], turned about z by `heading` [rad], [E], in the units of `vector`."""
-    c, s = heading.cos(), heading.sin()
+    c, s = rounding.cos(heading), rounding.sin(heading)
     x, y, z = vector.unbind(-1)
     return torch.stack([c * x - s * y, s * x + c * y, z], dim=-1)

@@ -14,6 +14,8 @@ import zlib
 import torch
 from torch import Tensor
 
+from hazard_ms.spec import rounding
+
 _WORD = 0xFFFFFFFF
 
 
@@ -74,4 +76,4 @@ class Chance:
     def normal(self, stream: str, *shape: int) -> Tensor:
         """Standard normal random numbers, [E, *shape], float32 (Box-Muller)."""
         pair = self.uniform(stream, *shape, 2)
-        return torch.sqrt(-2.0 * torch.log(pair[..., 0])) * torch.cos(2.0 * math.pi * pair[..., 1])
+        return rounding.sqrt(-2.0 * rounding.log(pair[..., 0])) * rounding.cos(2.0 * math.pi * pair[..., 1])

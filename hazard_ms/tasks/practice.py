@@ -17,7 +17,7 @@ from hazard_ms.episode.safe_places import BAG
 from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.presets import PRESETS
 from hazard_ms.registry import register_task
-from hazard_ms.spec import AgentStart, Body, Fixture, Goal, Room, SceneSpec, Task
+from hazard_ms.spec import AgentStart, Body, Fixture, Goal, Room, SceneSpec, Task, rounding
 from hazard_ms.spec.checks import one_of
 from hazard_ms.tasks import practice_rewards as rewards
 from hazard_ms.tasks.practice_terms import PICK_UP_TERMS, WALK_TO_TERMS
@@ -72,7 +72,7 @@ def stand_near(situation: Situation, rows: Tensor) -> None:
     thing = (every >= chosen[:, None]).int().argmax(dim=1)
     at = world.position[torch.arange(world.num_envs, device=world.device), thing, :2]
     angle, distance = 2.0 * math.pi * draw[:, 1], NEAR + (FAR - NEAR) * draw[:, 2]
-    place = at - distance[:, None] * torch.stack([angle.cos(), angle.sin()], dim=-1)
+    place = at - distance[:, None] * torch.stack([rounding.cos(angle), rounding.sin(angle)], dim=-1)
     heading = angle + ASKEW * (2.0 * draw[:, 3] - 1.0)
     situation.agent.place(rows, place[rows], heading[rows])
 

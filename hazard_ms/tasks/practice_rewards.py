@@ -13,7 +13,7 @@ from torch import Tensor
 
 from hazard_ms.episode.grasp import distance_to_boxes
 from hazard_ms.episode.situation import Situation
-from hazard_ms.spec import Goal, Term
+from hazard_ms.spec import Goal, Term, rounding
 from hazard_ms.spec.robot import GRASP_REACH
 
 WALK_FRAMES, PICK_UP_FRAMES = 450, 120  # of an episode: 7 m at full speed; a skill's pick-up takes 81 at most [ours]
@@ -57,7 +57,7 @@ def in_base(situation: Situation, vector: Tensor) -> Tensor:
     """The `vector`, [E, ..., 3], of the world in the frame of the base, in its unit."""
     world = situation.world
     shape = (world.num_envs, *[1] * (vector.dim() - 2))
-    c, s = world.agent_heading.cos().reshape(shape), world.agent_heading.sin().reshape(shape)
+    c, s = (turn(world.agent_heading).reshape(shape) for turn in (rounding.cos, rounding.sin))
     x, y, z = vector.unbind(-1)
     return torch.stack([c * x + s * y, c * y - s * x, z], dim=-1)
 

@@ -17,6 +17,7 @@ from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.fire.fire_state import BURNING, FireState
 from hazard_ms.hazards.fire.spread import DIRECTIONS
 from hazard_ms.simulation.world import World
+from hazard_ms.spec import rounding
 
 WET = 0.005  # water over the base of a thing, or over the floor, that wets it [m] [ours]
 BOILING = 100.0  # boiling temperature of water [C]
@@ -58,4 +59,5 @@ def drift(world: World, place: Tensor) -> Tensor | None:
         return None
     wind = world.fields["air"](place + place.new_tensor([0.0, 0.0, ABOVE_FLOOR]))
     wind = wind * (FASTEST / wind.norm(dim=-1, keepdim=True).clamp(min=FASTEST))
-    return torch.exp(PER_WIND * wind @ place.new_tensor(DIRECTION_VECTORS).T)
+    along = (wind[..., None, :] * place.new_tensor(DIRECTION_VECTORS)).sum(-1)
+    return rounding.exp(PER_WIND * along)

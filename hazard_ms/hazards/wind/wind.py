@@ -38,7 +38,7 @@ from hazard_ms.kernels.launch import of_environments
 from hazard_ms.kernels.structs import Argument
 from hazard_ms.simulation.containers import container_index, in_containers
 from hazard_ms.simulation.world import World
-from hazard_ms.spec import Quantity
+from hazard_ms.spec import Quantity, rounding
 from hazard_ms.spec.catalogue import IMMOVABLE
 
 # Range of a wind that the scene leaves open [m/s] [the original's shipped scenes, docs/physics.md 1.3]
@@ -131,7 +131,7 @@ class Wind(Hazard):
         wind = torch.tensor([world.specs[row].wind for row in rows.tolist()], device=world.device).reshape(-1, 2)
         draw = world.chance.uniform("wind.mean", 2)[rows]
         angle, speed = 2.0 * math.pi * draw[:, 0], SLOWEST + (FASTEST - SLOWEST) * draw[:, 1]
-        drawn = torch.stack([speed * torch.cos(angle), speed * torch.sin(angle)], -1)
+        drawn = torch.stack([speed * rounding.cos(angle), speed * rounding.sin(angle)], -1)
         wind = torch.where((wind == 0.0).all(-1, keepdim=True), drawn, wind)
         state.speed[rows] = self.scale * wind.norm(dim=-1)
         state.heading[rows] = wind / wind.norm(dim=-1, keepdim=True)

@@ -17,7 +17,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.fire.realistic.fuels import CURVES
-from hazard_ms.hazards.fire.realistic.radiation import to_power
+from hazard_ms.spec import rounding
 
 STEADY = 0.8  # share of the energy that is gone when a t^2 fire begins to decline [M: usual in design fires]
 _TINY = 1e-6  # least growth [kW/s^2], energy [kJ], power [kW] and time [s], so that 0 / 0 cannot occur
@@ -41,7 +41,7 @@ def course(growth: Tensor, peak: Tensor, energy: Tensor) -> Course:
     alpha = growth.clamp(min=_TINY)
     energy = energy.clamp(min=_TINY)
     # until the plateau [s]
-    first = torch.minimum((peak / alpha).sqrt(), to_power(3.0 * STEADY * energy / alpha, 1.0 / 3.0))
+    first = torch.minimum(rounding.sqrt(peak / alpha), rounding.power(3.0 * STEADY * energy / alpha, 1.0 / 3.0))
     top = (alpha * first * first).clamp(min=_TINY)
     decline = first + (STEADY * energy - alpha * first**3 / 3.0).clamp(min=0.0) / top
     end = decline + 2.0 * (1.0 - STEADY) * energy / top

@@ -15,6 +15,7 @@ from hazard_ms.hazards.fire.realistic import radiation, scorch
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.twozone.balance import Rooms
 from hazard_ms.simulation.world import World
+from hazard_ms.spec import rounding
 
 NO_CROWD = 2**31  # number of things on a cell that keeps flames away: never reached
 
@@ -38,7 +39,7 @@ def warm(state: BlazeState, world: World, fires: radiation.Fires, room: float, s
     source = fires.place[..., 2] + length / 3.0
     heat = fires.radiant * fires.power / (4.0 * math.pi)
     blown = coupling.drift(world, fires.place)
-    drive = torch.ones((*heat.shape, spread.DIRECTIONS), device=heat.device) if blown is None else blown.sqrt()
+    drive = torch.ones((*heat.shape, spread.DIRECTIONS), device=heat.device) if blown is None else rounding.sqrt(blown)
     made = _Fires(fires.place.contiguous(), source, heat, fires.diameter.contiguous(), drive)
     launches = world.launches
     structs = (launches.struct(kind, of) for kind, of in ((scorch.Fires, made), (Rooms, state), (scorch.Floor, state)))

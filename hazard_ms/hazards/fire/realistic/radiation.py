@@ -21,6 +21,8 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
+from hazard_ms.spec import rounding
+
 GRAVITY = 9.81  # acceleration of gravity [m/s^2]
 AIR = 353.0  # density times absolute temperature of air [kg K/m^3], specific heat 1 kJ/kg K [docs/physics.md 3.1]
 AIR_DENSITY = 1.2  # density of air [kg/m^3] [docs/physics.md 4.4]
@@ -31,19 +33,6 @@ CONVECTION = 0.010  # heat transfer by convection [kW/m^2 K] [docs/physics.md 4.
 FLAME_FLUX = 40.0  # largest flux on what a flame touches [kW/m^2] [M: SFPE, small flames 20 to 40]
 _TINY = 1e-9  # least value of a divisor, in its own unit, so that 0 / 0 cannot occur
 _BLOCK = 2**17  # most pairs worked on at a time on a CPU, see hazard_ms.hazards.fire.heat
-
-
-def to_power(base: Tensor, exponent: float) -> Tensor:
-    """`base` ** `exponent`, [...], of any unit [-], rounded from double precision.
-
-    So the bits do not depend on the size of the batch, nor on the instructions of the CPU.
-    """
-    return (base.double() ** exponent).to(base.dtype)
-
-
-def exponential(exponent: Tensor) -> Tensor:
-    """Exponential of `exponent` [-], [...], rounded from double precision, see `to_power`."""
-    return exponent.double().exp().to(exponent.dtype)
 
 
 class Fires(NamedTuple):
@@ -82,7 +71,7 @@ def flame_length(power: Tensor, diameter: Tensor, ambient: float = 20.0) -> Tens
     """Mean length of flames [m], [...], of fires of `power` [kW] and `diameter` [m], [...], in air of `ambient` [C]."""
     density = AIR_DENSITY * (ambient + KELVIN) * math.sqrt(GRAVITY)
     wide = diameter.clamp(min=_TINY)
-    return (wide * (3.7 * to_power(power / (density * to_power(wide, 2.5)), 0.4) - 1.02)).clamp(min=0.0)
+    return (wide * (3.7 * rounding.power(power / (density * rounding.power(wide, 2.5)), 0.4) - 1.02)).clamp(min=0.0)
 
 
 def point_source(power: Tensor, radiant: Tensor | float, square: Tensor, cosine: Tensor | float = 1.0) -> Tensor:
@@ -127,8 +116,8 @@ def warm(temperature: Tensor, flux: Tensor, solid: Solid, room: float, dt: float
     thick = solid.inertia > 0
     inertia, sheet = solid.inertia.clamp(min=_TINY), solid.sheet.clamp(min=_TINY)
     grown = torch.where(
-        thick, (rise.square() + 4.0 / math.pi * flux.square() * dt / inertia).sqrt(), rise + flux * dt / sheet
+        thick, rounding.sqrt(rise.square() + 4.0 / math.pi * flux.square() * dt / inertia), rise + flux * dt / sheet
     )
     slowness = torch.where(thick, math.pi / 4.0 * inertia / loss.clamp(min=_TINY), sheet) / loss.clamp(min=_TINY)
-    cooled = most + (rise - most) * exponential(-dt / slowness)
+    cooled = most + (rise - most) * rounding.exp(-dt / slowness)
     return room + torch.where((rise >= 0) & (rise < most), torch.minimum(grown, most), cooled)

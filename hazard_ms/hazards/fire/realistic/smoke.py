@@ -12,9 +12,10 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
-from hazard_ms.hazards.fire.realistic.radiation import AIR, GRAVITY, KELVIN, Fires, alight, in_blocks, to_power
+from hazard_ms.hazards.fire.realistic.radiation import AIR, GRAVITY, KELVIN, Fires, alight, in_blocks
 from hazard_ms.hazards.fire.realistic.twozone import balance, zones
 from hazard_ms.simulation.world import World
+from hazard_ms.spec import rounding
 
 PLUME_LIMIT = 900.0  # largest rise of temperature, that in flames [K] [docs/physics.md 3.1: CFAST]
 PLUME_WIDTH = 0.12  # radius of a plume per height above its fire [-] [M: Heskestad]
@@ -63,7 +64,9 @@ def plume_rise(power: Tensor, radiant: Tensor | float, diameter: Tensor, height:
     kelvin = room + KELVIN
     strength = 9.1 * (kelvin / (GRAVITY * (AIR / kelvin) ** 2)) ** (1.0 / 3.0)
     above = (height - virtual_origin(power, diameter)).clamp(min=1e-3)
-    return (strength * to_power((1.0 - radiant) * power, 2.0 / 3.0) / to_power(above, 5.0 / 3.0)).clamp(max=PLUME_LIMIT)
+    return (strength * rounding.power((1.0 - radiant) * power, 2.0 / 3.0) / rounding.power(above, 5.0 / 3.0)).clamp(
+        max=PLUME_LIMIT
+    )
 
 
 def above(fires: Fires, points: Tensor, room: float) -> Tensor:
@@ -86,4 +89,4 @@ def _above(room: float, fires: Fires, points: Tensor) -> Tensor:
 
 def virtual_origin(power: Tensor, diameter: Tensor) -> Tensor:
     """Height [m], [...], from which plumes of fires of `power` [kW] and `diameter` [m], [...], seem to come."""
-    return VIRTUAL[0] * diameter + VIRTUAL[1] * to_power(power, 0.4)
+    return VIRTUAL[0] * diameter + VIRTUAL[1] * rounding.power(power, 0.4)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.fire.realistic.radiation import to_power
+from hazard_ms.spec import rounding
 
 # I, II, III; IV above [docs/physics.md 3.1; fluxes: NIST TN 1474]
 CLASSES = ((100.0, 1.0), (160.0, 2.0), (260.0, 10.0))
@@ -22,8 +22,8 @@ CLASS_OF_WARMTH = 60.0  # air temperature from which an exposure has a class [C]
 
 def dose_rate(temperature: Tensor, flux: Tensor) -> Tensor:
     """Dose per second [1/s], [...], in air of `temperature` [C], [...], under `flux` [kW/m^2], [...]."""
-    convected = to_power(temperature.clamp(min=0.0), 3.61) / 4.1e8
-    radiated = torch.where(flux >= RADIANT_FROM, to_power(flux.clamp(min=0.0), 1.9) / 4.2, 0.0)
+    convected = rounding.power(temperature.clamp(min=0.0), 3.61) / 4.1e8
+    radiated = torch.where(flux >= RADIANT_FROM, rounding.power(flux.clamp(min=0.0), 1.9) / 4.2, 0.0)
     return (convected + radiated) / 60.0
 
 

@@ -45,10 +45,11 @@ def test_what_the_user_has_chosen_stays(tmp_path: Path, monkeypatch: pytest.Monk
 
 
 @pytest.mark.skipif(" avx2 " not in Path("/proc/cpuinfo").read_text(), reason="a processor without AVX2")
-@pytest.mark.parametrize("first", ["import hazard_ms\n", "import torch, hazard_ms\n"])
-def test_torch_and_numpy_do_as_told_also_where_torch_was_there_before(first: str) -> None:
+@pytest.mark.parametrize(("first", "numpy"), [("import hazard_ms\n", True), ("import torch, hazard_ms\n", False)])
+def test_torch_does_as_told_also_where_it_was_there_before_and_numpy_where_it_was_not(first: str, numpy: bool) -> None:
+    """Torch loads numpy, which has chosen by then; what it computes is the same with all instructions."""
     environ = {name: value for name, value in os.environ.items() if name not in CHOICES}
     child = subprocess.run(
         [sys.executable, "-c", ASK.format(first)], capture_output=True, text=True, check=True, env=environ
     )
-    assert child.stdout.split() == ["AVX2", "False"]
+    assert child.stdout.split()[: 1 + numpy] == ["AVX2", "False"][: 1 + numpy]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.perception import coco, layout
 from hazard_ms.perception.reading import mask_of, pixels_of
-from hazard_ms.perception.rows import CHECKED
+from hazard_ms.perception.rows import CHECKED, LARGEST
 from hazard_ms.spec.foreign.files import inside, printable, sha256_of
 
 FILES = ("file_name", "depth_file", "ids_file", "hazard_file")
@@ -83,7 +83,7 @@ def _of_sums(dataset: Path) -> Iterator[str]:
             file = inside(dataset, name, f"a path in {layout.SUMS}")
             if not file.is_file():
                 yield f"{name}: it is missing"
-            elif sha256_of(file) != digest:
+            elif sha256_of(file, LARGEST) != digest:
                 yield f"{name}: its checksum is not that in {layout.SUMS}"
         except ValueError as error:
             yield str(error)

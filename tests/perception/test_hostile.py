@@ -6,6 +6,7 @@ import json
 import os
 import random
 import resource
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from typing import Any
 import pytest
 import torch
 
-from hazard_ms.perception import layout
+from hazard_ms.perception import check, layout
 from hazard_ms.perception.detectors.weights import read_weights
 from hazard_ms.perception.rows import SCORED
 from hazard_ms.perception.score import score
@@ -54,6 +55,16 @@ def test_a_pipe_and_files_outside_are_refused(data: Path) -> None:
         changed(data, lambda rows, name=name: rows["images"][0].update(file_name=name))  # type: ignore[misc]
         with pytest.raises(ValueError, match="regular file|inside its folder"):
             read([data], "test")[0].rgb()
+
+
+def test_a_file_of_50_gb_is_not_hashed(data: Path) -> None:
+    """It takes no room on the disk; hashing it would take minutes."""
+    name = json.loads((data / layout.instances("test")).read_text())["images"][0]["depth_file"]
+    (data / layout.SUMS).write_text(layout.sums_of(data, [name]))
+    os.truncate(data / name, 50_000_000_000)
+    before = time.process_time()
+    told = list(check._of_sums(data))
+    assert "must have at most 400000000 bytes, got 50000000000" in told[0] and time.process_time() - before < 5.0
 
 
 def test_weights_name_nothing_but_tensors(tmp_path: Path) -> None:

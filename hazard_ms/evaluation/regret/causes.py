@@ -117,7 +117,7 @@ def place_of(result: Path) -> Path:
 def digest(result: Path) -> str:
     """The SHA-256 of a result's file. Raises ValueError where it cannot be read."""
     try:
-        return sha256_of(result)
+        return sha256_of(result, LARGEST)
     except ValueError as error:
         raise ValueError(f"{printable(str(result))} must hold the result of an episode: {error}") from None
 

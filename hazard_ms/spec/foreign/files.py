@@ -12,6 +12,7 @@ from typing import Any, BinaryIO
 
 LONGEST_NAME = 255  # of a file or folder [bytes]: what Linux's file systems allow
 HASHED_AT_ONCE = 1 << 20  # [bytes]
+LARGEST_HASHED = 100_000_000_000  # unless another limit is given [bytes] [ours]
 
 
 def read_foreign(path: Path, most: int, name: str = "") -> bytes:
@@ -41,11 +42,14 @@ def read_text(path: Path, most: int, name: str = "") -> str:
         raise ValueError(f"{printable(name or str(path))} must be text in UTF-8, got {error.reason}") from None
 
 
-def sha256_of(path: Path) -> str:
-    """The SHA-256 of a regular file of any size. Raises ValueError for what is none, or cannot be read."""
+def sha256_of(path: Path, most: int = LARGEST_HASHED) -> str:
+    """The SHA-256 of a regular file of at most `most` bytes. Raises ValueError for others, and what cannot be read."""
     found = hashlib.sha256()
-    with _opened(path, printable(str(path))) as file:
+    shown = printable(str(path))
+    with _opened(path, shown) as file:
         left = os.fstat(file.fileno()).st_size  # not further, should it grow without end
+        if left > most:
+            raise ValueError(f"{shown} must have at most {most} bytes, got {left}")
         while left > 0 and (part := file.read(min(left, HASHED_AT_ONCE))):
             found.update(part)
             left -= len(part)

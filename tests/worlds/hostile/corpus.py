@@ -167,7 +167,7 @@ def _ending(folder: Path, act: Callable[[], object]) -> int:
 
 RECORDS = (
     *("results", "regrets", "journals", "datasets", "arrays", "timelines", "sketches", "skill-times", "probes"),
-    *("policies", "states", "traces", "answers"),
+    *("policies", "states", "traces", "answers", "captured", "detections", "detectors", "replies"),
 )
 CORPORA = {"models": read_model, "scenes": read_scene, "originals": read_original}
 CORPORA |= {name: partial(read_records, name) for name in RECORDS}

@@ -41,6 +41,7 @@ from hazard_ms.spec.foreign.arrays import read_arrays
 from hazard_ms.spec.foreign.files import read_foreign
 from hazard_ms.web import rescue
 from tests.worlds.halls import future, hall
+from tests.worlds.hostile import sights
 from tests.worlds.hostile.mutations import mutated, replaced
 from tests.worlds.recordings import stored
 from tests.worlds.results import result_of
@@ -193,6 +194,10 @@ KINDS = {
         lambda f: decision_page(read_trace(f / "a.jsonl"), "title"),
     ),
     "answers": Kind(make_answers, read_answers),
+    "captured": Kind(sights.make_captured, sights.read_captured),
+    "detections": Kind(sights.make_detections, sights.read_detections),
+    "detectors": Kind(sights.make_detectors, sights.read_detectors),
+    "replies": Kind(sights.make_reply, sights.read_reply),
 }
 
 

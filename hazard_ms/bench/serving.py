@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 from hazard_ms.evaluation.report import machine_line
+from hazard_ms.machine.processes import environment
 
 ROOM = ord("r")  # first byte of a picture of the third person
 PROTOCOL = "hazard_ms"  # of the page's WebSockets
@@ -54,7 +55,7 @@ def report(env_id: str, seed: int, minutes: float) -> str:
 def _server(folder: Path) -> Iterator[tuple[Any, str]]:
     """A server of `folder`: its process and the address that it printed."""
     command = [sys.executable, "-m", "hazard_ms.cli", "serve", "--folder", str(folder), "--sessions", "1"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment())
     try:
         assert process.stdout is not None
         address = process.stdout.readline().strip()

@@ -15,6 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from hazard_ms.evaluation.attempts import attempt
 from hazard_ms.evaluation.workers import Crew, Job, Outcome, ending
 from hazard_ms.machine.cores import cores
+from hazard_ms.machine.processes import needs_key, without_keys
 
 MOST_SHARDS = 100_000  # [ours]
 SCHEDULER = "SLURM_ARRAY_TASK_"  # how the variables of an array job begin
@@ -59,11 +60,10 @@ def spread(
     if backend == "serial" or not jobs:
         yield _serial(jobs)
         return
-    most = len(jobs)
     if backend == "ray":
-        crew: _RaySeats | Crew = _RaySeats(workers, most, address)
+        crew: _RaySeats | Crew = _RaySeats(workers, jobs, address)
     else:
-        crew = Crew(min(workers or cores(), most), attempt)
+        crew = Crew(min(workers or cores(), len(jobs)), attempt)
     with ending(crew.end):
         yield crew.play(jobs)
 
@@ -76,15 +76,17 @@ def _serial(jobs: Sequence[Job]) -> Iterator[tuple[Job, Outcome]]:
 class _RaySeats:
     """As many actors of ray as there are workers, each with one process that it may replace."""
 
-    def __init__(self, workers: int, most: int, address: str | None) -> None:
+    def __init__(self, workers: int, jobs: Sequence[Job], address: str | None) -> None:
         try:
             import ray
         except ImportError:
             wanted = "backend must be serial or local where ray is missing, got ray; pip install 'hazard_ms[cluster]'"
             raise ValueError(wanted) from None
         paths = os.pathsep.join(filter(None, sys.path))
-        ray.init(address=address, runtime_env={"env_vars": {"PYTHONPATH": paths}}, include_dashboard=False)
-        count = min(workers or int(ray.cluster_resources().get("CPU", 1)), most)
+        keyed = any(needs_key(job.options.agent, job.options.load) for job in jobs)
+        with without_keys(needed=keyed):  # processes of ray get our environment
+            ray.init(address=address, runtime_env={"env_vars": {"PYTHONPATH": paths}}, include_dashboard=False)
+        count = min(workers or int(ray.cluster_resources().get("CPU", 1)), len(jobs))
         seat = ray.remote(num_cpus=1, max_restarts=-1, max_task_retries=1, scheduling_strategy="SPREAD")(_Seat)
         self._seats = [seat.remote() for _ in range(count)]
 

@@ -73,7 +73,7 @@ class Worker:
     def begin(self, job: Job) -> None:
         """Begin with a job."""
         keyed = needs_key(job.options.agent, job.options.load)
-        if self._played >= LIFETIME or (keyed and not self._keyed):
+        if self._played >= LIFETIME or keyed != self._keyed:
             self.end()
         if self._process is None:
             self._start(keyed)

@@ -18,6 +18,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from hazard_ms.machine.processes import environment
+
 COMPLAINT = re.compile(r"\[(?:error|critical)\] *(.+)")  # as SAPIEN's log has it, after time and module
 EXHAUSTED = re.compile(
     r"out ?of ?(?:host|device)? ?memory|MemoryError|bad_alloc|cudaErrorMemoryAllocation"
@@ -63,7 +65,13 @@ def run(command: Sequence[str], budget: float) -> str:
     """All that a command prints. Raises StoppedError where it fails or takes longer than `budget` seconds."""
     try:
         done = subprocess.run(  # what it prints last, to either stream, is the reason of its end
-            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", timeout=budget
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            timeout=budget,
+            env=environment(),
         )
     except subprocess.TimeoutExpired:
         raise StoppedError(f"took longer than {budget:g} s", limit=True) from None

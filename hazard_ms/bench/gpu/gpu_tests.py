@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from hazard_ms.machine.processes import environment
+
 CHECKOUT = Path(__file__).parents[3]  # which has the tests; an installed package has none
 MENTIONED = re.compile(r"(?:FAILED|ERROR|SKIPPED|XFAIL|XPASS)\b.*")  # lines of pytest's summary
 
@@ -22,7 +24,13 @@ def gpu_tests(checkout: Path = CHECKOUT) -> tuple[str, bool]:
     )
     command = [sys.executable, "-m", "pytest", "-m", "gpu", "--long", "-q", "-p", "no:cacheprovider", *files]
     done = subprocess.run(
-        command, cwd=checkout, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
+        command,
+        cwd=checkout,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        env=environment(),
     )
     print(done.stdout, flush=True)
     lines = [line.strip() for line in done.stdout.splitlines()]

@@ -46,8 +46,8 @@ def make_captured(folder: Path) -> None:
 
 
 def read_captured(folder: Path) -> None:
-    """Each way of reading a dataset, as each command does; the first that refuses it does not spare the others."""
-    path, refusals = folder / layout.instances("test"), []
+    """As one of the commands that read datasets does, chosen by the folder's number; honest ones by all of them."""
+    path = folder / layout.instances("test")
 
     def learnt() -> None:
         for picture in pictures.read([folder], "test"):
@@ -65,13 +65,8 @@ def read_captured(folder: Path) -> None:
         learnt,
         scored,
     )
-    for way in ways:
-        try:
-            way()
-        except ValueError as error:
-            refusals.append(error)
-    if refusals:
-        raise refusals[0]
+    for way in [ways[int(folder.name) % len(ways)]] if folder.name.isdigit() else ways:
+        way()
 
 
 def make_detections(folder: Path) -> None:
@@ -135,8 +130,10 @@ def make_reply(folder: Path) -> None:
 
 def read_reply(folder: Path) -> None:
     """Ask a server that sends the file as its answer, or as an error, and read it in each way."""
-    path = folder / "body.json"
-    content = path.read_bytes()[:2_000_000] if path.is_file() and not path.is_symlink() else b""
+    content, path = b"", folder / "body.json"
+    if path.is_file() and not path.is_symlink():
+        with path.open("rb") as file:
+            content = file.read(2_000_000)
     menu = Menu((Choice("A", "stop", None, Action("stop")), Choice("B", "explore", None, Action("explore"))), ())
     for status in (200, 400, 503):
         client = Client(Endpoint("http://127.0.0.1:9/v1", "any"), 1, 0)

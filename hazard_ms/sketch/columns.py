@@ -39,7 +39,7 @@ def from_bytes(what: str, version: int, content: bytes) -> dict[str, NDArray[Any
         raise ValueError(f"{what} must have the digest of its contents, got another: damaged, or something else")
     columns = foreign.from_bytes(packed, what)
     number = columns.pop("format", np.asarray(-1))
-    found = int(number) if number.size == 1 and number.dtype.kind in "iu" else -1
+    found = int(number.item()) if number.size == 1 and number.dtype.kind in "iu" else -1
     if found != version:
         raise ValueError(f"format of {what} must be {version}, got {found}: make it anew")
     return columns

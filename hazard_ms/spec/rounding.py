@@ -12,7 +12,7 @@ from torch import Tensor
 
 
 def power(base: Tensor, exponent: float) -> Tensor:
-    """`base` ** `exponent`, [...] [-]."""
+    """`base` to the power of `exponent`, [...], in any unit; NaN where the root of a number below 0 is meant."""
     return (base.double() ** exponent).to(base.dtype)
 
 
@@ -27,7 +27,7 @@ def log(value: Tensor) -> Tensor:
 
 
 def sqrt(value: Tensor) -> Tensor:
-    """The square root of `value`, [...]."""
+    """The square root of `value`, [...] [-]."""
     return value.double().sqrt().to(value.dtype)
 
 

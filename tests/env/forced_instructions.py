@@ -20,6 +20,7 @@ FORCED = {  # by what is forced: variables of the process
     "numpy without AVX2": {"NPY_DISABLE_CPU_FEATURES": NUMPY_TO_AVX},
     "OpenBLAS for SSE4": {"OPENBLAS_CORETYPE": "Nehalem"},
     "MKL for SSE2": {"MKL_CBWR": "COMPATIBLE"},
+    "MKL for AVX2": {"MKL_CBWR": "AVX2"},
     "what this processor has": {
         "ATEN_CPU_CAPABILITY": "avx512" if "avx512vl" in Path("/proc/cpuinfo").read_text() else "avx2",
         "NPY_DISABLE_CPU_FEATURES": "",

@@ -6,6 +6,7 @@ import ast
 import multiprocessing
 import os
 import subprocess
+import time
 from pathlib import Path
 from typing import Any
 
@@ -65,7 +66,10 @@ def test_a_worker_takes_a_key_from_no_job_to_the_next(monkeypatch: pytest.Monkey
         for agent in (f"{tmp_path / 'mine.py'}:Mine", "greedy"):
             worker.begin(Job(EpisodeOptions(agent=agent), 60.0))
             assert worker._process is not None
-            seen.append("sk-SENTINEL" in Path(f"/proc/{worker._process.pid}/environ").read_text())
+            place = Path(f"/proc/{worker._process.pid}")
+            while b"spawn_main" not in (place / "cmdline").read_bytes():  # it is still a copy of this process
+                time.sleep(0.01)
+            seen.append("sk-SENTINEL" in (place / "environ").read_text())
     finally:
         worker.end()
     assert seen == [True, False]

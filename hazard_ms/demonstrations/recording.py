@@ -53,7 +53,8 @@ def record(options: RecordOptions) -> int:
     check_name(options.agent)
     dataset = options.dataset
     make_folder(dataset)
-    (dataset / MANIFEST).touch()  # a dataset, even if no episode of it should be kept
+    if not (dataset / MANIFEST).is_symlink():  # which is refused
+        (dataset / MANIFEST).touch()  # a dataset, even if no episode of it should be kept
     repair(dataset)
     done = {entry.seed for entry in recorded(dataset, options.recipe)}
     jobs = [RecordJob(e, SILENCE, record=options) for e in options.episode_options() if e.seed not in done]

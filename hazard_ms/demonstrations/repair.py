@@ -11,6 +11,7 @@ from pathlib import Path
 
 from hazard_ms.demonstrations.claims import claimed, repairing
 from hazard_ms.demonstrations.layout import (
+    CARD,
     DAMAGED,
     EPISODE,
     FAILURES,
@@ -33,11 +34,14 @@ def repair(dataset: Path) -> Counter[str]:
 
     Whole folders without a line are entered, damaged ones moved to damaged/, lines without a folder dropped, what
     killed processes left is deleted. Returns how many there were of each kind. Raises ValueError for a link in place of
-    one of the dataset's own folders or locks.
+    one of the dataset's own folders, files or locks.
     """
     for name in (FAILURES, DAMAGED):
         if (dataset / name).is_symlink():
             raise ValueError(f"{dataset / name} must be a folder, got a link; delete it")
+    for path in (dataset / MANIFEST, dataset / FAILURES / MANIFEST, dataset / CARD):
+        if path.is_symlink():
+            raise ValueError(f"{path} must be a file, got a link; delete it")
     found: Counter[str] = Counter()
     with repairing(dataset):
         for shelf in (dataset, dataset / FAILURES):

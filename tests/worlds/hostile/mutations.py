@@ -74,7 +74,7 @@ def arrays(data: bytes, draw: random.Random) -> bytes:
         elif way == 3 and array.dtype.kind == "f":
             found[name] = np.full_like(array, draw.choice((np.nan, np.inf, -1e30, 0.0)))
         elif way == 4 and array.dtype.kind in "iu":
-            found[name] = np.full_like(array, draw.choice((-1, 30_000, 99)))
+            found[name] = np.full(array.shape, draw.choice((-1, 30_000, 99))).astype(array.dtype)
         elif array.ndim:
             found[name] = draw.choice((array[:-1], array[..., None], np.concatenate([array, array]), array.T))
     packed = io.BytesIO()

@@ -17,7 +17,7 @@ def power(base: Tensor, exponent: float) -> Tensor:
 
 
 def exp(value: Tensor) -> Tensor:
-    """E to the power of `value`, [...] [-]."""
+    """Euler's number to the power of `value`, [...] [-]."""
     return value.double().exp().to(value.dtype)
 
 

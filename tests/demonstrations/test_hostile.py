@@ -237,18 +237,3 @@ def test_an_added_file_is_named_and_keeps_the_episode_from_being_read(dataset: P
     assert differences(dataset / entry.name, entry) == ["an unknown file more.txt"]
     with pytest.raises(DamagedDatasetError, match=r"got an unknown file more\.txt"):
         next(demonstrations(dataset))
-
-
-@pytest.mark.parametrize("name", ["manifest.jsonl", "README.md", "failures/manifest.jsonl"])
-def test_repair_writes_to_no_file_that_a_link_names(tmp_path: Path, name: str) -> None:
-    """The file outside stays as it was: it would get the lines that the manifest should have."""
-    dataset, secret = tmp_path / "data", tmp_path / "secret"
-    stored(dataset, 3)
-    secret.write_text("of its reader\n")
-    link = dataset / name
-    link.parent.mkdir(exist_ok=True)
-    link.unlink(missing_ok=True)
-    link.symlink_to(secret)
-    with pytest.raises(ValueError, match=f"{name} must be a file, got a link; delete it"):
-        repair(dataset)
-    assert secret.read_text() == "of its reader\n"

@@ -139,3 +139,18 @@ def test_numbers_of_a_dataset(dataset: Path) -> None:
     table = found.table()
     sizes = sum(path.stat().st_size for path in dataset.glob("**/*kitchen*/**/*") if path.is_file())
     assert f"{sizes / 1e6:.1f} MB, {sizes / 9:.0f} bytes per frame" in table and "| 50.0 % |" in table.replace("  ", "")
+
+
+@pytest.mark.parametrize("name", ["manifest.jsonl", "README.md", "failures/manifest.jsonl"])
+def test_repair_writes_to_no_file_that_a_link_names(tmp_path: Path, name: str) -> None:
+    """The file outside stays as it was: it would get the lines that the manifest should have."""
+    dataset, secret = tmp_path / "data", tmp_path / "secret"
+    stored(dataset, 3)
+    secret.write_text("of its reader\n")
+    link = dataset / name
+    link.parent.mkdir(exist_ok=True)
+    link.unlink(missing_ok=True)
+    link.symlink_to(secret)
+    with pytest.raises(ValueError, match=f"{name} must be a file, got a link; delete it"):
+        repair(dataset)
+    assert secret.read_text() == "of its reader\n"

@@ -17,6 +17,7 @@ from torch import Tensor
 
 from hazard_ms.kernels.launch import Launches
 from hazard_ms.simulation.chance import Chance
+from hazard_ms.simulation.walls import Walls
 from hazard_ms.spec import Body, Build, SceneSpec
 from hazard_ms.spec.catalogue import CATEGORIES
 
@@ -193,6 +194,11 @@ class World:
     def frame(self) -> Tensor:
         """Frames since the start of each episode, [E], int64."""
         return self.chance.frame
+
+    @functools.cached_property
+    def walls(self) -> Walls:
+        """The inner walls of the scenes, and their doorways."""
+        return Walls.of(self.specs, self.device)
 
     @functools.cached_property
     def targets(self) -> Tensor:

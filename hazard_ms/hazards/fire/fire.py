@@ -21,6 +21,7 @@ from hazard_ms.hazards.fire.fire_state import BURNING, BURNT, NORMAL, FireState,
 from hazard_ms.hazards.fire.kernels import Heat, temperature_at
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.launch import of_environments
+from hazard_ms.simulation.walls import Partitions
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
 
@@ -92,7 +93,7 @@ class Fire(Hazard):
         sources = self._sources(state, world)
         nodes = state.temperature.shape[1] + 1  # things and the agent; after them come the flames
         mean = heat.Mean(self.room_temperature, 1.0, self.reach, self.nearest)
-        around = mean.at(sources.place[:, :nodes], sources)
+        around = mean.at(sources.place[:, :nodes], sources, world.walls)
         # what went out under water has none
         embers = (state.status == BURNT) & state.threshold.isfinite() & self.embers
         fixed = (state.status == BURNING) | embers
@@ -134,15 +135,13 @@ class Fire(Hazard):
         if none_set(success):
             return
         parent = spread.compact(success, spread.AT_ONCE)  # [E, C]
-        some = parent >= 0
-        chosen = parent.clamp(min=0)
+        some, chosen = parent >= 0, parent.clamp(min=0)
         weight = None if blown is None else blown.gather(1, chosen[..., None].expand(-1, -1, spread.DIRECTIONS))
         direction = spread.pick(state.flame_used.gather(1, chosen), draw[..., 1].gather(1, chosen), weight)
         state.flame_used.scatter_add_(1, chosen, some.long() << direction)
         state.flame_last.copy_(torch.where(success, frame[:, None], state.flame_last))
-        aim = spread.neighbour(
-            torch.where(some, state.flame_cell.gather(1, chosen), -1), direction, state.free.shape[-1]
-        )
+        cell = torch.where(some, state.flame_cell.gather(1, chosen), -1)
+        aim = spread.neighbour(cell, direction, state.free.shape[-1])
         kept = can_burn(state, world, aim, self.crowd)
         if none_set(kept):
             return
@@ -156,9 +155,11 @@ class Fire(Hazard):
         points = of_environments(points, world.num_envs)
         (found,) = world.launches.results(temperature_at, points[..., 0])
         room = (self.room_temperature, self.image_room_weight / self.reach**2, self.nearest, self.flame_temperature)
-        sources = (world.launches.struct(Heat, state), world.launches.struct(Bodies, world), found)
-        where = (points, world.frame, world.agent_position)
-        world.launches.run(temperature_at, tuple(found.shape), *where, *room, *sources)
+        sources = ((Heat, state), (Bodies, world), (Partitions, world.walls))
+        structs = (world.launches.struct(kind, of) for kind, of in sources)
+        world.launches.run(
+            temperature_at, tuple(found.shape), points, world.frame, world.agent_position, *room, *structs, found
+        )
         return found.clone()
 
     def threatens(self, target: Any, level: float, height: float) -> bool:

@@ -9,6 +9,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.fire.spread import CELL, STEP
+from hazard_ms.simulation.walls import within
 from hazard_ms.simulation.world import World, rotate
 
 SHEET = 0.05  # height below which fixtures (rugs) do not stop a fire [m] [ours]
@@ -55,7 +56,7 @@ def half_spans(rotation: Tensor, extent: Tensor) -> Tensor:
 
 
 def free_floor(world: World, rows: Tensor, anchor: Tensor, window: int, fixtures_block: bool) -> Tensor:
-    """Cells in the room and under no fixture that stands on the floor, [R, S, K, K], bool.
+    """Cells in the room, in no wall, and under no fixture that stands on the floor, [R, S, K, K], bool.
 
     `rows` are R indices of environments, `anchor` [m] is [R, S, 2], `window` is K.
     """
@@ -64,6 +65,8 @@ def free_floor(world: World, rows: Tensor, anchor: Tensor, window: int, fixtures
     wide, deep = world.room[rows, :, None, None, None].unbind(1)
     margin = CELL / 2 - TOUCH
     free = (x >= margin) & (x <= wide - margin) & (y >= margin) & (y <= deep - margin)
+    if world.walls.any:
+        free = free & ~within(world.walls.part(rows), x, y, margin)
     if not fixtures_block:
         return free
     half = half_spans(world.rotation[rows], world.extent[rows])

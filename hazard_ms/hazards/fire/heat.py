@@ -5,7 +5,8 @@
 
 All new temperatures come from all old ones (Jacobi); sources keep theirs. T_env is a mean with positive weights and 0 <
 decay < 1, so no temperature ever leaves the range of those present and the room's: stable at any distance. Limits of
-the model: no heat capacity, no conduction, no shading; `decay` counts updates, so it is tied to the length of a frame.
+the model: no heat capacity, no conduction, no shading but by walls; `decay` counts updates, so it is tied to the length
+of a frame.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from typing import NamedTuple
 
 import torch
 from torch import Tensor
+
+from hazard_ms.simulation.walls import Walls, blocked
 
 _TINY = 1e-30  # least sum of weights [1/m^2], so that 0 / 0 cannot occur
 # Most weights worked on at a time on a CPU: 1 MB stays in its cache, four times faster than 1,024 environments at once
@@ -38,16 +41,19 @@ class Mean:
     reach: float  # distance at which a source has the weight 1 [m]
     nearest: float  # nearer sources weigh no more than at this distance [m]
 
-    def at(self, points: Tensor, sources: Sources) -> Tensor:
-        """Mean temperature [C] at `points` [m], [E, P, 3]: [E, P]. Point p is source p, and no source to itself."""
+    def at(self, points: Tensor, sources: Sources, walls: Walls) -> Tensor:
+        """Mean temperature [C] at `points` [m], [E, P, 3]: [E, P]. Point p is source p, and no source to itself.
+
+        Sources behind `walls` count nothing.
+        """
         environments = len(points)
         block = environments if points.is_cuda else max(1, _BLOCK // (points.shape[1] * sources.place.shape[1]))
         if block >= environments:
-            return self._block(points, sources)
+            return self._block(points, sources, walls)
         parts = (slice(start, start + block) for start in range(0, environments, block))
-        return torch.cat([self._block(points[p], Sources(*(s[p] for s in sources))) for p in parts])
+        return torch.cat([self._block(points[p], Sources(*(s[p] for s in sources)), walls.part(p)) for p in parts])
 
-    def _block(self, points: Tensor, sources: Sources) -> Tensor:
+    def _block(self, points: Tensor, sources: Sources, walls: Walls) -> Tensor:
         place, temperature, active = sources
         x = torch.where(active, place[..., 0], torch.inf)  # infinitely far: of weight 0
         ahead, across, above = points.transpose(1, 2).contiguous()[:, :, None].unbind(1)  # side by side: twice as fast
@@ -57,6 +63,8 @@ class Mean:
             weight.addcmul_(offset, offset)
         weight.clamp_(min=self.nearest**2).reciprocal_()
         weight[:, : points.shape[1]].diagonal(dim1=1, dim2=2).zero_()
+        if walls.any:
+            weight.masked_fill_(blocked(walls, place, points), 0.0)
         total = weight.sum(1).add_(self.room_weight / self.reach**2).clamp_(min=_TINY)
         # the excess over the room: a scene at the room's temperature stays there exactly; sums, not products of
         # matrices, whose rounding depends on how many environments there are

@@ -7,6 +7,7 @@ import warp as wp
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.boxes import axes_of, base_of
 from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.walls import Partitions, clear
 
 wp.set_module_options(OPTIONS)
 
@@ -39,28 +40,32 @@ def temperature_at(
     flame: float,
     heat: Heat,
     bodies: Bodies,
+    walls: Partitions,
     found: wp.array2d(dtype=float),
 ):
     """Set `found` to the mean temperature [C] around each of the `points` [m] of each environment.
 
-    Sources are things that are not safe, the `agent` [m], and flames, at the temperature `flame` [C]; `room_weight`
-    [1/m^2] is that of the room, at the temperature `room` [C].
+    Sources are things that are not safe, the `agent` [m], and flames, at the temperature `flame` [C], as far as no wall
+    stands between; `room_weight` [1/m^2] is that of the room, at the temperature `room` [C].
     """
     e, p = wp.tid()
     point = points[e, p]
-    total = weight_of(agent[e] - point, nearest)
+    total = float(0.0)
+    if clear(e, agent[e], point, walls):
+        total = weight_of(agent[e] - point, nearest)
     excess = total * (heat.agent_temperature[e] - room)
     total += room_weight
     for b in range(heat.temperature.shape[1]):
         if bodies.exists[e, b] and not bodies.safe[e, b]:
             place = base_of(bodies.position[e, b], axes_of(bodies.rotation[e, b]), bodies.extent[e, b])
-            w = weight_of(place - point, nearest)
-            total += w
-            excess += w * (heat.temperature[e, b] - room)
+            if clear(e, place, point, walls):
+                w = weight_of(place - point, nearest)
+                total += w
+                excess += w * (heat.temperature[e, b] - room)
     for f in range(heat.flame_cell.shape[1]):
         if heat.flame_cell[e, f] < wp.int64(0):
             break  # the roster is in the order of ignition
-        if heat.flame_birth[e, f] <= frame[e]:
+        if heat.flame_birth[e, f] <= frame[e] and clear(e, heat.flame_place[e, f], point, walls):
             w = weight_of(heat.flame_place[e, f] - point, nearest)
             total += w
             excess += w * (flame - room)

@@ -11,6 +11,7 @@ from hazard_ms.hazards.fire import spread
 from hazard_ms.hazards.fire.fire import BURNING, BURNT, NORMAL, Fire
 from hazard_ms.hazards.fire.heat import Mean, Sources, exchange
 from hazard_ms.hazards.presets import fire
+from hazard_ms.simulation.walls import Walls
 from hazard_ms.validation.experiments.fire_room import (
     ORIGINAL,
     begin,
@@ -61,7 +62,7 @@ def isolated(thing: int) -> float:
     points, temperature = torch.tensor([[[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]]]), torch.tensor([[300.0, 20.0]])
     mean = Mean(20.0, 0.0, 0.5, 0.1)
     for _ in range(200):
-        around = mean.at(points, Sources(points, temperature, torch.ones(1, 2, dtype=torch.bool)))
+        around = mean.at(points, Sources(points, temperature, torch.ones(1, 2, dtype=torch.bool)), Walls.none(1))
         temperature = exchange(temperature, around, torch.tensor(True), 0.03)
     return float(temperature[0, thing])
 

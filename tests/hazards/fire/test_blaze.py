@@ -207,7 +207,7 @@ def test_plates_of_the_image_gain_no_heat_in_the_flux_and_gas_that_warm_things()
     run(REAL, state, world, 20.0)
     points = torch.rand(1, 200, 3, generator=torch.Generator().manual_seed(0)) * torch.tensor([4.0, 4.0, 2.5])
     plate = REAL.image(state, world, points).double() + 273.15
-    flux, gas = (v.double() for v in REAL._exposure(state, REAL._fires(state, world), points))
+    flux, gas = (v.double() for v in REAL._exposure(state, world, REAL._fires(state, world), points))
     gain = 0.9 * (flux + 5.670e-11 * (293.15**4 - plate**4)) + 0.01 * (gas + 273.15 - plate)
     below = plate < 820.0 + 273.0
     assert int(below.sum()) > 100 and float(flux.max()) > 10.0 and int((state.flame_cell >= 0).sum()) > 3

@@ -88,10 +88,11 @@ def test_what_does_not_burn_changes_no_bit(
     points, height = world.position[rows] + torch.tensor([0.1, 0.0, 0.4]), state.height[rows]
 
     class Some:
+        walls = world.walls.part(rows)
         position, rotation, extent = world.position[rows], world.rotation[rows], world.extent[rows]
 
     def seen() -> list[torch.Tensor]:
-        return [smoke.above(fires, points, 20.0), touching.touched(fires, Some(), height)]  # type: ignore[arg-type]
+        return [smoke.above(fires, Some.walls, points, 20.0), touching.touched(fires, Some(), height)]  # type: ignore[arg-type]
 
     few, number = radiation.alight(fires)
     assert bool((few.power > 0).any(0).all()) and len(number) < fires.power.shape[1]
@@ -107,7 +108,10 @@ def test_where_nothing_burns_nothing_is_warmed(burning_rooms: tuple[BlazeState, 
     state, world = burning_rooms
     fires = all_fires(state, world)
     cold = fires._replace(power=torch.zeros_like(fires.power))
-    assert not smoke.above(cold, world.position, 20.0).any() and not touching.touched(cold, world, state.height).any()
+    assert (
+        not smoke.above(cold, world.walls, world.position, 20.0).any()
+        and not touching.touched(cold, world, state.height).any()
+    )
 
 
 def test_a_thing_is_not_touched_by_its_own_flames() -> None:

@@ -15,6 +15,7 @@ from hazard_ms.hazards.fire.realistic import burning, fuels, radiation, tenabili
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.presets import fire
 from hazard_ms.kernels.launch import OPTIONS, Launches
+from hazard_ms.simulation.walls import Walls
 from hazard_ms.spec.catalogue import CATEGORIES
 
 wp.set_module_options(OPTIONS)
@@ -67,11 +68,11 @@ def test_fluxes_add_fall_with_the_square_and_do_not_exceed_a_flames() -> None:
     place = torch.tensor([[[0.0, 0.0, 0.0], [50.0, 0.0, 0.0]]])
     fires = radiation.Fires(place, number(100.0, 0.0)[None], torch.full((1, 2), 0.35), torch.full((1, 2), 0.34))
     points = torch.tensor([[[4.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 0.0, 0.3], [46.0, 0.0, 0.0]]])
-    one = radiation.flux(fires, points, number(50.0))[0]
+    one = radiation.flux(fires, Walls.none(1), points, number(50.0))[0]
     lift = (float(radiation.flame_length(number(100.0), number(0.34))) / 3) ** 2
     assert float(one[0] / one[1]) == pytest.approx((64 + lift) / (16 + lift), rel=1e-4)
     assert float(one[2]) == 40.0  # kW/m^2: the most that small flames give
-    both = radiation.flux(fires._replace(power=number(100.0, 100.0)[None]), points, number(50.0))[0]
+    both = radiation.flux(fires._replace(power=number(100.0, 100.0)[None]), Walls.none(1), points, number(50.0))[0]
     assert float(both[0] - one[0]) == pytest.approx(0.35 * 100 / (4 * math.pi * (46**2 + lift)), rel=1e-3)
 
 
@@ -81,9 +82,9 @@ def test_a_batch_gives_what_one_gives(monkeypatch: pytest.MonkeyPatch) -> None:
     fires = radiation.Fires(
         place, 200 * torch.rand(6, 9, generator=generator), torch.full((6, 9), 0.35), torch.full((6, 9), 0.3)
     )
-    whole = radiation.flux(fires, points, torch.full((6,), 2.6))
+    whole = radiation.flux(fires, Walls.none(6), points, torch.full((6,), 2.6))
     monkeypatch.setattr(radiation, "_BLOCK", 100)
-    assert torch.equal(whole, radiation.flux(fires, points, torch.full((6,), 2.6)))
+    assert torch.equal(whole, radiation.flux(fires, Walls.none(6), points, torch.full((6,), 2.6)))
 
 
 SURFACES = st.sampled_from(

@@ -10,6 +10,7 @@ import torch
 from hazard_ms.hazards.fire.fire import BURNING, NORMAL, Fire
 from hazard_ms.hazards.fire.heat import Mean, Sources, exchange
 from hazard_ms.hazards.presets import fire
+from hazard_ms.simulation.walls import Walls
 from tests.worlds.fire_worlds import (
     begin,
     begin_without_spread,
@@ -95,7 +96,7 @@ def pair_law(temperature: torch.Tensor, distance: float, room_weight: float, cou
     points = torch.tensor([[[0.0, 0.0, 0.0], [distance, 0.0, 0.0]]])
     mean = Mean(20.0, room_weight, 0.5, 0.1)
     for _ in range(count):
-        around = mean.at(points, Sources(points, temperature, torch.ones(1, 2, dtype=torch.bool)))
+        around = mean.at(points, Sources(points, temperature, torch.ones(1, 2, dtype=torch.bool)), Walls.none(1))
         temperature = exchange(temperature, around, torch.tensor(True), 0.03)
     return temperature
 

@@ -12,7 +12,7 @@ Burnt things give off no heat and cool. Nothing is drawn by chance, and nothing 
 are functions of time, surfaces are warmed exactly. Heat is updated every few frames. `time_scale` is the one number
 that is not physics: seconds of fire per second of the episode, since rooms burn for minutes and episodes last 50 s.
 Limits: flames on the floor do not go out (carpet of 4 kg/m^2 burns longer than an episode), and are within 2 to 3 m of
-the first; no conduction between things, no shading.
+the first; no conduction between things, no shading but by walls.
 """
 
 from __future__ import annotations
@@ -154,22 +154,24 @@ class Blaze(Hazard):
             getattr(state, f"smoke_{name}").copy_(getattr(state, f"zone_{name}").gather(1, here)[:, 0])
         return fires._replace(power=burns)
 
-    def _exposure(self, state: BlazeState, fires: radiation.Fires, points: Tensor) -> tuple[Tensor, Tensor]:
+    def _exposure(
+        self, state: BlazeState, world: World, fires: radiation.Fires, points: Tensor
+    ) -> tuple[Tensor, Tensor]:
         """Flux [kW/m^2] on surfaces facing heat and gas temperature [C], both [E, P], at `points` [m], [E, P, 3]."""
         here = smoke.zone_of(state, points)
         warmth, face = state.zone_temperature.gather(1, here), state.zone_height.gather(1, here)
         room = self.room_temperature + radiation.KELVIN
         layer = state.zone_emissivity.gather(1, here) * radiation.STEFAN * ((warmth + radiation.KELVIN) ** 4 - room**4)
-        flux = radiation.flux(fires, points, state.height) + layer
+        flux = radiation.flux(fires, world.walls, points, state.height) + layer
         gas = torch.where(points[..., 2] > face, warmth, self.room_temperature)
-        rise = smoke.above(fires, points, self.room_temperature)
+        rise = smoke.above(fires, world.walls, points, self.room_temperature)
         return flux, (gas + rise).clamp(max=self.flame_temperature)
 
     def _warm(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> None:
         """Heat things, and the agent, for `step` seconds of fire."""
         things = state.status.shape[1]
         points = torch.cat([world.position, self._chest(world)], 1)
-        flux, gas = self._exposure(state, fires, points)
+        flux, gas = self._exposure(state, world, fires, points)
         reached = torch.where(touching.touched(fires, world, state.height), touching.TOUCH_FLUX, 0.0)
         taken = torch.maximum(flux[:, :things], reached) + radiation.CONVECTION * (
             gas[:, :things] - self.room_temperature
@@ -218,10 +220,10 @@ class Blaze(Hazard):
         apart = (state.flame_place[:, None, :, :2] - points[:, :, None, :2]).abs().amax(-1)
         inside = ((apart <= spread.STEP / 2) & lit(state, world.frame)[:, None]).any(-1)
         raised = points + points.new_tensor([0.0, 0.0, CHEST])
-        return inside | (self._exposure(state, self._fires(state, world), raised)[0] > self.agent_bound)
+        return inside | (self._exposure(state, world, self._fires(state, world), raised)[0] > self.agent_bound)
 
     def agent_info(self, state: BlazeState, world: World) -> dict[str, Tensor]:
-        flux, gas = (v[:, 0] for v in self._exposure(state, self._fires(state, world), self._chest(world)))
+        flux, gas = (v[:, 0] for v in self._exposure(state, world, self._fires(state, world), self._chest(world)))
         return {
             "agent_temperature": gas,
             "agent_flux": flux,

@@ -14,6 +14,7 @@ from hazard_ms.hazards.fire.fire import can_burn, enlisted, light
 from hazard_ms.hazards.fire.realistic import radiation, scorch
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.twozone.balance import Rooms
+from hazard_ms.simulation.walls import Partitions
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import rounding
 
@@ -42,7 +43,8 @@ def warm(state: BlazeState, world: World, fires: radiation.Fires, room: float, s
     drive = torch.ones((*heat.shape, spread.DIRECTIONS), device=heat.device) if blown is None else rounding.sqrt(blown)
     made = _Fires(fires.place.contiguous(), source, heat, fires.diameter.contiguous(), drive)
     launches = world.launches
-    structs = (launches.struct(kind, of) for kind, of in ((scorch.Fires, made), (Rooms, state), (scorch.Floor, state)))
+    sources = ((scorch.Fires, made), (Rooms, state), (scorch.Floor, state), (Partitions, world.walls))
+    structs = (launches.struct(kind, of) for kind, of in sources)
     launches.run(scorch.warm, tuple(state.free.shape), step, room, *structs)
 
 

@@ -8,8 +8,8 @@
                    warmer one cools to that by exp(-t / tau), tau = (pi / 4) k rho c / h^2 or m c / h
 
 Both laws are exact for a constant flux, in steps of any length; both are the published ones, without losses above the
-critical flux. Limits: sources are seen by everything (no shading); near a source the flux is held at that of a flame,
-FLAME_FLUX.
+critical flux. Limits: only walls stand in the way of heat, nothing else does; near a source the flux is held at that
+of a flame, FLAME_FLUX.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
+from hazard_ms.simulation.walls import Walls, blocked
 from hazard_ms.spec import rounding
 
 GRAVITY = 9.81  # acceleration of gravity [m/s^2]
@@ -54,17 +55,18 @@ def alight(fires: Fires) -> tuple[Fires, Tensor]:
     return Fires(*(v.index_select(1, found) for v in fires)), found
 
 
-def in_blocks(work: Callable[..., Tensor], fires: Fires, points: Tensor, *more: Tensor) -> Tensor:
-    """The result of `work` on fires, `points` [m], [E, P, 3], and `more`, [E, ...], as if on all environments at once.
+def in_blocks(work: Callable[..., Tensor], fires: Fires, walls: Walls, points: Tensor, *more: Tensor) -> Tensor:
+    """What `work` makes of fires, walls, `points` [m], [E, P, 3], and `more`, [E, ...], as if of all at once.
 
     On a CPU it works on so few of them at a time that all pairs of fires and points stay in its cache.
     """
     environments = len(points)
     block = environments if points.is_cuda else max(1, _BLOCK // max(1, points.shape[1] * fires.place.shape[1]))
     if block >= environments:
-        return work(fires, points, *more)
+        return work(fires, walls, points, *more)
     parts = (slice(k, k + block) for k in range(0, environments, block))
-    return torch.cat([work(Fires(*(v[p] for v in fires)), points[p], *(v[p] for v in more)) for p in parts])
+    cut = ((Fires(*(v[p] for v in fires)), walls.part(p), points[p], *(v[p] for v in more)) for p in parts)
+    return torch.cat([work(*arguments) for arguments in cut])
 
 
 def flame_length(power: Tensor, diameter: Tensor, ambient: float = 20.0) -> Tensor:
@@ -82,22 +84,26 @@ def point_source(power: Tensor, radiant: Tensor | float, square: Tensor, cosine:
     return cosine * radiant * power / (4.0 * math.pi * square.clamp(min=_TINY))
 
 
-def flux(fires: Fires, points: Tensor, ceiling: Tensor) -> Tensor:
+def flux(fires: Fires, walls: Walls, points: Tensor, ceiling: Tensor) -> Tensor:
     """Flux of all fires [kW/m^2], [E, P], on surfaces that face them at `points` [m], [E, P, 3], world frame.
 
-    Flames end at the `ceiling` [m], [E].
+    Flames end at the `ceiling` [m], [E]; `walls` keep their heat off.
     """
-    return in_blocks(_flux, fires, points, ceiling)
+    return in_blocks(_flux, fires, walls, points, ceiling)
 
 
-def _flux(fires: Fires, points: Tensor, ceiling: Tensor) -> Tensor:
+def _flux(fires: Fires, walls: Walls, points: Tensor, ceiling: Tensor) -> Tensor:
     raised = torch.minimum(flame_length(fires.power, fires.diameter), ceiling[:, None]) / 3.0
     square = (fires.place[..., 2] + raised)[..., None] - points[:, None, :, 2]
     square = square.square_()
     for axis in (0, 1):
         offset = fires.place[..., axis, None] - points[:, None, :, axis]
         square.addcmul_(offset, offset)
-    return point_source(fires.power[..., None], fires.radiant[..., None], square).clamp(max=FLAME_FLUX).sum(1)
+    given = point_source(fires.power[..., None], fires.radiant[..., None], square).clamp(max=FLAME_FLUX)
+    if walls.any:
+        source = torch.cat([fires.place[..., :2], (fires.place[..., 2] + raised)[..., None]], -1)
+        given = given.masked_fill(blocked(walls, source, points), 0.0)
+    return given.sum(1)
 
 
 class Solid(NamedTuple):

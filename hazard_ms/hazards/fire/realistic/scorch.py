@@ -15,6 +15,7 @@ from hazard_ms.hazards.fire.realistic import radiation, touching
 from hazard_ms.hazards.fire.realistic.twozone.balance import Rooms
 from hazard_ms.hazards.fire.realistic.twozone.zones import zone_at
 from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.walls import Partitions, clear
 
 wp.set_module_options(OPTIONS)
 
@@ -61,7 +62,7 @@ def warmed(rise: float, flux: float, most: float, inertia: float, loss: float, d
 
 
 @wp.kernel
-def warm(step: float, room: float, fires: Fires, rooms: Rooms, floor: Floor):
+def warm(step: float, room: float, fires: Fires, rooms: Rooms, floor: Floor, walls: Partitions):
     """Warm every free cell of the floors for `step` [s] in rooms of `room` [C]."""
     e, s, i, j = wp.tid()
     if floor.floor_inertia[e] <= 0.0 or not floor.free[e, s, i, j]:
@@ -74,11 +75,11 @@ def warm(step: float, room: float, fires: Fires, rooms: Rooms, floor: Floor):
     touched = float(0.0)
     for k in range(fires.heat.shape[1]):
         heat = fires.heat[e, k]
-        if heat > 0.0:
-            place = fires.place[e, k]
+        place = fires.place[e, k]
+        high = fires.source[e, k]
+        if heat > 0.0 and clear(e, wp.vec3(place[0], place[1], high), wp.vec3(x, y, 0.0), walls):
             dx = x - place[0]
             dy = y - place[1]
-            high = fires.source[e, k]
             flux = flux + wp.min(heat / wp.max(dx * dx + dy * dy + high * high, 1.0e-9), FLAME_FLUX)
             near = wp.abs(dx) + wp.abs(dy) - 0.5 * fires.width[e, k]
             if near < BESIDE - 0.5 * STEP and place[2] < ON_FLOOR:

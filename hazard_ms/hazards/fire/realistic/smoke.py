@@ -14,6 +14,7 @@ from torch import Tensor
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.radiation import AIR, GRAVITY, KELVIN, Fires, alight, in_blocks
 from hazard_ms.hazards.fire.realistic.twozone import balance, zones
+from hazard_ms.simulation.walls import Walls, blocked
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import rounding
 
@@ -69,20 +70,22 @@ def plume_rise(power: Tensor, radiant: Tensor | float, diameter: Tensor, height:
     )
 
 
-def above(fires: Fires, points: Tensor, room: float) -> Tensor:
+def above(fires: Fires, walls: Walls, points: Tensor, room: float) -> Tensor:
     """Rise of temperature [K], [E, P], at `points` [m], [E, P, 3], world frame, in the hottest plume around each.
 
-    It is 0 outside of all plumes.
+    It is 0 outside of all plumes, which `walls` cut off.
     """
-    return in_blocks(partial(_above, room), alight(fires)[0], points)
+    return in_blocks(partial(_above, room), alight(fires)[0], walls, points)
 
 
-def _above(room: float, fires: Fires, points: Tensor) -> Tensor:
+def _above(room: float, fires: Fires, walls: Walls, points: Tensor) -> Tensor:
     apart = points[:, None] - fires.place[:, :, None]  # [E, M, P, 3]
     height = apart[..., 2]
     aside = apart[..., :2].square().sum(-1)
     wide = fires.diameter[..., None] / 2 + PLUME_WIDTH * height
     inside = (height >= 0) & (aside <= wide.square()) & (fires.power > 0)[..., None]
+    if walls.any:
+        inside &= ~blocked(walls, fires.place, points)
     rise = plume_rise(fires.power[..., None], fires.radiant[..., None], fires.diameter[..., None], height, room)
     return torch.where(inside, rise, 0.0).amax(1)
 

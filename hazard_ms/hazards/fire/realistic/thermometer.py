@@ -17,6 +17,7 @@ from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.twozone.balance import Rooms
 from hazard_ms.hazards.fire.realistic.twozone.zones import zone_at
 from hazard_ms.kernels.launch import OPTIONS, of_environments
+from hazard_ms.simulation.walls import Partitions, clear
 from hazard_ms.simulation.world import World
 
 wp.set_module_options(OPTIONS)
@@ -80,6 +81,7 @@ def show(
     hottest: float,
     fires: Fires,
     rooms: Rooms,
+    walls: Partitions,
     found: wp.array2d(dtype=float),
 ):
     """Set `found` to what plates at `points` [m] show [C]; `room` is the room's temperature, `hottest` the highest."""
@@ -93,13 +95,16 @@ def show(
         power = fires.power[e, m]
         if power > 0.0:
             radiant, diameter = fires.radiant[e, m], fires.diameter[e, m]
-            apart = point - fires.place[e, m]
+            place = fires.place[e, m]
+            apart = point - place
             aside = apart[0] * apart[0] + apart[1] * apart[1]
-            below = apart[2] - wp.min(flame_length(power, diameter, 20.0), rooms.height[e]) / 3.0
+            raised = wp.min(flame_length(power, diameter, 20.0), rooms.height[e]) / 3.0
+            below = apart[2] - raised
             given = radiant * power / (SPHERE * wp.max(aside + below * below, TINY))
-            flux = flux + wp.min(given, FLAME_FLUX)
+            if clear(e, place + wp.vec3(0.0, 0.0, raised), point, walls):
+                flux = flux + wp.min(given, FLAME_FLUX)
             wide = diameter / 2.0 + PLUME_WIDTH * apart[2]
-            if apart[2] >= 0.0 and aside <= wide * wide:
+            if apart[2] >= 0.0 and aside <= wide * wide and clear(e, place, point, walls):
                 rise = wp.max(rise, plume_rise(power, radiant, diameter, apart[2], room))
     gas = room
     if point[2] > rooms.zone_height[e, r]:
@@ -117,6 +122,7 @@ def shown(
     points = of_environments(points, world.num_envs)
     found = torch.empty_like(points[..., 0])
     of_fires = world.launches.struct(Fires, radiation.Fires(*(v.contiguous() for v in fires)))
-    arguments = (points, room, hottest, of_fires, world.launches.struct(Rooms, state), found)
+    sources = (world.launches.struct(kind, of) for kind, of in ((Rooms, state), (Partitions, world.walls)))
+    arguments = (points, room, hottest, of_fires, *sources, found)
     world.launches.run(show, tuple(found.shape), *arguments)
     return found

@@ -9,6 +9,7 @@ from torch import Tensor
 
 from hazard_ms.hazards.fire import floor, spread
 from hazard_ms.hazards.fire.realistic import radiation
+from hazard_ms.simulation.walls import Walls, blocked
 from hazard_ms.simulation.world import World
 
 LEAN = 0.05  # how far a flame leans over [m] [ours]
@@ -22,10 +23,12 @@ def touched(fires: radiation.Fires, world: World, ceiling: Tensor) -> Tensor:
     """
     hot, number = radiation.alight(fires)
     half = floor.half_spans(world.rotation, world.extent)
-    return radiation.in_blocks(partial(_touched, number), hot, world.position, half, ceiling)
+    return radiation.in_blocks(partial(_touched, number), hot, world.walls, world.position, half, ceiling)
 
 
-def _touched(number: Tensor, fires: radiation.Fires, position: Tensor, half: Tensor, ceiling: Tensor) -> Tensor:
+def _touched(
+    number: Tensor, fires: radiation.Fires, walls: Walls, position: Tensor, half: Tensor, ceiling: Tensor
+) -> Tensor:
     """As `touched`, by fires of which those with a `number`, [M], below B are things."""
     bodies = half.shape[1]
     own, thing = number.clamp(max=bodies - 1), number < bodies
@@ -37,4 +40,7 @@ def _touched(number: Tensor, fires: radiation.Fires, position: Tensor, half: Ten
     low, high = (position - half)[..., 2], (position + half)[..., 2]
     level = (low[:, None] <= top[..., None]) & (high[:, None] >= fires.place[..., None, 2])
     other = number[:, None] != torch.arange(bodies, device=number.device)
-    return (beside & level & (fires.power > 0)[..., None] & other).any(1)
+    near = beside & level & (fires.power > 0)[..., None] & other
+    if walls.any:
+        near &= ~blocked(walls, fires.place, position)
+    return near.any(1)

@@ -1,0 +1,144 @@
+"""What lies between two places: the inner walls of a scene, and the doorways in them (torch and Warp).
+
+Everything that goes straight, as heat and flames do, asks here: a wall lets it pass where the straight line from one
+place to the other goes through an open doorway. Places are points [m], [..., 3], world frame; walls are planes in the
+middle of their thickness, and run from one side of a room to the other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+import warp as wp
+from torch import Tensor
+
+from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.spec import SceneSpec
+
+wp.set_module_options(OPTIONS)
+
+NOWHERE = 1e6  # where a wall that does not exist is [m]: farther than any place
+Frame = wp.types.vector(length=5, dtype=float)
+
+
+@dataclass(frozen=True)
+class Walls:
+    """The inner walls of E scenes: W walls and D doorways in each, at least one of both; some do not exist."""
+
+    any: bool  # whether any scene has one
+    wall: Tensor  # axis that it crosses (0 x, 1 y), where, and half of its thickness [m], [E, W, 3]
+    doorway: Tensor  # number of its wall (-1 for none), lower and upper end along it, sill and top [m], [E, D, 5]
+
+    @classmethod
+    def of(cls, specs: tuple[SceneSpec, ...], device: torch.device | str) -> Walls:
+        """The inner walls of `specs`."""
+        walls = [[(float(p.axis == "x"), p.at, p.thickness / 2) for p in s.room.partitions] for s in specs]
+        doorways = [_doorways(s) for s in specs]
+        return cls(
+            any(walls), _padded(walls, (0.0, NOWHERE, 0.0), device), _padded(doorways, (-1.0, *[0.0] * 4), device)
+        )
+
+    @classmethod
+    def none(cls, count: int, device: torch.device | str = "cpu") -> Walls:
+        """`count` scenes without inner walls."""
+        wall, doorway = (0.0, NOWHERE, 0.0), (-1.0, *[0.0] * 4)
+        made = (torch.tensor(row, device=device).expand(count, 1, len(row)).contiguous() for row in (wall, doorway))
+        return cls(False, *made)
+
+    def part(self, rows: Tensor | slice) -> Walls:
+        """The walls of the environments `rows`."""
+        return Walls(self.any, self.wall[rows], self.doorway[rows])
+
+
+def _doorways(spec: SceneSpec) -> list[tuple[float, ...]]:
+    numbers = {p.name: float(k) for k, p in enumerate(spec.room.partitions)}
+    return [
+        (numbers[o.wall], o.centre - o.width / 2, o.centre + o.width / 2, o.sill, o.sill + o.height)
+        for o in spec.room.openings
+        if o.kind == "doorway"
+    ]
+
+
+def _padded(rows: list[list[tuple[float, ...]]], empty: tuple[float, ...], device: torch.device | str) -> Tensor:
+    length = max(1, *(len(row) for row in rows))
+    return torch.tensor([[*row, *[empty] * (length - len(row))] for row in rows], device=device)
+
+
+def blocked(walls: Walls, here: Tensor, there: Tensor) -> Tensor:
+    """Whether a wall lies between the places `here` [m], [E, M, 3], and `there` [m], [E, P, 3]: [E, M, P], bool."""
+    here, there = here[:, :, None], there[:, None]
+    found = torch.zeros(here.shape[0], here.shape[1], there.shape[2], dtype=torch.bool, device=here.device)
+    for w in range(walls.wall.shape[1]):
+        across = walls.wall[:, w, 0, None, None] > 0
+        at = walls.wall[:, w, 1, None, None]
+        (mine, along), (yours, end) = ((_across(across, p), _across(~across, p)) for p in (here, there))
+        crosses = (mine < at) != (yours < at)
+        share = (at - mine) / torch.where(crosses, yours - mine, 1.0)
+        through = torch.zeros_like(found)
+        for d in range(walls.doorway.shape[1]):
+            number, low, high, sill, top = (v[:, None, None] for v in walls.doorway[:, d].unbind(-1))
+            place = along + share * (end - along)
+            height = here[..., 2] + share * (there[..., 2] - here[..., 2])
+            through |= (number == w) & (place > low) & (place < high) & (height >= sill) & (height < top)
+        found |= crosses & ~through
+    return found
+
+
+def _across(across: Tensor, place: Tensor) -> Tensor:
+    """The coordinate of `place` along y where `across` holds, else along x."""
+    return torch.where(across, place[..., 1], place[..., 0])
+
+
+def within(walls: Walls, x: Tensor, y: Tensor, half: float) -> Tensor:
+    """Whether squares of half the edge `half` [m] around `x`, `y` [m], [E, ...], overlap a wall: [E, ...], bool.
+
+    In a doorway they do not.
+    """
+    x, y = torch.broadcast_tensors(x, y)
+    found = torch.zeros(x.shape, dtype=torch.bool, device=x.device)
+    like = (-1, *[1] * (x.ndim - 1))
+    for w in range(walls.wall.shape[1]):
+        axis, at, thick = (v.view(like) for v in walls.wall[:, w].unbind(-1))
+        place, along = torch.where(axis > 0, y, x), torch.where(axis > 0, x, y)
+        through = torch.zeros_like(found)
+        for d in range(walls.doorway.shape[1]):
+            number, low, high, sill, _ = (v.view(like) for v in walls.doorway[:, d].unbind(-1))
+            through |= (number == w) & (sill <= 0.0) & (along - half >= low) & (along + half <= high)
+        found |= ((place - at).abs() < thick + half) & ~through
+    return found
+
+
+@wp.struct
+class Partitions:
+    """The fields of Walls with the same names."""
+
+    wall: wp.array2d(dtype=wp.vec3)
+    doorway: wp.array2d(dtype=Frame)
+
+
+@wp.func
+def passes(e: int, w: int, place: float, height: float, walls: Partitions) -> bool:
+    """Whether the wall `w` of environment `e` is open at `place` along it and at `height` [m]."""
+    for d in range(walls.doorway.shape[1]):
+        hole = walls.doorway[e, d]
+        if int(hole[0]) == w and place > hole[1] and place < hole[2] and height >= hole[3] and height < hole[4]:
+            return True
+    return False
+
+
+@wp.func
+def clear(e: int, here: wp.vec3, there: wp.vec3, walls: Partitions) -> bool:
+    """Whether no wall of environment `e` lies between two places [m], see `blocked`."""
+    for w in range(walls.wall.shape[1]):
+        wall = walls.wall[e, w]
+        mine, yours = here[0], there[0]
+        start, end = here[1], there[1]
+        if wall[0] > 0.0:
+            mine, yours = here[1], there[1]
+            start, end = here[0], there[0]
+        if (mine < wall[1]) != (yours < wall[1]):
+            share = (wall[1] - mine) / (yours - mine)
+            if not passes(e, w, start + share * (end - start), here[2] + share * (there[2] - here[2]), walls):
+                return False
+    return True

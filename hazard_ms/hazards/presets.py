@@ -76,8 +76,8 @@ def fire(preset: str, severity: str = USUAL) -> Fire | Blaze:
     law, level = _FIRE[known(preset)], SEVERITIES[chosen(severity, preset)]
     if not isinstance(law, Blaze):
         return law
-    law = dataclasses.replace(law, first_release=level.fire_start, first_base=level.fire_base)
-    return dataclasses.replace(law, growth=level.fire_growth)
+    first = {"first_release": level.fire_start, "first_base": level.fire_base, "first_height": level.fire_height}
+    return dataclasses.replace(law, growth=level.fire_growth, **first)
 
 
 def flood(preset: str, severity: str = USUAL) -> Flood:

@@ -30,12 +30,13 @@ class Severity:
     fire_growth: float  # of the fires with which a scene begins [kW/s^2]
     fire_start: float  # their highest heat release [kW]
     fire_base: float  # diameter of the base of one that gives off so much [m] [ours]
+    fire_height: float  # of what burns at the start: bags of rubbish, a chair, a wardrobe [m] [ours]
 
 
 SEVERITIES = {
-    "moderate": Severity(17.0, 0.3, 0.01172, 350.0, 0.6),
-    "severe": Severity(28.0, 0.5, 0.0469, 2100.0, 0.9),
-    "extreme": Severity(40.0, 1.0, 0.1876, 4500.0, 1.0),
+    "moderate": Severity(17.0, 0.3, 0.01172, 350.0, 0.6, 0.6),
+    "severe": Severity(28.0, 0.5, 0.0469, 2100.0, 0.9, 0.9),
+    "extreme": Severity(40.0, 1.0, 0.1876, 4500.0, 1.0, 1.8),
 }
 USUAL = "severe"
 

@@ -39,6 +39,7 @@ from hazard_ms.hazards.fire.realistic import (
     tenability,
     thermometer,
     touching,
+    wetting,
 )
 from hazard_ms.hazards.fire.realistic.blaze_state import HEATED, BlazeState
 from hazard_ms.hazards.fire.realistic.twozone import rooms
@@ -72,11 +73,13 @@ class Blaze(Hazard):
     growth: float = SEVERITIES[USUAL].fire_growth  # of all fires at the start, and of each later one [kW/s^2]
     first_release: float = SEVERITIES[USUAL].fire_start  # highest heat release of all fires at the start [kW]
     first_base: float = SEVERITIES[USUAL].fire_base  # diameter of the base of one that gives off so much [m]
+    first_height: float = SEVERITIES[USUAL].fire_height  # of what burns at the start [m]
     horizon: float = 50.0  # length of episodes that the floor window and the roster have room for [s]
     agent_bound: float = 10.0  # flux that keeps the agent out: the limit of class III [kW/m^2] [docs/physics.md 3.1]
 
     def __post_init__(self) -> None:
-        for name in ("every", "time_scale", "growth", "first_release", "first_base", "horizon", "agent_bound"):
+        sizes = ("first_release", "first_base", "first_height", "horizon")
+        for name in ("every", "time_scale", "growth", *sizes, "agent_bound"):
             if not 0 < getattr(self, name) < math.inf:
                 raise ValueError(f"{name} must be a positive number, got {getattr(self, name)}")
         if not 0 < self.radiant < 1:
@@ -115,12 +118,13 @@ class Blaze(Hazard):
         each = self.first_release / first.sum(1, keepdim=True).clamp(min=1)
         state.flame_peak[rows] = torch.where(first, each, burners.CELL_RELEASE)
         state.flame_age[rows] = torch.where(first, ESTABLISHED, 0.0)
+        state.first_height[rows] = self.first_height
         kindling.describe_rooms(state, world, rows)
         kindling.describe_things(state, world, rows)
 
     @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
     def advance(self, state: BlazeState, world: World, dt: float) -> None:
-        coupling.drench(state, world)
+        wetting.soak(state, world)
         due = world.chance.due(self.every)
         if due is not None:
             waiting = {} if none_set(~due) else {name: getattr(state, name).clone() for name in HEATED}
@@ -181,6 +185,7 @@ class Blaze(Hazard):
             max=self.flame_temperature
         )
         state.temperature.copy_(torch.where(passive, warmed, state.temperature))
+        wetting.dry(state, taken, step)
         state.agent_temperature.copy_(gas[:, -1])
         state.agent_dose.add_(tenability.dose_rate(gas[:, -1], flux[:, -1]) * step)
 

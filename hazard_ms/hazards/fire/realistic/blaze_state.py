@@ -17,7 +17,7 @@ HEATED = (  # names of the quantities that an update of heat changes
     *("temperature", "status", "burn_age", "burn_updates", "agent_temperature", "agent_dose", "heat_release"),
     *("smoke_height", "smoke_temperature", "smoke_density", "vents", "zone_mass", "zone_energy", "zone_soot"),
     *("zone_lack", "zone_wall", "zone_upper", "zone_lower", "zone_pressure", "zone_height", "zone_temperature"),
-    *("zone_density", "zone_emissivity", "zone_share", "floor_temperature"),
+    *("zone_density", "zone_emissivity", "zone_share", "floor_temperature", "wet"),
 )
 
 
@@ -42,6 +42,10 @@ class BlazeState(FireState):
     )
     soot_yield: Tensor = quantity("E B", "kg/kJ", "soot per heat")
     flame_age: Tensor = quantity("E F", "s", "time since the flame appeared")
+    under_water: Tensor = quantity("E B", "", "share of its height that is under water now", low=0.0, high=1.0)
+    wet: Tensor = quantity("E B", "", "share of its surface that is wet", low=0.0, high=1.0)
+    flame_dry: Tensor = quantity("E F", "", "share of the flame that is above water", fill=1.0, low=0.0, high=1.0)
+    first_height: Tensor = quantity("E", "m", "height of what burns first", fill=1.0, low=0.0)
     flame_peak: Tensor = quantity("E F", "kW", "heat release of the flame once grown", low=0.0)
     floor_ignition: Tensor = quantity("E", "C", "ignition temperature of the floor", fill=1000.0)
     floor_critical: Tensor = quantity("E", "kW/m^2", "least flux that ignites it", fill=1.0)

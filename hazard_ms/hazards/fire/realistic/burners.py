@@ -47,6 +47,8 @@ class Burners:
     flame_birth: wp.array2d(dtype=wp.int64)
     flame_age: wp.array2d(dtype=float)
     flame_peak: wp.array2d(dtype=float)
+    flame_dry: wp.array2d(dtype=float)
+    wet: wp.array2d(dtype=float)
 
 
 @wp.struct
@@ -126,7 +128,7 @@ def burn(
         if row >= 0:
             share[e, m] = curves.shares[row]
         if bodies.exists[e, m] and not bodies.safe[e, m] and burners.status[e, m] == ON_FIRE:
-            heat = released(burners, curves, e, m)
+            heat = (1.0 - burners.wet[e, m]) * released(burners, curves, e, m)
     else:
         f = m - things
         most = burners.flame_peak[e, f]
@@ -136,7 +138,7 @@ def burn(
             wide = first_base * wp.sqrt(part)
         diameter[e, m] = wide
         if burners.flame_cell[e, f] >= wp.int64(0) and burners.flame_birth[e, f] <= frame[e]:
-            heat = wp.min(t_squared(floor_growth * part, burners.flame_age[e, f]), most)
+            heat = burners.flame_dry[e, f] * wp.min(t_squared(floor_growth * part, burners.flame_age[e, f]), most)
     power[e, m] = heat
 
 

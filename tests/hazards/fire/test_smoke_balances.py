@@ -1,4 +1,4 @@
-"""Balances of the smoke over whole episodes: oxygen, heat and pressure, in rooms of all splits and by all severities."""
+"""Balances of the smoke over whole episodes: oxygen, heat and pressure, in rooms of all splits, by all severities."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def check(room: Room, places: list[tuple[float, float]], growth: float, most: fl
 
 
 def opened(room: Room) -> Room:
-    """The room with its outer doors open: as doorways that are its own walls' openings cannot be told, as wide panes."""
+    """The room with holes for its outer doors once it is hot: windows, whose panes fall out."""
     holes = tuple(
         Opening("window", o.wall, o.centre, o.width, o.height, o.sill) if o.kind == "door" else o for o in room.openings
     )

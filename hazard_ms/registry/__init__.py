@@ -214,7 +214,7 @@ register_hazard(
     "fire",
     "hazard_ms.hazards.presets:fire",
     "hazard_ms.effects.fire:FireEffects",
-    ("hazard_ms.validation.fire_cases:cases", "hazard_ms.validation.blaze_cases:cases"),
+    tuple(f"hazard_ms.validation.{name}_cases:cases" for name in ("fire", "blaze", "smoke")),
     "hazard_ms.validation.curves:fire_charts",
 )
 register_hazard(

@@ -56,7 +56,7 @@ def test_fires_grow_to_a_megawatt_in_the_published_time(severity: str) -> None:
     fire, usual = presets.fire("realistic", severity), presets.fire("realistic")
     assert isinstance(fire, Blaze) and isinstance(usual, Blaze)
     level = SEVERITIES[severity]
-    first = {"first_release": level.fire_start, "first_base": level.fire_base}
+    first = {"first_release": level.fire_start, "first_base": level.fire_base, "first_height": level.fire_height}
     assert fire == dataclasses.replace(usual, growth=level.fire_growth, **first)
 
 

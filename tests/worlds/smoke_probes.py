@@ -6,7 +6,7 @@ import torch
 import warp as wp
 from torch import Tensor
 
-from hazard_ms.hazards.fire.realistic.twozone import lining, vents
+from hazard_ms.hazards.fire.realistic.twozone import combustion, exchange, lining, plumes, vents
 from hazard_ms.kernels.launch import OPTIONS, Launches
 
 wp.set_module_options(OPTIONS)
@@ -63,3 +63,20 @@ def passed(opening: tuple[float, ...], a: tuple[float, ...], b: tuple[float, ...
     found = torch.empty(4)
     Launches().run(_pass, (1,), *opening, torch.tensor(a), torch.tensor(b), found)
     return found.tolist()
+
+
+@wp.kernel
+def _laws(given: wp.array2d(dtype=float), found: wp.array2d(dtype=float)):  # type: ignore[valid-type]
+    n = wp.tid()
+    a, b, c, d, e = given[n, 0], given[n, 1], given[n, 2], given[n, 3], given[n, 4]
+    found[n, 0] = exchange.spill(a, b, c, d, e)
+    found[n, 1] = plumes.entrained(a, b, c, d, e)
+    found[n, 2] = plumes.flame_length(a, b)
+    found[n, 3] = combustion.monoxide(a)
+
+
+def law(name: str, *numbers: float) -> float:
+    """What the law `name` of the smoke gives for some numbers: spill, entrained, flame_length or monoxide."""
+    found = torch.zeros(1, 4)
+    Launches().run(_laws, (1,), torch.tensor([[*numbers, *[0.0] * (5 - len(numbers))]]), found)
+    return float(found[0, ("spill", "entrained", "flame_length", "monoxide").index(name)])

@@ -19,6 +19,8 @@ TELLS_OF_BLAZE = {
     "agent_flux": Quantity("radiation on its chest", "kW/m^2", 0.0),
     "agent_dose": Quantity("heat borne so far; 1 is unbearable for people", "", 0.0),
     "agent_thermal_class": Quantity("thermal class I to IV of its exposure, 0 for none", "", 0.0, 4.0),
+    "agent_toxic_dose": Quantity("poison breathed so far; 1 makes people helpless", "", 0.0),
+    "agent_visibility": Quantity("how far it sees through the smoke at its chest", "m", 0.0, 100.0),
     "agent_in_smoke": Quantity("the smoke reaches down to its chest", low=0.0, high=1.0),
 }
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import torch
 
-from hazard_ms.hazards.fire.realistic import radiation, smoke
+from hazard_ms.hazards.fire.realistic import kindling, radiation, smoke
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.twozone.lining import GYPSUM, Lining
@@ -39,7 +39,6 @@ class Burner:
     lining: Lining = GYPSUM
     radiant: float = 0.35  # share of the heat that is radiated
     ambient: float = 20.0  # [C]
-    hottest: float = 2000.0  # [C]
     soot: float = WOOD_SOOT  # [kg/kJ]
     step: float = 0.75  # [s]
 
@@ -65,10 +64,10 @@ def fire_at(x: float, y: float, burner: Burner) -> radiation.Fires:
 
 def burn(state: BlazeState, world: World, burner: Burner, fire: radiation.Fires, seconds: float) -> float:
     """Let the fire burn for `seconds`; returns its heat release in the end [kW]."""
-    soot = torch.full_like(fire.power, burner.soot)
+    yields = fire.power.new_tensor([burner.soot, 0.0, 0.0, 0.0, 1.0 / 11900]).expand(*fire.power.shape, -1).contiguous()
     power = fire.power
     for _ in range(round(seconds / burner.step)):
-        power = smoke.advance(state, world, fire, soot, burner.ambient, burner.hottest, burner.step)
+        power = smoke.advance(state, world, fire, yields, burner.ambient, burner.step)
     return float(power.sum())
 
 
@@ -88,11 +87,11 @@ def course(burner: Burner, times: tuple[float, ...] = TIMES) -> dict[float, Seen
     door = Opening("door", "south", length / 2, burner.vent[0], burner.vent[2] - burner.vent[1], burner.vent[1])
     state, world = rooms(Room((length, width), high, openings=(door,)), burner.lining)
     state.vents[0, 0, 0] = burner.vent[0]
-    state.zone_upper[:] = state.zone_lower[:] = state.zone_temperature[:] = burner.ambient
+    kindling.fill_with_air(state, torch.arange(1), burner.ambient)
     fire, seen, before = fire_at(length / 2, width / 2, burner), {}, 0.0
     for now in times:
         burn(state, world, burner, fire, now - before)
-        mean = float(state.zone_energy) / (1.2 * length * width * high)
+        mean = float((state.zone_smoke + state.zone_air)[..., 1]) / (1.2 * length * width * high)
         seen[now] = Seen(
             float(state.zone_temperature) - burner.ambient, float(state.zone_height), mean, float(state.zone_share)
         )

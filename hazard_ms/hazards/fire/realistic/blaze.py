@@ -48,7 +48,7 @@ from hazard_ms.spec import Quantity
 from hazard_ms.spec.severity import SEVERITIES, USUAL
 
 ESTABLISHED = 60.0  # age of the fires with which a scene begins [s] [ours]
-FLOOR_SOOT = fuels.MATERIALS["wood"].soot / fuels.MATERIALS["wood"].combustion  # of burning floor, per heat [kg/kJ]
+FLOOR_YIELDS = kindling.yields(fuels.MATERIALS["wood"])  # of burning floor, per heat [kg/kJ]
 UPDATE = 1 / 6  # unit in which pictures count the age of flames on things: 5 frames of the original [s]
 CHEST = 1.0  # height at which the agent feels heat and smoke [m] [ours]
 
@@ -119,7 +119,7 @@ class Blaze(Hazard):
         state.flame_peak[rows] = torch.where(first, each, burners.CELL_RELEASE)
         state.flame_age[rows] = torch.where(first, ESTABLISHED, 0.0)
         state.first_height[rows] = self.first_height
-        kindling.describe_rooms(state, world, rows)
+        kindling.describe_rooms(state, world, rows, self.room_temperature)
         kindling.describe_things(state, world, rows)
 
     @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
@@ -149,9 +149,9 @@ class Blaze(Hazard):
 
     def _smoke(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> radiation.Fires:
         """Advance the smoke by `step` seconds of fire; returns the fires as far as they have oxygen."""
-        things = state.status.shape[1]
-        soot = torch.cat([state.soot_yield, torch.full_like(fires.power[:, things:], FLOOR_SOOT)], 1)
-        burns = smoke.advance(state, world, fires, soot, self.room_temperature, self.flame_temperature, step)
+        floor = fires.power.new_tensor(FLOOR_YIELDS).expand(*state.flame_age.shape, -1)
+        yields = torch.cat([state.yields, floor], 1)
+        burns = smoke.advance(state, world, fires, yields, self.room_temperature, step)
         state.heat_release.copy_(burns.sum(1))
         here = smoke.zone_of(state, world.agent_position[:, None])
         for name in ("height", "temperature", "density"):
@@ -167,9 +167,10 @@ class Blaze(Hazard):
         room = self.room_temperature + radiation.KELVIN
         layer = state.zone_emissivity.gather(1, here) * radiation.STEFAN * ((warmth + radiation.KELVIN) ** 4 - room**4)
         flux = radiation.flux(fires, world.walls, points, state.height) + layer
-        gas = torch.where(points[..., 2] > face, warmth, self.room_temperature)
+        gas = torch.where(points[..., 2] > face, warmth, state.zone_low_temperature.gather(1, here))
         rise = smoke.above(fires, world.walls, points, self.room_temperature)
-        return flux, (gas + rise).clamp(max=self.flame_temperature)
+        jet = self.room_temperature + smoke.under_ceiling(fires, world.walls, points, state.height)
+        return flux, torch.maximum(gas, torch.maximum(gas + rise, jet).clamp(max=self.flame_temperature))
 
     def _warm(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> None:
         """Heat things, and the agent, for `step` seconds of fire."""
@@ -187,7 +188,9 @@ class Blaze(Hazard):
         state.temperature.copy_(torch.where(passive, warmed, state.temperature))
         wetting.dry(state, taken, step)
         state.agent_temperature.copy_(gas[:, -1])
-        state.agent_dose.add_(tenability.dose_rate(gas[:, -1], flux[:, -1]) * step)
+        seconds = step / self.time_scale  # the agent's: it does not age as fast as the fire
+        state.agent_dose.add_(tenability.dose_rate(gas[:, -1], flux[:, -1]) * seconds)
+        state.agent_toxic_dose.add_(tenability.toxic_rate(smoke.breathed(state, self._chest(world))[:, 0]) * seconds)
 
     def _burn(self, state: BlazeState, world: World, step: float) -> None:
         """Let things catch fire and burn out."""
@@ -237,4 +240,6 @@ class Blaze(Hazard):
             "agent_overheated": state.agent_dose >= tenability.UNBEARABLE,
             "agent_in_fire": self.forbids(state, world, world.agent_position[:, None])[:, 0],
             "agent_in_smoke": state.smoke_height < CHEST,
+            "agent_toxic_dose": state.agent_toxic_dose.clone(),
+            "agent_visibility": smoke.visibility(state, self._chest(world))[:, 0],
         }

@@ -11,13 +11,16 @@ from hazard_ms.hazards.base import quantity
 from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.hazards.fire.realistic import burning, radiation
 from hazard_ms.hazards.fire.realistic.fuels import CURVES
+from hazard_ms.hazards.fire.realistic.twozone.gas import PARTS
 from hazard_ms.hazards.fire.realistic.twozone.lining import CELLS
+from hazard_ms.hazards.fire.realistic.twozone.zones import YIELDS
 
 HEATED = (  # names of the quantities that an update of heat changes
     *("temperature", "status", "burn_age", "burn_updates", "agent_temperature", "agent_dose", "heat_release"),
-    *("smoke_height", "smoke_temperature", "smoke_density", "vents", "zone_mass", "zone_energy", "zone_soot"),
-    *("zone_lack", "zone_wall", "zone_upper", "zone_lower", "zone_pressure", "zone_height", "zone_temperature"),
-    *("zone_density", "zone_emissivity", "zone_share", "floor_temperature", "wet"),
+    *("smoke_height", "smoke_temperature", "smoke_density", "vents", "zone_smoke", "zone_air", "zone_wall"),
+    *("zone_upper", "zone_lower", "zone_pressure", "zone_height", "zone_temperature", "zone_low_temperature"),
+    *("zone_density", "zone_low_density", "zone_emissivity", "zone_share", "zone_draught"),
+    *("floor_temperature", "agent_toxic_dose", "wet"),
 )
 
 
@@ -40,7 +43,7 @@ class BlazeState(FireState):
     curve: Tensor = quantity(
         "E B", "", "row of its measured curve; -1 for none", dtype="int", fill=-1, low=-1, high=len(CURVES) - 1
     )
-    soot_yield: Tensor = quantity("E B", "kg/kJ", "soot per heat")
+    yields: Tensor = quantity(f"E B {YIELDS}", "kg/kJ", "soot, CO, HCN with air and without, and fuel per heat")
     flame_age: Tensor = quantity("E F", "s", "time since the flame appeared")
     under_water: Tensor = quantity("E B", "", "share of its height that is under water now", low=0.0, high=1.0)
     wet: Tensor = quantity("E B", "", "share of its surface that is wet", low=0.0, high=1.0)
@@ -65,24 +68,28 @@ class BlazeState(FireState):
     zone_end: Tensor = quantity("E R", "m", "where each room ends along the row", fill=torch.inf)
     zone_area: Tensor = quantity("E R", "m^2", "area of the floor; 0 for no room", low=0.0)
     zone_edge: Tensor = quantity("E R", "m", "circumference of the room")
-    zone_mass: Tensor = quantity("E R", "kg", "mass of the layer", low=0.0)
-    zone_energy: Tensor = quantity("E R", "kJ", "its excess heat", low=0.0)
-    zone_soot: Tensor = quantity("E R", "kg", "its soot", low=0.0)
-    zone_lack: Tensor = quantity("E R", "kg", "oxygen that it lacks", low=0.0)
+    zone_smoke: Tensor = quantity(
+        f"E R {PARTS}", "", "the layer: mass [kg], excess heat [kJ], soot, lack of oxygen, CO, HCN [kg]"
+    )
+    zone_air: Tensor = quantity(f"E R {PARTS}", "", "the same of the air below it")
     zone_wall: Tensor = quantity("E R", "m^2", "ceiling and walls that it covers", low=0.0)
     zone_upper: Tensor = quantity(f"E R {CELLS}", "C", "temperature in the depth of what it covers", fill=20.0)
     zone_lower: Tensor = quantity(f"E R {CELLS}", "C", "the same of the floor and the walls below it", fill=20.0)
     zone_pressure: Tensor = quantity("E R", "Pa", "pressure at the floor above the outside")
     zone_height: Tensor = quantity("E R", "m", "lower face of the layer above the floor", fill=2.6, low=0.0)
     zone_temperature: Tensor = quantity("E R", "C", "temperature of the layer", fill=20.0)
+    zone_low_temperature: Tensor = quantity("E R", "C", "temperature of the air below it", fill=20.0)
     zone_density: Tensor = quantity("E R", "1/m", "extinction of light in the layer", low=0.0)
+    zone_low_density: Tensor = quantity("E R", "1/m", "extinction of light in the air below it", low=0.0)
     zone_emissivity: Tensor = quantity("E R", "", "emissivity of the layer", low=0.0, high=1.0)
     zone_share: Tensor = quantity("E R", "", "share of the fires that has oxygen", fill=1.0, low=0.0, high=1.0)
+    zone_draught: Tensor = quantity("E R", "m/s", "speed of the air that openings let in, over the room's width")
     heat_release: Tensor = quantity("E", "kW", "heat release of all that burns")
     smoke_height: Tensor = quantity("E", "m", "lower face of the layer in the agent's room", fill=2.6, low=0.0)
     smoke_temperature: Tensor = quantity("E", "C", "temperature of that layer", fill=20.0)
     smoke_density: Tensor = quantity("E", "1/m", "extinction of light in it: one sees about 3 / it", low=0.0)
     agent_dose: Tensor = quantity("E", "", "heat that the agent has borne; 1 is too much for people")
+    agent_toxic_dose: Tensor = quantity("E", "", "poison that it has breathed; 1 makes people helpless", low=0.0)
 
     @property
     def course(self) -> burning.Course:

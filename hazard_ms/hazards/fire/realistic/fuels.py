@@ -28,29 +28,32 @@ class Material:
     combustion: float  # effective heat of combustion [kJ/kg]
     growth: float  # growth of the heat release [kW/s^2]
     soot: float  # soot per burnt mass [kg/kg]
+    monoxide: float  # carbon monoxide per burnt mass with enough air [kg/kg] [M: SFPE, Tewarson]
+    cyanide: float = 0.0  # hydrogen cyanide per burnt mass with enough air [kg/kg] [M: SFPE, Purser]
+    cyanide_smothered: float = 0.0  # the same without [kg/kg] [M: SFPE, Purser]
 
 
 MATERIALS: dict[str, Material] = {
     # particleboard 12.7 mm; plywood's heat of combustion; wood crib's 11 g/m^2 s [3.1]; soot of wood [M]
-    "wood": Material(412, 18, 0.93, 0, 131, 11900, MEDIUM, 0.015),
+    "wood": Material(412, 18, 0.93, 0, 131, 11900, MEDIUM, 0.015, 0.004),
     # paper's ignition [3.1: NUREG-1805] on a stack like insulation board, critical flux scaled to it; corrugated
     # paper's 14 g/m^2 s
-    "paper": Material(230, 8.8, 0.46, 0, 182, 13000, MEDIUM, 0.015),
+    "paper": Material(230, 8.8, 0.46, 0, 182, 13000, MEDIUM, 0.015, 0.004),
     # a wall of corrugated board: 0.5 kg/m^2 of 1.3 kJ/kg K [M]; else paper
-    "cardboard": Material(230, 8.8, 0, 0.65, 182, 13000, FAST, 0.015),
+    "cardboard": Material(230, 8.8, 0, 0.65, 182, 13000, FAST, 0.015, 0.004),
     # carpet nylon/wool blend [3.1]; release and soot of nylon [M]
-    "fabric": Material(412, 18, 0.68, 0, 250, 20000, MEDIUM, 0.075),
+    "fabric": Material(412, 18, 0.68, 0, 250, 20000, MEDIUM, 0.075, 0.038, 0.0056, 0.055),
     # curtain 0.3 kg/m^2 [3.1] of 1.3 kJ/kg K: cloth of clothes and bags; else acrylic's ignition and nylon's release
-    "cloth": Material(300, 10, 0, 0.39, 250, 20000, FAST, 0.075),
+    "cloth": Material(300, 10, 0, 0.39, 250, 20000, FAST, 0.075, 0.038, 0.016, 0.066),
     # flexible foam 25 mm, 24 g/m^2 s of 22.3 MJ/kg [3.1]; soot of PU [M]
-    "foam": Material(390, 16, 0.32, 0, 535, 22300, FAST, 0.131),
+    "foam": Material(390, 16, 0.32, 0, 535, 22300, FAST, 0.131, 0.031, 0.0013, 0.015),
     # PMMA type G 12.7 mm and its heat of combustion [3.1]; 250 kW/m^2 as a usual floor of goods [3.1]; soot of PMMA [M]
-    "plastic": Material(378, 15, 1.02, 0, 250, 24200, MEDIUM, 0.022),
+    "plastic": Material(378, 15, 1.02, 0, 250, 24200, MEDIUM, 0.022, 0.010),
     # polyethylene's ignition and combustion [3.1], PMMA's inertia and critical flux; soot of PE [M]
-    "wax": Material(340, 15, 1.02, 0, 250, 43400, SLOW, 0.060),
+    "wax": Material(340, 15, 1.02, 0, 250, 43400, SLOW, 0.060, 0.024),
     # wood's ignition on wet flesh of k 0.5 W/m K, 900 kg/m^3, 3.7 kJ/kg K; what is left to burn when it is dry [M]
     # [ours]
-    "food": Material(350, 16, 1.67, 0, 60, 2000, SLOW, 0.015),
+    "food": Material(350, 16, 1.67, 0, 60, 2000, SLOW, 0.015, 0.004),
 }
 
 _OF: dict[str, tuple[str, ...]] = {  # every other category is of wood if it is furniture, else of plastic [ours]

@@ -9,13 +9,17 @@ from torch import Tensor
 
 from hazard_ms.hazards.fire.realistic import burning, fuels
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
+from hazard_ms.hazards.fire.realistic.radiation import AIR, KELVIN
 from hazard_ms.hazards.fire.realistic.twozone import lining, rooms
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.catalogue import CATEGORIES
 
 
-def describe_rooms(state: BlazeState, world: World, rows: Tensor) -> None:
-    """Set what the fire needs of the rooms of the environments `rows`, [R]: floor, height [m], gaps and ceiling."""
+def describe_rooms(state: BlazeState, world: World, rows: Tensor, room: float) -> None:
+    """Set what the fire needs of the rooms of the environments `rows`, [R]: floor, height [m], gaps and ceiling.
+
+    They are full of air of `room` [C].
+    """
     specs = [world.specs[row] for row in rows.tolist()]
     floors = [fuels.FLOORS.get(s.room.floor, fuels.BARE) for s in specs]
     for name in ("ignition", "critical", "inertia"):
@@ -27,6 +31,7 @@ def describe_rooms(state: BlazeState, world: World, rows: Tensor) -> None:
     state.zone_across[rows] = torch.tensor([int(rooms.across(s.room)) for s in specs], device=world.device)
     _fill(state, rows, ("zone_end", "zone_area", "zone_edge"), [rooms.parts(s.room) for s in specs])
     state.zone_wall[rows] = state.zone_area[rows]
+    fill_with_air(state, rows, room)
     gaps = [rooms.openings(s.room) for s in specs]
     state.vents[rows] = _padded([[g[:4] for g in row] for row in gaps], (0.0,) * 4, state.vents)
     _fill(state, rows, ("vent_from", "vent_to"), [[(g.room, g.other) for g in row] for row in gaps])
@@ -34,6 +39,13 @@ def describe_rooms(state: BlazeState, world: World, rows: Tensor) -> None:
     for name in ("conductivity", "capacity", "thickness"):
         made = torch.tensor([getattr(x, name) for x in linings], device=world.device)
         getattr(state, f"lining_{name}")[rows] = made
+
+
+def fill_with_air(state: BlazeState, rows: Tensor, room: float) -> None:
+    """Fill the rooms of the environments `rows`, [R], with clean air of `room` [C], as warm as their walls."""
+    for name in ("temperature", "low_temperature", "upper", "lower"):
+        getattr(state, f"zone_{name}")[rows] = room
+    state.zone_air[rows, :, 0] = state.zone_area[rows] * state.height[rows, None] * (AIR / (room + KELVIN))
 
 
 def _padded(table: Sequence[Sequence[Sequence[float]]], empty: Sequence[float], like: Tensor) -> Tensor:
@@ -52,7 +64,7 @@ def _fill(state: BlazeState, rows: Tensor, names: Sequence[str], table: Sequence
 
 
 def describe_things(state: BlazeState, world: World, rows: Tensor) -> None:
-    """Set how the things of the environments `rows`, [R], ignite and burn: surfaces, heat release [kW] and soot."""
+    """Set how the things of the environments `rows`, [R], ignite and burn: surfaces, heat release [kW] and yields."""
     category = world.category.clamp(min=0)
 
     def of(attribute: str) -> Tensor:
@@ -76,4 +88,11 @@ def describe_things(state: BlazeState, world: World, rows: Tensor) -> None:
     for name in ("growth", "peak", "decline"):
         getattr(state, name)[rows] = getattr(made, name)[rows]
     state.burn_end[rows] = torch.where(state.curve >= 0, burning.lasting(state.curve), made.end)[rows]
-    state.soot_yield[rows] = (of("soot") / of("combustion"))[rows]
+    table = torch.tensor([yields(fuels.material(c)) for c in CATEGORIES], device=world.device)
+    state.yields[rows] = table[category][rows]
+
+
+def yields(made: fuels.Material) -> tuple[float, ...]:
+    """Yields of a material per heat [kg/kJ]: soot, CO, HCN with enough air and without, and itself."""
+    parts = (made.soot, made.monoxide, made.cyanide, made.cyanide_smothered, 1.0)
+    return tuple(part / made.combustion for part in parts)

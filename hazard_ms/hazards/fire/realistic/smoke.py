@@ -11,6 +11,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
+from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.radiation import AIR, GRAVITY, KELVIN, Fires, alight, in_blocks
 from hazard_ms.hazards.fire.realistic.twozone import balance, zones
@@ -20,6 +21,11 @@ from hazard_ms.spec import rounding
 
 PLUME_LIMIT = 900.0  # largest rise of temperature, that in flames [K] [docs/physics.md 3.1: CFAST]
 PLUME_WIDTH = 0.12  # radius of a plume per height above its fire [-] [M: Heskestad]
+# Ceiling jet: rise per Q^(2/3) / H^(5/3) above the fire, per (Q / r)^(2/3) / H from NEAR H on, in the top part of H
+# [docs/physics.md 3.1: Alpert]
+JET_ABOVE, JET_ASIDE, NEAR, JET_DEPTH = 16.9, 5.38, 0.18, 0.1
+SEEN = 3.0  # what one sees in smoke, times its extinction [-] [docs/physics.md 3.1: Jin]
+FARTHEST = 100.0  # distance that counts as clear sight [m] [ours]
 VIRTUAL = (-1.02, 0.083)  # height of a plume's virtual origin: per diameter, per Q^0.4 [docs/physics.md 3.1: Heskestad]
 
 
@@ -30,23 +36,23 @@ class _Sources(NamedTuple):
     power: Tensor
     radiant: Tensor
     diameter: Tensor
-    soot: Tensor
+    yields: Tensor
     burns: Tensor
 
 
-def advance(
-    state: BlazeState, world: World, fires: Fires, soot: Tensor, room: float, hottest: float, step: float
-) -> Tensor:
+def advance(state: BlazeState, world: World, fires: Fires, yields: Tensor, room: float, step: float) -> Tensor:
     """Carry the smoke over `step` [s]; returns the heat release [kW], [E, M], for which the fires have oxygen.
 
-    `soot` [kg/kJ], [E, M], is the yield of each fire, `room` and `hottest` are temperatures [C].
+    `yields` [kg/kJ], [E, M, YIELDS], is what each fire makes, `room` the temperature outside [C].
     """
     work = state.zone_area[..., None].expand(-1, -1, balance.WORK)
-    burns, work = world.launches.results(zones.advance, fires.power, work)
+    burns, work, upper, lower = world.launches.results(
+        zones.advance, fires.power, work, state.zone_smoke, state.zone_air
+    )
     place, power, radiant, diameter = (v.contiguous() for v in fires)
-    source = _Sources(place, power, radiant, diameter, soot, burns)
+    source = _Sources(place, power, radiant, diameter, yields, burns)
     structs = world.launches.struct(zones.Sources, source), world.launches.struct(balance.Rooms, state)
-    world.launches.run(zones.advance, (len(burns),), step, room, hottest, *structs, work)
+    world.launches.run(zones.advance, (len(burns),), step, room, *structs, work, upper, lower)
     return burns
 
 
@@ -76,6 +82,54 @@ def above(fires: Fires, walls: Walls, points: Tensor, room: float) -> Tensor:
     It is 0 outside of all plumes, which `walls` cut off.
     """
     return in_blocks(partial(_above, room), alight(fires)[0], walls, points)
+
+
+def jet_rise(power: Tensor, apart: Tensor, high: Tensor) -> Tensor:
+    """Rise of temperature [K], [...], in the jet under a ceiling `high` [m] above a fire, `apart` [m] aside (Alpert).
+
+    The fire has `power` [kW]; all [...], shapes broadcast.
+    """
+    high = high.clamp(min=1e-3)
+    above = JET_ABOVE * rounding.power(power, 2.0 / 3.0) / rounding.power(high, 5.0 / 3.0)
+    aside = JET_ASIDE * rounding.power(power / apart.clamp(min=1e-3), 2.0 / 3.0) / high
+    return torch.where(apart > NEAR * high, aside, above).clamp(max=PLUME_LIMIT)
+
+
+def under_ceiling(fires: Fires, walls: Walls, points: Tensor, ceiling: Tensor) -> Tensor:
+    """Rise of temperature [K], [E, P], at `points` [m], [E, P, 3], world frame, in the jet under the `ceiling`.
+
+    It is that of the fire that makes the hottest jet, and 0 below all and behind `walls`; ceilings are [m], [E].
+    """
+    if none_set(points[..., 2] > (1.0 - JET_DEPTH) * ceiling[:, None]):
+        return torch.zeros_like(points[..., 0])
+    return in_blocks(_under_ceiling, alight(fires)[0], walls, points, ceiling)
+
+
+def _under_ceiling(fires: Fires, walls: Walls, points: Tensor, ceiling: Tensor) -> Tensor:
+    high = (ceiling[:, None] - fires.place[..., 2])[..., None]  # [E, M, 1]
+    aside = rounding.sqrt((points[:, None, :, :2] - fires.place[:, :, None, :2]).square().sum(-1))
+    below = ceiling[:, None] - points[..., 2]
+    inside = (fires.power > 0)[..., None] & (below >= 0)[:, None] & (below[:, None] < JET_DEPTH * high)
+    if walls.any:
+        top = torch.cat([fires.place[..., :2], ceiling[:, None, None].expand_as(fires.place[..., :1])], -1)
+        inside &= ~blocked(walls, top, points)
+    return torch.where(inside, jet_rise(fires.power[..., None], aside, high), 0.0).amax(1)
+
+
+def breathed(state: BlazeState, points: Tensor) -> Tensor:
+    """The layer around `points` [m], [E, P, 3], world frame: its parts [kg, kJ], [E, P, PARTS], see gas.Gas."""
+    here = zone_of(state, points)
+    parts = here[..., None].expand(-1, -1, state.zone_smoke.shape[-1])
+    high = points[..., 2] > state.zone_height.gather(1, here)
+    return torch.where(high[..., None], state.zone_smoke.gather(1, parts), state.zone_air.gather(1, parts))
+
+
+def visibility(state: BlazeState, points: Tensor) -> Tensor:
+    """Sight through smoke [m], [E, P], at `points` [m], [E, P, 3], world frame; at most FARTHEST."""
+    here = zone_of(state, points)
+    high = points[..., 2] > state.zone_height.gather(1, here)
+    thick = torch.where(high, state.zone_density.gather(1, here), state.zone_low_density.gather(1, here))
+    return SEEN / thick.clamp(min=SEEN / FARTHEST)
 
 
 def _above(room: float, fires: Fires, walls: Walls, points: Tensor) -> Tensor:

@@ -1,9 +1,9 @@
 """Flow through doors, windows and gaps by the difference of pressure over their height (Warp).
 
-    dp(z) = p_a - p_b + g ((rho_0 - rho_a) (z - z_a)+ - (rho_0 - rho_b) (z - z_b)+)
+    dp(z) = P_a(z) - P_b(z),   P(z) = p - g (rho_air min(z, z_l) + rho_layer (z - z_l)+)
     m = C w integral sqrt(2 rho |dp|) dz,   rho that of the gas which flows
 
-Pressures are those at the floor above the air outside, z_a and z_b the lower faces of the layers on both sides. dp is
+p are pressures at the floor above the air outside, z_l the lower faces of the layers on both sides. dp is
 linear between the faces, so the integral is exact. The rooms of a flat stand in a row; a room's pressure is the one at
 which all volumes balance, `sum of flows = heat / 353`: bisection on the first room's, from which the others follow.
 """
@@ -36,18 +36,23 @@ class Side:
 
 @wp.struct
 class Flow:
-    """The flow through an opening [kg/s], from the first side to the second, and back: of layers, and of air."""
+    """The flow through an opening [kg/s], from the first side to the second, and back: of layers, and of air.
+
+    `under` is the air that comes into the layer of the other side.
+    """
 
     hot: float
     cold: float
+    under: float
     hot_back: float
     cold_back: float
+    under_back: float
 
 
 @wp.func
 def head(side: Side, z: float) -> float:
-    """Pressure [Pa] at the height `z` [m] above that of the air outside at the same height."""
-    return side.pressure + GRAVITY * (side.air - side.density) * wp.max(z - side.face, 0.0)
+    """Pressure [Pa] at the height `z` [m], above that of the air outside at the floor."""
+    return side.pressure - GRAVITY * (side.air * wp.min(z, side.face) + side.density * wp.max(z - side.face, 0.0))
 
 
 @wp.func
@@ -99,10 +104,14 @@ def through(width: float, sill: float, top: float, a: Side, b: Side) -> Flow:
                 flow.hot = flow.hot + passed[0] * wp.sqrt(a.density)
             else:
                 flow.cold = flow.cold + passed[0] * wp.sqrt(a.air)
+                if middle > b.face:
+                    flow.under = flow.under + passed[0] * wp.sqrt(a.air)
             if middle > b.face:
                 flow.hot_back = flow.hot_back + passed[1] * wp.sqrt(b.density)
             else:
                 flow.cold_back = flow.cold_back + passed[1] * wp.sqrt(b.air)
+                if middle > a.face:
+                    flow.under_back = flow.under_back + passed[1] * wp.sqrt(b.air)
     return flow
 
 

@@ -67,17 +67,19 @@ def pushed(
     rise = high - low
     if wp.abs(rise) < STILL:
         rise = float(0.0)
-    # momentum over the mass between the middles of the two cells; no more than all of it comes in a step
-    come = wp.min(share * wp.max(at(carried, e, b) + at(carried, e, c), 0.0), 1.0) * (u - before)
+    # what comes in over the mass between the middles of the two cells; of deep cells only what is above the step
+    over_b, over_c = share * low / wp.max(at(depth, e, b), FILM), share * high / wp.max(at(depth, e, c), FILM)
+    west = over_b * wp.max(at(carried, e, b) + at(carried, e, c), 0.0)
     if u > before and u + before > 0.0:  # it speeds up: half the difference of the squares, of the energy head
-        come = 0.5 * ratio * (u + before) * (u - before)
+        west = 0.5 * ratio * (u + before)
+    east = -over_c * wp.min(at(carried, e, c) + at(carried, e, c + along), 0.0)
     if u < after and u + after < 0.0:
-        come += 0.5 * ratio * (u + after) * (after - u)
-    else:
-        come += wp.max(share * wp.min(at(carried, e, c) + at(carried, e, c + along), 0.0), -1.0) * (after - u)
-    come += wp.min(share * wp.max(at(beside, e, b) + at(beside, e, c), 0.0), 1.0) * (u - at(own, e, c - across))
-    leaving = at(beside, e, b + across) + at(beside, e, c + across)
-    come += wp.max(share * wp.min(leaving, 0.0), -1.0) * (at(own, e, c + across) - u)
+        east = -0.5 * ratio * (u + after)
+    south = wp.max(over_b * at(beside, e, b) + over_c * at(beside, e, c), 0.0)
+    north = -wp.min(over_b * at(beside, e, b + across) + over_c * at(beside, e, c + across), 0.0)
+    come = west * (u - before) + east * (u - after)
+    come += south * (u - at(own, e, c - across)) + north * (u - at(own, e, c + across))
+    come = come / wp.max(west + east + south + north, 1.0)
     slip = 0.25 * (at(other, e, b) + at(other, e, c) + at(other, e, b + across) + at(other, e, c + across))
     slowed = 1.0 + ratio * SIDE * friction * wp.sqrt(u * u + slip * slip) / deep
     new = wp.clamp((u - come - ratio * GRAVITY * rise) / slowed, -FASTEST / ratio, FASTEST / ratio)

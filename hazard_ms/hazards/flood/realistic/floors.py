@@ -21,7 +21,7 @@ MANNING = {  # of a room's floor, normal values [s/m^(1/3)]
     "concrete": 0.013,  # trowelled [M: Chow]
     "asphalt": 0.013,  # smooth [M: Chow]
     "brick": 0.015,  # in cement mortar [M: Chow]
-    # a pile of 8 mm [ours] as sand: k^(1/6) / (8.25 sqrt(g)) [M: Strickler]
+    # a pile of 8 mm [ours] as sand: k^(1/6) / 26 [M: Strickler]
     "carpet": 0.017,
     "carpet_blue": 0.017,
 }

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.hazards.flood.realistic.basin import FASTEST, FILM, GRAVITY, SAFE, SIDE, Basin, note, slowing
+from hazard_ms.hazards.flood.realistic.basin import FASTEST, FILM, GRAVITY, SAFE, SIDE, Basin, note, per_cube_root
 from hazard_ms.hazards.flood.realistic.inlets import let_in, orifice
 from hazard_ms.kernels.launch import OPTIONS
 from hazard_ms.kernels.rows import at, put
@@ -68,7 +68,11 @@ def pushed(
     if wp.abs(rise) < STILL:
         rise = float(0.0)
     # what comes in over the mass between the middles of the two cells; of deep cells only what is above the step
-    over_b, over_c = share * low / wp.max(at(depth, e, b), FILM), share * high / wp.max(at(depth, e, c), FILM)
+    over_b, over_c = share, share
+    if at(bed, e, b) < ground:
+        over_b = share * low / wp.max(at(depth, e, b), FILM)
+    if at(bed, e, c) < ground:
+        over_c = share * high / wp.max(at(depth, e, c), FILM)
     west = over_b * wp.max(at(carried, e, b) + at(carried, e, c), 0.0)
     if u > before and u + before > 0.0:  # it speeds up: half the difference of the squares, of the energy head
         west = 0.5 * ratio * (u + before)
@@ -79,15 +83,17 @@ def pushed(
     north = -wp.min(over_b * at(beside, e, b + across) + over_c * at(beside, e, c + across), 0.0)
     come = west * (u - before) + east * (u - after)
     come += south * (u - at(own, e, c - across)) + north * (u - at(own, e, c + across))
-    come = come / wp.max(west + east + south + north, 1.0)
+    whole = west + east + south + north
+    if whole > 1.0:
+        come = come / whole
     slip = 0.25 * (at(other, e, b) + at(other, e, c) + at(other, e, b + across) + at(other, e, c + across))
     over = low  # depth of what runs over the floor: that upstream, as of the discharge
     if u < 0.0:
         over = high
     if over < FILM:
         over = deep
-    slowed = 1.0 + ratio * SIDE * slowing(friction, wp.sqrt(u * u + slip * slip), over)
-    new = wp.clamp((u - come - ratio * GRAVITY * rise) / slowed, -FASTEST / ratio, FASTEST / ratio)
+    held = ratio * SIDE * friction * wp.sqrt(u * u + slip * slip) * per_cube_root(over)  # implicit, by Manning
+    new = wp.clamp((u - come - ratio * GRAVITY * rise) * over / (over + held), -FASTEST / ratio, FASTEST / ratio)
     clear = at(height, e, c) - ground
     if new > 0.0 and low > clear:  # the opening is under water
         new = wp.min(new, orifice(clear, low - high) / low)

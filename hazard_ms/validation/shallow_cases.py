@@ -1,10 +1,14 @@
-"""Cases of `realistic` water: L-12, L-26 to L-29 and L-31 to L-35 of docs/physics.md 2.2, solved without friction."""
+"""Cases of `realistic` water: L-12, L-26 to L-29 and L-31 to L-35 of docs/physics.md 2.2, solved without friction.
+
+Those of hazard_ms.validation.flume_cases follow them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from hazard_ms.hazards.case import Case, table
+from hazard_ms.validation import flume_cases
 from hazard_ms.validation.experiments import basin
 
 SEEN = 1e-3  # least depth whose front is followed in long frames [m]
@@ -12,7 +16,7 @@ RITTER, STOKER = (0.5, 0.0), (0.5, 0.05)  # depths behind the dam and before it,
 
 
 def cases() -> Iterator[Case]:
-    """All cases of this module."""
+    """All cases of this module and of flume_cases."""
     # (1 - cos a) / 2 with a - sin a cos a = pi s
     logs = {0.2: 0.25407, 0.5: 0.5, 0.9: 0.84352}
     yield from table("L-12", "draught of a log that lies, density {}", logs, 1e-3, basin.lying)
@@ -52,3 +56,4 @@ def cases() -> Iterator[Case]:
     gap = {60: 0.09800, 300: 0.38321}
     yield from table("L-27", "gap under a door: depth after {} s", gap, 0.05, basin.gap_under_door, unit="m")
     yield Case("L-28", "open door, 0.5 m of water outside", 0.5638, 1e-3, lambda: basin.inflow(0.5), "m^3/s")
+    yield from flume_cases.cases()

@@ -19,7 +19,7 @@ from hazard_ms.spec import Opening, Partition
 from hazard_ms.validation.experiments.tank import Thing, begin, room
 
 GRAVITY = 9.81  # [m/s^2]
-SMOOTH = Inundation(outside=0.0, friction=0.0)
+SMOOTH = Inundation(outside=0.0, roughness=0.0)
 Array = NDArray[np.float64]
 
 

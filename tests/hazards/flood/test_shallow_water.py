@@ -179,7 +179,7 @@ def test_inside_furniture_water_stands_as_high_as_around_it() -> None:
     assert basin.get("depth")[6:14, 6:14].max() == 0.0
 
 
-@pytest.mark.parametrize(("name", "value"), [("outside", -0.1), ("outside", math.nan), ("friction", -1.0)])
+@pytest.mark.parametrize(("name", "value"), [("outside", -0.1), ("outside", math.nan), ("roughness", -1.0)])
 def test_impossible_parameters_are_refused(name: str, value: float) -> None:
     with pytest.raises(ValueError, match=name):
         dataclasses.replace(LAW, **{name: value})

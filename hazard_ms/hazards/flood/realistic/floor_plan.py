@@ -2,9 +2,9 @@
 
 Cells are CELL wide; X along x, Y along y, with a ring of closed cells around them: cell (i, j) has the number
 (i + 1) (Y + 2) + j + 1. Furniture that stands on the floor is ground as high as its parts; what has legs is not, and
-water flows under it. An opening lets water through up to its height: a gap under a door is one that is 0.02 m high.
-Water comes in through the doors in the outer walls. A scene without any has an opening as wide as a door in the middle
-of its `flood_side`; one that names a `second_flood_side` has openings in two walls.
+water flows under it. An opening lets water through up to its height. Doorways are open; doors between rooms are closed,
+but for a gap at the floor. Water comes in through the doors in the outer walls. A scene without any has an opening as
+wide as a door in the middle of its `flood_side`; one that names a `second_flood_side` has openings in two walls.
 """
 
 from __future__ import annotations
@@ -26,6 +26,8 @@ DOOR = 0.9  # width of an opening where a scene has no door [m] [ours: that of a
 SHEET = 0.05  # height below which what lies on the floor (rugs) does not count [m] [ours]
 GAP = 0.05  # height above the ground below which a part stands on it [m] [ours]
 NARROW = 0.08  # width below which water flows round a part (legs) as if it were not there [m] [ours]
+LEAK = 0.02  # height of the gap under a closed door between rooms [m] [docs/physics.md L-27]
+BESIDE = 5  # cells of floor from the jamb of a door to where the level of the room is read [ours]
 BEYOND = 100.0  # height of what is not floor [m]
 SIDES = ("west", "east", "south", "north")  # numbers of the quantity inlet_side
 
@@ -48,6 +50,7 @@ class FloorPlan(NamedTuple):
     open_y: Grid  # [N]
     inlet: list[int]
     inlet_side: list[int]
+    inlet_beside: list[int]
     inlet_width: list[float]
     inlet_height: list[float]
 
@@ -74,12 +77,12 @@ def plan_of(spec: SceneSpec, size: tuple[int, int], edges: Mapping[str, Sequence
     open_x, open_y = np.zeros((2, *size))
     open_x[1:], open_y[:, 1:] = BEYOND * (floor[1:] & floor[:-1]), BEYOND * (floor[:, 1:] & floor[:, :-1])
     for partition in room.partitions:
-        doorways = [o for o in room.openings if o.kind == "doorway" and o.wall == partition.name]
+        doors = [o for o in room.openings if o.kind in ("doorway", "door") and o.wall == partition.name]
         across = 0 if partition.axis == "y" else 1
         along = middles[1 - across]
         height = np.zeros(len(along))
-        for o in doorways:
-            height[np.abs(along - o.centre) < o.width / 2] = o.height
+        for o in doors:
+            height[np.abs(along - o.centre) < o.width / 2] = o.height if o.kind == "doorway" else LEAK
         beyond = int(np.searchsorted(middles[across], partition.at))  # the first cells behind it
         if across == 0:
             open_x[beyond] = np.minimum(open_x[beyond], height)
@@ -89,7 +92,9 @@ def plan_of(spec: SceneSpec, size: tuple[int, int], edges: Mapping[str, Sequence
         np.pad(grid, 1, constant_values=edge).astype(np.float32).ravel()
         for grid, edge in ((ground, BEYOND), (open_x, 0.0), (open_y, 0.0))
     )
-    return FloorPlan(bed, west, south, *_inlets(spec, size))
+    inlet, side, width, high = _inlets(spec, size)
+    near = [_beside(c, k, set(inlet), size[1] + 2, bed, (west, south)) for c, k in zip(inlet, side, strict=True)]
+    return FloorPlan(bed, west, south, inlet, side, near, width, high)
 
 
 def most_inlets(specs: Sequence[SceneSpec]) -> int:
@@ -118,6 +123,20 @@ def _inlets(spec: SceneSpec, size: tuple[int, int]) -> tuple[list[int], list[int
             widths.append(opening.width / len(along))
             heights.append(opening.height)
     return cells, sides, widths, heights
+
+
+def _beside(cell: int, side: int, inlets: set[int], pitch: int, bed: Grid, open_to: tuple[Grid, Grid]) -> int:
+    """The cell of floor along the wall from an inlet that its jet leaves free; the inlet's own if there is none."""
+    across = 1 if side < 2 else 0  # the axis along the wall
+    pace, found = (pitch, 1)[across], {}
+    for sign in (-1, 1):
+        at, beyond = cell, 0
+        while open_to[across][at + pace * max(sign, 0)] > 0 and beyond < BESIDE:
+            at += sign * pace
+            beyond += at not in inlets
+            if beyond and bed[at] == 0:
+                found[sign] = (-beyond, abs(at - cell), at)
+    return min(found.values())[2] if found else cell
 
 
 def openings(spec: SceneSpec) -> list[Opening]:

@@ -43,11 +43,29 @@ def through(outside: float, inside: float, clear: float) -> float:
     return q
 
 
+@wp.kernel
+def leak(
+    before: wp.array2d(dtype=float),
+    behind: wp.array2d(dtype=float),
+    width: wp.array2d(dtype=float),
+    height: wp.array2d(dtype=float),
+    sill: wp.array2d(dtype=float),
+    discharge: wp.array2d(dtype=float),
+):
+    """Write the discharge [m^3/s] through openings [m] from water of the depth `before` to that `behind` [m]."""
+    e, k = wp.tid()
+    low = sill[e, k]
+    q = through(wp.max(before[e, k] - low, 0.0), wp.max(behind[e, k] - low, 0.0), height[e, k])
+    discharge[e, k] = q * width[e, k]
+
+
 @wp.func
 def let_in(e: int, dt: float, outside: float, pitch: int, basin: Basin) -> float:
     """Set velocities and discharges at the inlets; returns what comes in, less what leaves, during `dt` [m^3].
 
-    The discharge is that at the depth inside after `dt`, since it changes without limit where both depths are alike.
+    What comes in is that of a weir before the water beside the opening, where the room's own level presses: the cells
+    of the opening hold the jet. They are filled no higher than the water stands outside. What leaves is that at their
+    depth after `dt`, since it changes without limit where both depths are alike.
     """
     volume, ratio = float(0.0), dt / SIDE
     for k in range(basin.inlet.shape[1]):
@@ -71,17 +89,18 @@ def let_in(e: int, dt: float, outside: float, pitch: int, basin: Basin) -> float
             others = basin.discharge_x[e, c] - basin.discharge_x[e, c + pitch]
             others += basin.discharge_y[e, c] - basin.discharge_y[e, c + 1]
             before = basin.depth[e, c] + ratio * others
-            low, high = float(0.0), wp.max(head, wp.max(before, 0.0))
-            for _k in range(HALVINGS):
-                middle = 0.5 * (low + high)
-                if before + ratio * share * through(head, middle, clear) > middle:
-                    low = middle
-                else:
-                    high = middle
-            inside = 0.5 * (low + high)
-            q = through(head, inside, clear)
+            beside = int(basin.inlet_beside[e, k])
+            tail = wp.max(basin.bed[e, beside] + basin.depth[e, beside] - basin.bed[e, c], 0.0)
+            q = through(head, wp.min(tail, head), clear)
+            inside = before + ratio * share * q
+            if before > head:
+                inside = drained(before, head, clear, ratio * share)
+                q = through(head, inside, clear)
+            elif inside > head:
+                inside = head
+                q = (head - before) / (ratio * share)
             deep = wp.max(wp.pow(q * q / GRAVITY, 1.0 / 3.0), inside)  # the critical depth, or that inside
-            if clear < head and wp.abs(q) < weir(head, inside):
+            if clear < head and wp.abs(q) < weir(head, tail):
                 deep = ORIFICE * clear  # of the jet
             q *= share
             speed = float(0.0)
@@ -95,3 +114,16 @@ def let_in(e: int, dt: float, outside: float, pitch: int, basin: Basin) -> float
                 basin.discharge_y[e, at] = sign * q
             volume += q * SIDE * dt
     return volume
+
+
+@wp.func
+def drained(before: float, outside: float, clear: float, ratio: float) -> float:
+    """Depth [m] of a cell after a step in which it runs off outwards, from `before` [m]; `ratio` [s/m] of the step."""
+    low, high = outside, before
+    for _k in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if before + ratio * through(outside, middle, clear) > middle:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)

@@ -21,7 +21,7 @@ from hazard_ms.hazards.base import Push, State
 from hazard_ms.hazards.flood import kernels, wading
 from hazard_ms.hazards.flood.floating import Liquid
 from hazard_ms.hazards.flood.flood import Flood
-from hazard_ms.hazards.flood.realistic import currents, floor_plan, shallow_water
+from hazard_ms.hazards.flood.realistic import currents, floor_plan, floors, shallow_water
 from hazard_ms.hazards.flood.realistic.basin import Basin
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.kernels.bodies import Bodies
@@ -37,15 +37,14 @@ class Inundation(Flood):
     state_type: ClassVar[type[State]] = InundationState
 
     outside: float = SEVERITIES[USUAL].flood_outside  # depth of the water outside the doors [m]
-    # of the floor, g n^2 / h^(1/3): Manning's n = 0.012 (tiles, boards) in 0.1 m of water [-] [docs/physics.md 3.2]
-    friction: float = 0.003
+    roughness: float | None = None  # Manning's n of every floor [s/m^(1/3)]; None: that of its material (.floors)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if not 0 <= self.outside < floor_plan.BEYOND / 2:
             raise ValueError(f"outside must be from 0 to {floor_plan.BEYOND / 2:g} m, got {self.outside}")
-        if not self.friction >= 0:
-            raise ValueError(f"friction must be 0 or a positive number, got {self.friction}")
+        if self.roughness is not None and not self.roughness >= 0:
+            raise ValueError(f"roughness must be None, 0 or a positive number, got {self.roughness}")
 
     def sizes(self, world: World) -> dict[str, int]:
         rows, columns = _cells(world)
@@ -56,10 +55,11 @@ class Inundation(Flood):
         size, inlets = _cells(world), state.inlet.shape[1]
         for row in rows.tolist():
             edges = dict(zip(world.names[row], world.extent[row].tolist(), strict=False))
+            state.friction[row] = floors.friction_of(world.specs[row], self.roughness)
             plan = floor_plan.plan_of(world.specs[row], size, edges)
             for name in ("bed", "open_x", "open_y"):
                 getattr(state, name)[row] = torch.from_numpy(getattr(plan, name))
-            for name in ("inlet", "inlet_side", "inlet_width", "inlet_height"):
+            for name in ("inlet", "inlet_side", "inlet_beside", "inlet_width", "inlet_height"):
                 given, held = getattr(plan, name), getattr(state, name)
                 held[row, : min(len(given), inlets)] = torch.tensor(given).to(held)
         state.signal[rows] = shallow_water.wave(self.outside)
@@ -71,7 +71,7 @@ class Inundation(Flood):
         launches, (rows, columns) = world.launches, _cells(world)
         basin = launches.struct(Basin, state)
         new = launches.results(shallow_water.flow, state.velocity_x, state.velocity_y)
-        launches.run(shallow_water.flow, (world.num_envs,), dt, self.outside, self.friction, rows, columns, basin, *new)
+        launches.run(shallow_water.flow, (world.num_envs,), dt, self.outside, rows, columns, basin, *new)
         flooded, bodies = launches.struct(kernels.Flooded, state), launches.struct(Bodies, world)
         size = tuple(world.exists.shape)
         launches.run(currents.immerse, size, dt, self.damage_fraction, rows, columns, flooded, basin, bodies)

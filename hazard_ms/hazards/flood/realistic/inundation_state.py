@@ -28,10 +28,14 @@ class InundationState(FloodState):
     discharge_x: Tensor = quantity("E N", "m^2/s", "water through the side per width, eastwards")
     discharge_y: Tensor = quantity("E N", "m^2/s", "water through the side per width, northwards")
     surface: Tensor = quantity("E N", "m", "height of the surface; -1 where there is none", fill=-1.0)
-    inlet: Tensor = quantity("E I", "", "numbers of the cells that water comes into; -1 for none", dtype="int", fill=-1)
+    inlet: Tensor = quantity(
+        "E I", "", "cells that water comes into; -1: none", dtype="int", fill=-1, low=-1, high="depth"
+    )
     inlet_side: Tensor = quantity("E I", "", "from where: 0 west, 1 east, 2 south, 3 north", dtype="int", low=0, high=3)
+    inlet_beside: Tensor = quantity("E I", "", "cells whose level the inflow meets", dtype="int", low=0, high="depth")
     inlet_width: Tensor = quantity("E I", "m", "width of the opening before the cell", low=0.0)
     inlet_height: Tensor = quantity("E I", "m", "height of the opening before the cell", low=0.0)
+    friction: Tensor = quantity("E", "m^(1/3)", "friction of the floor: g n^2 of Manning's n", low=0.0)
     inflow: Tensor = quantity("E", "m^3", "water that has come in, less what has left")
     inflow_rest: Tensor = quantity("E", "m^3", "what rounding has left out of it")
     signal: Tensor = quantity("E", "m/s", "speed of the fastest wave", low=0.0)

@@ -1,7 +1,7 @@
 """Shallow water on a grid of cells: mass and momentum of a depth-averaged flow (Warp, one thread per environment).
 
     dh/dt + div(h u) = 0
-    du/dt + (u . grad) u + g grad(z + h) + c |u| u / h = 0          z: ground, c: friction
+    du/dt + (u . grad) u + g grad(z + h) + g n^2 |u| u / h^(4/3) = 0          z: ground, n: Manning's (.floors)
 
 The scheme is the momentum-conserving one of Stelling and Duinmeijer, A staggered conservative scheme for every Froude
 number in rapidly varied shallow water flows, Int. J. Numer. Meth. Fluids 43, 2003: depths in cells, velocities on their
@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.hazards.flood.realistic.basin import FASTEST, FILM, GRAVITY, SAFE, SIDE, Basin, note
+from hazard_ms.hazards.flood.realistic.basin import FASTEST, FILM, GRAVITY, SAFE, SIDE, Basin, note, per_cube_root
 from hazard_ms.hazards.flood.realistic.inlets import let_in, orifice
 from hazard_ms.kernels.launch import OPTIONS
 from hazard_ms.kernels.rows import at, put
@@ -49,8 +49,8 @@ def pushed(
     """New velocity [m/s] through the side of cell `c` towards the cell before it.
 
     `own` and `carried`: velocity [m/s] and discharge [m^2/s] along that axis, on which neighbours are `along` numbers
-    apart; `other` and `beside`: those of the other axis, `across`; `height`: of the opening [m]; `ratio`: time over
-    length of the step [s/m].
+    apart; `other` and `beside`: those of the other axis, `across`; `height`: of the opening [m]; `friction`: g n^2
+    [m^(1/3)]; `ratio`: time over length of the step [s/m].
     """
     b = c - along
     if wp.max(at(depth, e, b), at(depth, e, c)) <= 0.0:
@@ -67,20 +67,33 @@ def pushed(
     rise = high - low
     if wp.abs(rise) < STILL:
         rise = float(0.0)
-    # momentum over the mass between the middles of the two cells; no more than all of it comes in a step
-    come = wp.min(share * wp.max(at(carried, e, b) + at(carried, e, c), 0.0), 1.0) * (u - before)
+    # what comes in over the mass between the middles of the two cells; of deep cells only what is above the step
+    over_b, over_c = share, share
+    if at(bed, e, b) < ground:
+        over_b = share * low / wp.max(at(depth, e, b), FILM)
+    if at(bed, e, c) < ground:
+        over_c = share * high / wp.max(at(depth, e, c), FILM)
+    west = over_b * wp.max(at(carried, e, b) + at(carried, e, c), 0.0)
     if u > before and u + before > 0.0:  # it speeds up: half the difference of the squares, of the energy head
-        come = 0.5 * ratio * (u + before) * (u - before)
+        west = 0.5 * ratio * (u + before)
+    east = -over_c * wp.min(at(carried, e, c) + at(carried, e, c + along), 0.0)
     if u < after and u + after < 0.0:
-        come += 0.5 * ratio * (u + after) * (after - u)
-    else:
-        come += wp.max(share * wp.min(at(carried, e, c) + at(carried, e, c + along), 0.0), -1.0) * (after - u)
-    come += wp.min(share * wp.max(at(beside, e, b) + at(beside, e, c), 0.0), 1.0) * (u - at(own, e, c - across))
-    leaving = at(beside, e, b + across) + at(beside, e, c + across)
-    come += wp.max(share * wp.min(leaving, 0.0), -1.0) * (at(own, e, c + across) - u)
+        east = -0.5 * ratio * (u + after)
+    south = wp.max(over_b * at(beside, e, b) + over_c * at(beside, e, c), 0.0)
+    north = -wp.min(over_b * at(beside, e, b + across) + over_c * at(beside, e, c + across), 0.0)
+    come = west * (u - before) + east * (u - after)
+    come += south * (u - at(own, e, c - across)) + north * (u - at(own, e, c + across))
+    whole = west + east + south + north
+    if whole > 1.0:
+        come = come / whole
     slip = 0.25 * (at(other, e, b) + at(other, e, c) + at(other, e, b + across) + at(other, e, c + across))
-    slowed = 1.0 + ratio * SIDE * friction * wp.sqrt(u * u + slip * slip) / deep
-    new = wp.clamp((u - come - ratio * GRAVITY * rise) / slowed, -FASTEST / ratio, FASTEST / ratio)
+    over = low  # depth of what runs over the floor: that upstream, as of the discharge
+    if u < 0.0:
+        over = high
+    if over < FILM:
+        over = deep
+    held = ratio * SIDE * friction * wp.sqrt(u * u + slip * slip) * per_cube_root(over)  # implicit, by Manning
+    new = wp.clamp((u - come - ratio * GRAVITY * rise) * over / (over + held), -FASTEST / ratio, FASTEST / ratio)
     clear = at(height, e, c) - ground
     if new > 0.0 and low > clear:  # the opening is under water
         new = wp.min(new, orifice(clear, low - high) / low)
@@ -139,7 +152,6 @@ def fill(e: int, c: int, pitch: int, ratio: float, basin: Basin):
 def flow(
     dt: float,
     outside: float,
-    friction: float,
     rows: int,
     columns: int,
     basin: Basin,
@@ -173,7 +185,7 @@ def flow(
                         pitch,
                         1,
                         ratio,
-                        friction,
+                        basin.friction[e],
                         basin.velocity_x,
                         basin.velocity_y,
                         basin.discharge_x,
@@ -189,7 +201,7 @@ def flow(
                         1,
                         pitch,
                         ratio,
-                        friction,
+                        basin.friction[e],
                         basin.velocity_y,
                         basin.velocity_x,
                         basin.discharge_y,

@@ -18,9 +18,9 @@ from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.flood.flood import Flood
 from hazard_ms.hazards.flood.realistic.inundation import Inundation
 from hazard_ms.hazards.flood.water import Water
-from hazard_ms.hazards.wind.wind import FASTEST, SLOWEST, Wind
+from hazard_ms.hazards.wind.wind import Wind
 from hazard_ms.registry import HAZARDS, find, load
-from hazard_ms.spec.severity import SCALED, SEVERITIES, USUAL, chosen
+from hazard_ms.spec.severity import SCALED, SEVERITIES, USUAL, WINDS, chosen
 
 FREQUENCIES = {  # frames and physics steps per second: a frame is one env step
     "paper": (30, 120),
@@ -41,6 +41,7 @@ _WIND = {
         scale=1.0, gain=100.0, implicit=False, projected=False, fixed_length=False, sweeping_share=0.2813746
     ),
     "realistic": Wind(
+        by_split=True,
         gain=1.0,
         crossflow=True,
         turbulence=0.0,
@@ -91,7 +92,7 @@ def wind(preset: str, severity: str = USUAL) -> Wind:
     law, level = _WIND[known(preset, tuple(_WIND))], SEVERITIES[chosen(severity, preset)]
     if preset != SCALED:
         return law
-    return dataclasses.replace(law, scale=level.wind / (0.5 * (SLOWEST + FASTEST)))
+    return dataclasses.replace(law, scale=level.wind / (0.5 * sum(WINDS)))
 
 
 def known(preset: str, presets: tuple[str, ...] = PRESETS) -> str:

@@ -40,9 +40,8 @@ from hazard_ms.simulation.containers import container_index, in_containers
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity, rounding
 from hazard_ms.spec.catalogue import IMMOVABLE
+from hazard_ms.spec.severity import STREETS, WINDS, usual_wind
 
-# Range of a wind that the scene leaves open [m/s] [the original's shipped scenes, docs/physics.md 1.3]
-SLOWEST, FASTEST = 2.5, 5.0
 TALL = 2.0  # height that neither a robot nor a thing to rescue exceeds [m] [ours]
 CHEST = 1.0  # height at which the wind acts on the agent [m] [ours]
 
@@ -83,6 +82,8 @@ class Wind(Hazard):
     # in the mean over winds and models, as 1 kg does at 0.3 in the original (docs/physics.md W-9's law); 0.79 of them
     # move (original: 0.77), 0.32 outrun the agent (0.31). [ours]
     scale: float = 0.3  # factor on the scene's wind
+    # a scene's wind counts as its share of the middle of its split's, from two thirds to four thirds, else as it is
+    by_split: bool = False
     gain: float = 1400.0  # factor on rho A v^2 [the paper: "hand-adjusted"]
     # the exact step for a free body, else the original's explicit one, held at the flow's speed [docs/physics.md R12]
     implicit: bool = True
@@ -121,7 +122,7 @@ class Wind(Hazard):
     @property
     def shown_level(self) -> Level:
         """Colours up to the fastest mean wind of any scene: 2 m/s in `paper`, 5 in `shipped`, more in `realistic`."""
-        return replace(self.level, high=float(math.ceil(self.scale * FASTEST)))
+        return replace(self.level, high=float(math.ceil(self.scale * WINDS[1])))
 
     def sizes(self, world: World) -> dict[str, int]:
         deep, wide = shelter.map_size(world) if self.sheltered else (1, 1)
@@ -130,11 +131,18 @@ class Wind(Hazard):
     def reset(self, state: WindState, world: World, rows: Tensor) -> None:
         wind = torch.tensor([world.specs[row].wind for row in rows.tolist()], device=world.device).reshape(-1, 2)
         draw = world.chance.uniform("wind.mean", 2)[rows]
-        angle, speed = 2.0 * math.pi * draw[:, 0], SLOWEST + (FASTEST - SLOWEST) * draw[:, 1]
+        angle, speed = 2.0 * math.pi * draw[:, 0], WINDS[0] + (WINDS[1] - WINDS[0]) * draw[:, 1]
         drawn = torch.stack([speed * rounding.cos(angle), speed * rounding.sin(angle)], -1)
-        wind = torch.where((wind == 0.0).all(-1, keepdim=True), drawn, wind)
-        state.speed[rows] = self.scale * wind.norm(dim=-1)
-        state.heading[rows] = wind / wind.norm(dim=-1, keepdim=True)
+        open_to_chance = (wind == 0.0).all(-1)
+        wind = torch.where(open_to_chance[:, None], drawn, wind)
+        strength = wind.norm(dim=-1)
+        state.heading[rows] = wind / strength[:, None]
+        if self.by_split:
+            middle = wind.new_tensor([usual_wind(world.specs[row].split) for row in rows.tolist()])
+            usual = 0.5 * sum(WINDS)
+            share = strength / torch.where(open_to_chance, usual, middle)
+            strength = usual * share.clamp(*STREETS)
+        state.speed[rows] = self.scale * strength
         state.gust[rows] = world.chance.normal("wind.gust")[rows] if self.gust_intensity else 0.0
         state.felt[rows] = self._felt_share(world)[rows]
         state.strength[rows] = self.gain * (0.5 * world.lookup("drag_coefficient")[rows] if self.shaped else 1.0)

@@ -13,7 +13,7 @@ from hazard_ms.hazards.presets import wind
 from tests.worlds.fire_worlds import about_z
 from tests.worlds.wind_worlds import Block, Thing, begin, push, run, street
 
-REAL = wind("realistic")
+REAL = dataclasses.replace(wind("realistic"), by_split=False)
 # The lee of docs/physics.md 3.3: its length in heights of the obstacle, the share that is gone close behind, the cells
 # of its map [m], the least height of what has one [m], and what lets part of the wind through
 LEE, DEEPEST, CELL, LOWEST, SOLID = 10.0, 0.75, 0.5, 0.5, {"hedge": 0.8}

@@ -98,6 +98,17 @@ def profile(height: float, roughness: float, pavement: float) -> float:
 
 
 @wp.func
+def gustiness(height: float, excess: float, roughness: float) -> float:
+    """Wind at `height` [m] over its mean there, in a gust that is `excess` of the mean at 10 m above it at 10 m.
+
+    The deviation of the wind's speed is the same at all heights of the surface layer, so in shares of the mean it is
+    1 / ln(z / z0) [docs/physics.md 3.3]. The air below JOIN adapts to a gust faster than the gust passes: there it is
+    the share at JOIN. A lull can bring the wind to a standstill, but does not turn it.
+    """
+    return wp.max(1.0 + excess / logarithmic(wp.max(height, JOIN), roughness), 0.0)
+
+
+@wp.func
 def share(
     e: int, point: wp.vec3, corner: wp.vec2, loss: wp.array3d(dtype=float), cause: wp.array3d(dtype=float)
 ) -> float:

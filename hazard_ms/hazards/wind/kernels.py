@@ -53,10 +53,10 @@ class Air:
 @wp.func
 def open_speed(mean: float, gust: float, height: float, rules: Rules) -> float:
     """Speed of the air along its heading [m/s] at `height` [m] in the open, from its `mean` [m/s] and the `gust`."""
-    here = mean * (1.0 + rules.gust_intensity * gust)
-    if rules.roughness > 0.0:
-        here = here * laws.profile(height, rules.roughness, rules.pavement)
-    return here
+    if rules.roughness == 0.0:
+        return mean * (1.0 + rules.gust_intensity * gust)
+    blown = laws.gustiness(height, rules.gust_intensity * gust, rules.roughness)
+    return mean * blown * laws.profile(height, rules.roughness, rules.pavement)
 
 
 @wp.func

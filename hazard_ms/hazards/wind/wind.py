@@ -101,7 +101,7 @@ class Wind(Hazard):
     roughness: float = 0.0
     pavement: float = 0.0  # roughness length of what things lie on, for the lowest metre of air [m]; 0: as around
     lift: float = 0.0  # coefficient of lift of what lies on the ground in a profile, on its area seen from above
-    gust_intensity: float = 0.0  # standard deviation of the wind's speed over its mean
+    gust_intensity: float = 0.0  # standard deviation of the wind's speed over its mean, at 10 m if there is a profile
     gust_time: float = 5.0  # correlation time of gusts [s] [docs/physics.md W-20]
     sheltered: bool = False  # fixtures have a lee
     # The agent only drifts at this share of the speed at which its robot really slides, see
@@ -150,7 +150,7 @@ class Wind(Hazard):
         if self.sheltered:
             state.corner[rows] = shelter.south_west(world)[rows]
             obstacles = shelter.height_map(world, rows, (state.loss.shape[1], state.loss.shape[2]))
-            state.loss[rows], state.cause[rows] = shelter.lee(*obstacles, state.heading[rows])
+            state.loss[rows], state.cause[rows] = shelter.lee(world, *obstacles, state.heading[rows])
 
     def _felt_share(self, world: World) -> Tensor:
         """Share of the wind that every thing feels, [E, B]: 1 / (1 + resistance), 0 if the resistance is above 10."""

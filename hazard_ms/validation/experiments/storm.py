@@ -1,0 +1,63 @@
+"""Experiments with gusts, lees, flight and falls, whose results hazard_ms.validation.storm_cases compares."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+
+import torch
+
+from hazard_ms.validation.experiments.wind import REAL, gusty, three_seconds
+from hazard_ms.validation.experiments.yard import Block, Thing, begin, street
+
+CALM_AIR = dataclasses.replace(REAL, scale=1.0, gust_intensity=0.0)
+STREETS = 20_000  # in which gusts are counted
+HIGH = 2.0  # height of obstacles [m]
+NEAR = 0.3  # height at which their lee is looked at [m]
+
+
+@functools.cache
+def intensity(height: float) -> float:
+    """Deviation of the wind's speed over its mean at a height [m]."""
+    law, world = dataclasses.replace(REAL, sheltered=False), street([Thing()], copies=STREETS)
+    point = torch.tensor([[[8.0, 8.0, height]]]).expand(STREETS, 1, 3)
+    seen = law.speed_at(begin(law, world), world, point)
+    return float(seen.std() / seen.mean())
+
+
+def gust_factor() -> float:
+    """Mean over 200 streets of the largest 3-s mean over the 600-s mean at 10 m."""
+    blown = gusty(REAL.gust_time, REAL.gust_intensity)
+    return float((three_seconds(blown).max(0) / blown.mean(0)).mean())
+
+
+def behind(category: str, size: tuple[float, float], distance: float, high: float = HIGH) -> float:
+    """Share of the wind that is left behind a fixture.
+
+    It is `size` long along the wind and across it, `high`, and `distance` behind its rear, all [m].
+    """
+    block = Block(category, (8.0, 30.25, 0.0), (*size, high))
+    point = torch.tensor([[[8.0 + size[0] / 2 + distance, 30.35, NEAR]]])
+    shelter, open_ground = (street([Thing()], (10.0, 0.0), blocks, size=60.0) for blocks in ([block], []))
+    left, all_of_it = (float(CALM_AIR.speed_at(begin(CALM_AIR, w), w, point)) for w in (shelter, open_ground))
+    return left / all_of_it
+
+
+def behind_wall(heights: float) -> float:
+    """Share of the wind `heights` times its height behind a long, thin, solid wall."""
+    return behind("house", (0.3, 60.0), heights * HIGH)
+
+
+def behind_hedge(heights: float) -> float:
+    """Share of the wind `heights` times its height behind a long hedge."""
+    return behind("hedge", (0.6, 60.0), heights * HIGH)
+
+
+def behind_cube(heights: float) -> float:
+    """Share of the wind `heights` times its height behind a solid cube."""
+    return behind("house", (3.0, 3.0), heights * 3.0, 3.0)
+
+
+def behind_house(heights: float) -> float:
+    """Share of the wind `heights` times its height behind a solid block, four times as wide as high and deep."""
+    return behind("house", (3.0, 12.0), heights * 3.0, 3.0)

@@ -54,6 +54,7 @@ _WIND = {
         lift=0.4,  # suction of 0.7 above less 0.3 below [docs/physics.md 3.3]
         gust_intensity=0.172,  # 1 / ln(10 m / 0.03 m)
         sheltered=True,
+        topples=True,
         sweeping_share=1.0,  # the agent drifts at the speed at which its robot really slides [docs/physics.md 3.3]
     ),
 }

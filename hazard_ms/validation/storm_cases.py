@@ -16,12 +16,14 @@ W34_HEDGE = {5: 0.25, 20: 0.85}
 # 1 - (L / x)^1.5, L the length of the cavity of Hosker 1979, 1.75 W / (1 + 0.25 W / H) [Roeckle 1990]
 W35 = {2: 0.4143, 4: 0.7929, 8: 0.9268}  # L = 1.4 H
 W36 = {8: 0.7106, 12: 0.8425}  # L = 3.5 H; 0.4143 at 5 H is missed, see docs/physics.md 2.3
+W38 = {"fetch": 34.9, "g1": 16.6}  # sqrt(m g b / (rho Cd A h)): 115 and 35 kg, b 0.51 and 0.2 m, h 0.55 and 0.656 m
 
 
 def cases() -> Iterator[Case]:
     """All cases of this module."""
     yield from table("W-30", "intensity of turbulence at {} m", W30, 0.1, storm.intensity)
     yield from table("W-31", "the same against measurements, at {} m", W31, 0.1, storm.intensity)
+    yield from table("W-38", "wind at 1 m that throws over {}", W38, 0.03, storm.topples_at, unit="m/s")
     # off-land winds [Harper, Kepert & Ginger 2010, WMO/TD-No. 1555]
     yield Case("W-32", "3-s gust over the 600-s mean, open country", 1.52, 0.1, storm.gust_factor, slow=True)
     yield from table("W-33", "left of the wind {} H behind a solid wall", W33, 0.15, storm.behind_wall, absolute=True)

@@ -76,6 +76,32 @@ def speeds(rules: Rules, air: Air, points: wp.array2d(dtype=wp.vec3), found: wp.
 
 
 @wp.kernel
+def topple(
+    dt: float,
+    toppling: float,
+    rising: float,
+    chest: float,
+    rules: Rules,
+    air: Air,
+    agent: wp.array(dtype=wp.vec3),
+    lies: wp.array(dtype=bool),
+    lain: wp.array(dtype=float),
+):
+    """Let agents fall over where the air at the height `chest` [m] is as fast as `toppling` [m/s].
+
+    They stand up after `rising` [s], and fall again if it still is.
+    """
+    e = wp.tid()
+    time = lain[e] + dt
+    if lies[e] and time >= rising:
+        lies[e] = False
+    if not lies[e]:
+        time = 0.0
+        lies[e] = speed_at(e, agent[e] + wp.vec3(0.0, 0.0, chest), rules, air) >= toppling
+    lain[e] = time
+
+
+@wp.kernel
 def turbulence(
     stream: wp.uint32,
     sideways: float,

@@ -28,10 +28,11 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.base import Hazard, Level, Push, State, quantity
+from hazard_ms.hazards.base import Hazard, Level, Push, State
 from hazard_ms.hazards.wind import gusts, kernels, shelter
 from hazard_ms.hazards.wind.air import REFERENCE
-from hazard_ms.hazards.wind.sweeping import sweeping_speed
+from hazard_ms.hazards.wind.sweeping import sweeping_speed, toppling_speed
+from hazard_ms.hazards.wind.wind_state import WindState
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.draws import word
 from hazard_ms.kernels.launch import of_environments
@@ -46,24 +47,6 @@ TALL = 2.0  # height that neither a robot nor a thing to rescue exceeds [m] [our
 CHEST = 1.0  # height at which the wind acts on the agent [m] [ours]
 
 
-@dataclass
-class WindState(State):
-    """State of the wind with C carts and a shelter map of Y x X cells."""
-
-    heading: Tensor = quantity("E 2", "", "where the wind blows to, a unit vector")
-    speed: Tensor = quantity("E", "m/s", "mean wind, at 10 m where there is a profile")
-    gust: Tensor = quantity("E", "", "excess over the mean wind in standard deviations")
-    felt: Tensor = quantity("E B", "", "share of the wind that a thing feels")
-    strength: Tensor = quantity("E B", "", "force over density, area and speed squared")
-    sway: Tensor = quantity("E B 3", "", "sideways force over the force along the wind, the vector r")
-    twist: Tensor = quantity("E B 3", "m", "torque over the force along the wind")
-    carts: Tensor = quantity("E C", "", "index of a cart, -1 for none", dtype="int", fill=-1, low=-1, high="B")
-    settled: Tensor = quantity("E B", "", "lies in a cart: the wind does not touch it any more", dtype="bool")
-    corner: Tensor = quantity("E 2", "m", "south-west corner of the shelter map")
-    loss: Tensor = quantity("E Y X", "", "share of the wind that is lost near the ground")
-    cause: Tensor = quantity("E Y X", "m", "height of what shelters the cell")
-
-
 @dataclass(frozen=True)
 class Wind(Hazard):
     """A wind with these parameters; the defaults are those of the preset `paper`."""
@@ -71,7 +54,10 @@ class Wind(Hazard):
     name: ClassVar[str] = "wind"
     state_type: ClassVar[type[State]] = WindState
     level: ClassVar[Level] = Level("wind", "m/s", 0.0, 6.0, "bone", (148, 157, 171), least=0.0, told_up_to=TALL)
-    tells: ClassVar[dict[str, Quantity]] = {"agent_wind": Quantity("speed of the air at the agent's chest", "m/s", 0.0)}
+    tells: ClassVar[dict[str, Quantity]] = {
+        "agent_wind": Quantity("speed of the air at the agent's chest", "m/s", 0.0),
+        "agent_fallen": Quantity("the agent lies on the ground", "", 0, 1),
+    }
     fills: ClassVar[bool] = True  # with haze
     open_air: ClassVar[bool] = True
     provides: ClassVar[dict[str, str]] = {"air": "velocity_at"}
@@ -108,6 +94,7 @@ class Wind(Hazard):
     # hazard_ms.hazards.wind.sweeping. With it Fetch, which slides at 39.73 m/s, drifts at 3.354 m/s: it keeps 0.8 of
     # its motion in the wind that a scene gives as 5 m/s. [ours]
     sweeping_share: float = 0.0844124
+    topples: bool = False  # it throws the agent over, too
 
     def __post_init__(self) -> None:
         for name in ("scale", "gain", "gust_time", "sweeping_share"):
@@ -181,6 +168,8 @@ class Wind(Hazard):
         state.settled.logical_or_(in_containers(world, state.carts, state.settled))
         if self.gust_intensity:
             state.gust.copy_(gusts.gust(state.gust, dt, self.gust_time, world.chance.normal("wind.gust")))
+        if self.topples and world.agent_build is not None:
+            self._topple(state, world, dt)
         if not self.turbulence and not self.torque:
             return
         scale = gusts.per_frame(dt)
@@ -195,6 +184,12 @@ class Wind(Hazard):
             *self._air(state, world),
             world.launches.struct(Bodies, world),
         )
+
+    def _topple(self, state: WindState, world: World, dt: float) -> None:
+        """Let agents fall, lie and stand up during `dt` [s]."""
+        speeds = toppling_speed(world.robot), world.robot.rising
+        agent = world.agent_position, state.lies, state.lain
+        world.launches.run(kernels.topple, (world.num_envs,), dt, *speeds, CHEST, *self._air(state, world), *agent)
 
     def _air(self, state: WindState, world: World) -> tuple[Argument, Argument]:
         """The rules and the air as kernels take them."""
@@ -223,15 +218,23 @@ class Wind(Hazard):
         """Motion that is left to the agent, [E, 3]: the share of its own velocity, and a velocity x, y [m/s] to add.
 
         Together they are a weighted mean of its own velocity and the air's, so it is carried no faster than the wind.
-        It is never toppled.
+        One that lies on the ground only slides, once the wind outdoes its friction: at what is faster then.
         """
         speed = self.speed_at(state, world, self._chest(world))
         swept = self.sweeping_share * sweeping_speed(world.robot)
         kept = (1.0 - (speed / swept).square()).clamp(min=0.0)
-        return torch.cat([kept, (1.0 - kept) * speed * state.heading], 1)
+        drift = (1.0 - kept) * speed
+        if self.topples:
+            down = state.lies[:, None]
+            kept, drift = torch.where(down, 0.0, kept), torch.where(down, (speed - swept).clamp(min=0.0), drift)
+        return torch.cat([kept, drift * state.heading], 1)
+
+    def fallen(self, state: WindState, world: World) -> Tensor | None:
+        return state.lies if self.topples else None
 
     def agent_info(self, state: WindState, world: World) -> dict[str, Tensor]:
-        return {"agent_wind": self.image(state, world, self._chest(world))[:, 0]}
+        told = {"agent_wind": self.image(state, world, self._chest(world))[:, 0]}
+        return {**told, "agent_fallen": state.lies.clone()} if self.topples else told
 
     def _chest(self, world: World) -> Tensor:
         """Place where the wind acts on the agent [m], [E, 1, 3], world frame."""

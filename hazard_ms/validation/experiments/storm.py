@@ -7,8 +7,10 @@ import functools
 
 import torch
 
+from hazard_ms.robots.fetch import HazardFetch
+from hazard_ms.robots.g1 import HazardG1
 from hazard_ms.validation.experiments.wind import REAL, gusty, three_seconds
-from hazard_ms.validation.experiments.yard import Block, Thing, begin, street
+from hazard_ms.validation.experiments.yard import Block, Thing, begin, run, street
 
 CALM_AIR = dataclasses.replace(REAL, scale=1.0, gust_intensity=0.0)
 STREETS = 20_000  # in which gusts are counted
@@ -41,6 +43,19 @@ def behind(category: str, size: tuple[float, float], distance: float, high: floa
     shelter, open_ground = (street([Thing()], (10.0, 0.0), blocks, size=60.0) for blocks in ([block], []))
     left, all_of_it = (float(CALM_AIR.speed_at(begin(CALM_AIR, w), w, point)) for w in (shelter, open_ground))
     return left / all_of_it
+
+
+def topples_at(robot: str) -> float:
+    """Steady wind [m/s] at a standing robot's chest that throws it over, to 1 cm/s."""
+    world, low, high = street([Thing()], (10.0, 0.0)), 0.0, 100.0
+    world.agent_build = {"fetch": HazardFetch, "g1": HazardG1}[robot].build
+    law = dataclasses.replace(CALM_AIR, sheltered=False)
+    while high - low > 0.01:
+        middle, state = 0.5 * (low + high), begin(law, world)
+        state.speed *= middle / float(law.agent_info(state, world)["agent_wind"])
+        run(law, state, world, 1)
+        low, high = (low, middle) if bool(state.lies) else (middle, high)
+    return high
 
 
 def behind_wall(heights: float) -> float:

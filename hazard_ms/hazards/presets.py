@@ -20,7 +20,7 @@ from hazard_ms.hazards.flood.realistic.inundation import Inundation
 from hazard_ms.hazards.flood.water import Water
 from hazard_ms.hazards.wind.wind import Wind
 from hazard_ms.registry import HAZARDS, find, load
-from hazard_ms.spec.severity import SCALED, SEVERITIES, USUAL, WINDS, chosen
+from hazard_ms.spec.severity import MIDDLE, SCALED, SEVERITIES, USUAL, chosen
 
 FREQUENCIES = {  # frames and physics steps per second: a frame is one env step
     "paper": (30, 120),
@@ -55,6 +55,7 @@ _WIND = {
         gust_intensity=0.172,  # 1 / ln(10 m / 0.03 m)
         sheltered=True,
         topples=True,
+        breaks=True,
         sweeping_share=1.0,  # the agent drifts at the speed at which its robot really slides [docs/physics.md 3.3]
     ),
 }
@@ -93,7 +94,7 @@ def wind(preset: str, severity: str = USUAL) -> Wind:
     law, level = _WIND[known(preset, tuple(_WIND))], SEVERITIES[chosen(severity, preset)]
     if preset != SCALED:
         return law
-    return dataclasses.replace(law, scale=level.wind / (0.5 * sum(WINDS)))
+    return dataclasses.replace(law, scale=level.wind / MIDDLE)
 
 
 def known(preset: str, presets: tuple[str, ...] = PRESETS) -> str:

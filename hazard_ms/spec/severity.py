@@ -21,6 +21,7 @@ from hazard_ms.spec.checks import one_of
 
 SCALED = "realistic"  # the preset that severity scales
 WINDS = (2.5, 5.0)  # slowest and fastest wind of a scene [m/s] [the original's shipped scenes, docs/physics.md 1.3]
+MIDDLE = 0.5 * sum(WINDS)  # of these winds [m/s]
 STRONGER_WINDS = {"hard": (5.0, 8.0)}  # those of scenes of other splits [m/s] [ours]
 STREETS = 2.0 / 3.0, 4.0 / 3.0  # least and largest share of a storm's wind in one of its streets [-] [ours]
 

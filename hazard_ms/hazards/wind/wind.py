@@ -14,8 +14,8 @@ cart has settled: it feels nothing, for ever. Constants: docs/physics.md 1.3; wh
 `realistic` is the same with c = Cd / 2 for the gain, the whole relative velocity, gusts, sheltered lees, as a torque
 the pressure upwind of the centre, and the logarithmic profile, over which force and torque are integrated from a
 thing's base to its top. There the new velocity is a weighted mean of the thing's own and of those of the air that
-meets it, so wind alone makes no thing faster than its gusts, in any direction. Wind damages nothing. Things that it
-carries away stop at the enclosure that `Room.beyond` sets. Limits: no lift off the ground, no added mass; things do not
+meets it, so wind alone makes no thing faster than its gusts, in any direction. Blows break fragile things, and robots
+fall over. What is carried away stops at the enclosure that `Room.beyond` sets. Limits: no added mass; things do not
 shelter one another.
 """
 
@@ -29,7 +29,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.base import Hazard, Level, Push, State
-from hazard_ms.hazards.wind import gusts, kernels, shelter
+from hazard_ms.hazards.wind import blows, breaking, gusts, kernels, shelter
 from hazard_ms.hazards.wind.air import REFERENCE
 from hazard_ms.hazards.wind.sweeping import sweeping_speed, toppling_speed
 from hazard_ms.hazards.wind.wind_state import WindState
@@ -41,10 +41,11 @@ from hazard_ms.simulation.containers import container_index, in_containers
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity, rounding
 from hazard_ms.spec.catalogue import IMMOVABLE
-from hazard_ms.spec.severity import STREETS, WINDS, usual_wind
+from hazard_ms.spec.severity import MIDDLE, STREETS, WINDS, usual_wind
 
 TALL = 2.0  # height that neither a robot nor a thing to rescue exceeds [m] [ours]
 CHEST = 1.0  # height at which the wind acts on the agent [m] [ours]
+NEAR = 0.1  # what takes a blow within this distance of the agent has hit it [m] [ours]
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,7 @@ class Wind(Hazard):
     tells: ClassVar[dict[str, Quantity]] = {
         "agent_wind": Quantity("speed of the air at the agent's chest", "m/s", 0.0),
         "agent_fallen": Quantity("the agent lies on the ground", "", 0, 1),
+        "agent_struck": Quantity("energy of the hardest blow at the agent in the last frame", "J", 0.0),
     }
     fills: ClassVar[bool] = True  # with haze
     open_air: ClassVar[bool] = True
@@ -95,6 +97,7 @@ class Wind(Hazard):
     # its motion in the wind that a scene gives as 5 m/s. [ours]
     sweeping_share: float = 0.0844124
     topples: bool = False  # it throws the agent over, too
+    breaks: bool = False  # blows damage things, and agents are told of those that hit them
 
     def __post_init__(self) -> None:
         for name in ("scale", "gain", "gust_time", "sweeping_share"):
@@ -125,14 +128,13 @@ class Wind(Hazard):
         strength = wind.norm(dim=-1)
         state.heading[rows] = wind / strength[:, None]
         if self.by_split:
-            middle = wind.new_tensor([usual_wind(world.specs[row].split) for row in rows.tolist()])
-            usual = 0.5 * sum(WINDS)
-            share = strength / torch.where(open_to_chance, usual, middle)
-            strength = usual * share.clamp(*STREETS)
+            usual = wind.new_tensor([usual_wind(world.specs[row].split) for row in rows.tolist()])
+            strength = MIDDLE * (strength / torch.where(open_to_chance, MIDDLE, usual)).clamp(*STREETS)
         state.speed[rows] = self.scale * strength
         state.gust[rows] = world.chance.normal("wind.gust")[rows] if self.gust_intensity else 0.0
         state.felt[rows] = self._felt_share(world)[rows]
         state.strength[rows] = self.gain * (0.5 * world.lookup("drag_coefficient")[rows] if self.shaped else 1.0)
+        state.endurance[rows] = breaking.endurance(world)[rows]
         state.carts[rows] = container_index(world)[rows]
         if self.sheltered:
             state.corner[rows] = shelter.south_west(world)[rows]
@@ -168,6 +170,9 @@ class Wind(Hazard):
         state.settled.logical_or_(in_containers(world, state.carts, state.settled))
         if self.gust_intensity:
             state.gust.copy_(gusts.gust(state.gust, dt, self.gust_time, world.chance.normal("wind.gust")))
+        if self.breaks:
+            blown = world.launches.struct(Bodies, world), state.before, state.struck
+            world.launches.run(blows.strike, tuple(world.exists.shape), dt, *self._air(state, world), *blown)
         if self.topples and world.agent_build is not None:
             self._topple(state, world, dt)
         if not self.turbulence and not self.torque:
@@ -207,8 +212,8 @@ class Wind(Hazard):
         return self.speed_at(state, world, points)[..., None] * state.heading[:, None]
 
     def damaged(self, state: WindState, world: World) -> Tensor:
-        """Bodies that the wind damages, [E, B], bool: none, since it only carries them off."""
-        return torch.zeros_like(world.exists)
+        """Bodies that break by a blow, [E, B], bool: none in `paper` and `shipped`, whose wind only carries off."""
+        return state.struck > state.endurance if self.breaks else torch.zeros_like(world.exists)
 
     def image(self, state: WindState, world: World, points: Tensor) -> Tensor:
         """Speed of the air [m/s] at `points` [m], [E, P, 3], world frame, before any thing's resistance: [E, P]."""
@@ -234,7 +239,11 @@ class Wind(Hazard):
 
     def agent_info(self, state: WindState, world: World) -> dict[str, Tensor]:
         told = {"agent_wind": self.image(state, world, self._chest(world))[:, 0]}
-        return {**told, "agent_fallen": state.lies.clone()} if self.topples else told
+        if self.topples:
+            told["agent_fallen"] = state.lies.clone()
+        if self.breaks:
+            told["agent_struck"] = torch.where(breaking.at_the_agent(world, NEAR), state.struck, 0.0).amax(1)
+        return told
 
     def _chest(self, world: World) -> Tensor:
         """Place where the wind acts on the agent [m], [E, 1, 3], world frame."""

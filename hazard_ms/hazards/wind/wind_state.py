@@ -25,5 +25,8 @@ class WindState(State):
     corner: Tensor = quantity("E 2", "m", "south-west corner of the shelter map")
     lies: Tensor = quantity("E", "", "the agent lies on the ground", dtype="bool")
     lain: Tensor = quantity("E", "s", "time since the agent fell, 0 where it stands", low=0.0)
+    before: Tensor = quantity("E B 3", "m/s", "velocity of each thing a frame ago")
+    struck: Tensor = quantity("E B", "J", "energy of the blow that a thing took in the last frame", low=0.0)
+    endurance: Tensor = quantity("E B", "J", "largest energy of a blow that a thing bears", low=0.0)
     loss: Tensor = quantity("E Y X", "", "share of the wind that is lost near the ground")
     cause: Tensor = quantity("E Y X", "m", "height of what shelters the cell")

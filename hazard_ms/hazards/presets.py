@@ -52,6 +52,7 @@ _WIND = {
         roughness=0.03,  # open ground [docs/physics.md 3.3]
         pavement=0.001,  # asphalt [docs/physics.md 3.3]
         lift=0.4,  # suction of 0.7 above less 0.3 below [docs/physics.md 3.3]
+        plates=True,
         gust_intensity=0.172,  # 1 / ln(10 m / 0.03 m)
         sheltered=True,
         topples=True,

@@ -16,6 +16,10 @@ W34_HEDGE = {5: 0.25, 20: 0.85}
 # 1 - (L / x)^1.5, L the length of the cavity of Hosker 1979, 1.75 W / (1 + 0.25 W / H) [Roeckle 1990]
 W35 = {2: 0.4143, 4: 0.7929, 8: 0.9268}  # L = 1.4 H
 W36 = {8: 0.7106, 12: 0.8425}  # L = 3.5 H; 0.4143 at 5 H is missed, see docs/physics.md 2.3
+# 1 - exp(-sqrt(1.822 K x*)) [Lin, Holmes & Letchford 2007]
+W37 = {0.25: 0.491, 0.5: 0.615, 1.0: 0.741, 2.0: 0.852}
+# 0.456 k^2 - 0.148 k^3 + 0.024 k^4 - 0.0014 k^5, k = K t* [Lin, Letchford & Holmes 2006]
+W39 = {1: 0.3306, 2: 0.9792, 3: 1.7118}
 W38 = {"fetch": 34.9, "g1": 16.6}  # sqrt(m g b / (rho Cd A h)): 115 and 35 kg, b 0.51 and 0.2 m, h 0.55 and 0.656 m
 
 
@@ -24,6 +28,8 @@ def cases() -> Iterator[Case]:
     yield from table("W-30", "intensity of turbulence at {} m", W30, 0.1, storm.intensity)
     yield from table("W-31", "the same against measurements, at {} m", W31, 0.1, storm.intensity)
     yield from table("W-38", "wind at 1 m that throws over {}", W38, 0.03, storm.topples_at, unit="m/s")
+    yield from table("W-37", "speed of plates over the wind's at K x* {}", W37, 0.15, storm.speed_after, slow=True)
+    yield from table("W-39", "distance K x* of plates at K t* {}", W39, 0.15, storm.distance_after, slow=True)
     # off-land winds [Harper, Kepert & Ginger 2010, WMO/TD-No. 1555]
     yield Case("W-32", "3-s gust over the 600-s mean, open country", 1.52, 0.1, storm.gust_factor, slow=True)
     yield from table("W-33", "left of the wind {} H behind a solid wall", W33, 0.15, storm.behind_wall, absolute=True)

@@ -70,8 +70,7 @@ class Wind(Hazard):
     # in the mean over winds and models, as 1 kg does at 0.3 in the original (docs/physics.md W-9's law); 0.79 of them
     # move (original: 0.77), 0.32 outrun the agent (0.31). [ours]
     scale: float = 0.3  # factor on the scene's wind
-    # a scene's wind counts as its share of the middle of its split's, from two thirds to four thirds, else as it is
-    by_split: bool = False
+    by_split: bool = False  # a scene's wind counts as its share of its split's, from two thirds to four thirds
     gain: float = 1400.0  # factor on rho A v^2 [the paper: "hand-adjusted"]
     # the exact step for a free body, else the original's explicit one, held at the flow's speed [docs/physics.md R12]
     implicit: bool = True
@@ -89,6 +88,7 @@ class Wind(Hazard):
     roughness: float = 0.0
     pavement: float = 0.0  # roughness length of what things lie on, for the lowest metre of air [m]; 0: as around
     lift: float = 0.0  # coefficient of lift of what lies on the ground in a profile, on its area seen from above
+    plates: bool = False  # in a profile, air lifts flat things by their faces
     gust_intensity: float = 0.0  # standard deviation of the wind's speed over its mean, at 10 m if there is a profile
     gust_time: float = 5.0  # correlation time of gusts [s] [docs/physics.md W-20]
     sheltered: bool = False  # fixtures have a lee
@@ -111,7 +111,7 @@ class Wind(Hazard):
 
     @property
     def shown_level(self) -> Level:
-        """Colours up to the fastest mean wind of any scene: 2 m/s in `paper`, 5 in `shipped`, more in `realistic`."""
+        """Colours up to the fastest mean wind: 2 m/s in `paper`, 5 in `shipped`, more in `realistic`."""
         return replace(self.level, high=float(math.ceil(self.scale * WINDS[1])))
 
     def sizes(self, world: World) -> dict[str, int]:
@@ -193,8 +193,8 @@ class Wind(Hazard):
     def _topple(self, state: WindState, world: World, dt: float) -> None:
         """Let agents fall, lie and stand up during `dt` [s]."""
         speeds = toppling_speed(world.robot), world.robot.rising
-        agent = world.agent_position, state.lies, state.lain
-        world.launches.run(kernels.topple, (world.num_envs,), dt, *speeds, CHEST, *self._air(state, world), *agent)
+        agent = *self._air(state, world), world.agent_position, state.lies, state.lain
+        world.launches.run(kernels.topple, (world.num_envs,), dt, *speeds, CHEST, *agent)
 
     def _air(self, state: WindState, world: World) -> tuple[Argument, Argument]:
         """The rules and the air as kernels take them."""

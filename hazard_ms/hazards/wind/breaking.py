@@ -1,4 +1,4 @@
-"""What breaks by a blow, and at which energy (torch).
+"""Energies of blows by which things break (torch).
 
 Electronics    that of a fall from 1 m [IEC 60068-2-31: free fall of hand-held equipment]
 Bottles        30 J, a full bottle of beer under a falling steel ball [Bolliger et al. 2009]

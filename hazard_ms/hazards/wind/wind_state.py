@@ -1,4 +1,4 @@
-"""What changes in the course of an episode with wind."""
+"""State of an episode with wind."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ def behind(category: str, size: tuple[float, float], distance: float, high: floa
 
 @functools.cache
 def flights() -> list[tuple[np.ndarray, np.ndarray]]:
-    """Path [m] and speed [m/s] along the wind after each 1/120 s of plates that start at rest at many angles."""
+    """Paths [m] and speeds [m/s] along the wind, [240] each, after each 1/120 s, of plates at rest at many angles."""
     law, made = dataclasses.replace(CALM_AIR, sheltered=False, roughness=1e-9, pavement=0.0), []
     for angle in range(0, 180, 15):
         turn = math.cos(math.radians(angle) / 2), 0.0, math.sin(math.radians(angle) / 2), 0.0

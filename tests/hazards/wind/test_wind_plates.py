@@ -1,4 +1,4 @@
-"""Flat things in the wind of `realistic`: forces by the angle between face and air, from Holmes, Letchford & Lin 2006."""
+"""Flat things in the wind of `realistic`: forces by the angle of the air [Holmes, Letchford & Lin 2006]."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LAW = dataclasses.replace(
     lift=0.0,
 )
 SIDE, HEAVY, HIGH = 0.4, 1e9, 9.8  # a plate's edge [m], mass [kg] and height [m]
-# Coefficients of the force on a square plate over that of one across the wind: 1.71 a / 40 up to 40 degrees, 1.15 beyond
+# Force on a square plate over that on one across the wind: 1.71 a / 40 up to 40 degrees, 1.15 beyond, over 1.15
 NORMAL = {10: 0.3717, 20: 0.7435, 35: 1.3011, 50: 1.0, 90: 1.0}
 # Place of the force in edges upwind of the middle: 0.3 - 0.22 a / 38, 0.08 cos 2 (a - 38), 0
 PLACE = {10: 0.2421, 20: 0.1842, 35: 0.0974, 50: 0.0731, 90: 0.0}

@@ -24,7 +24,7 @@ from hazard_ms.effects.streets.street import Breeze
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.sway import foliage
 from hazard_ms.effects.textures import noise_texture
-from hazard_ms.hazards.wind.wind import WindState
+from hazard_ms.hazards.wind.wind_state import WindState
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec
 

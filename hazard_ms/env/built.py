@@ -15,6 +15,7 @@ from torch import Tensor
 from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.grasp import Hand
 from hazard_ms.episode.situation import Situation
+from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.presets import FREQUENCIES
 from hazard_ms.scenes.choice import SceneChoice
 from hazard_ms.sensing.display import Display
@@ -111,6 +112,9 @@ class BuiltEnv(BaseEnv):
 
     def _before_control_step(self) -> None:
         if self.affects_agent:
+            down = self.episode.lying()
+            if down is not None and not none_set(down):
+                self.agent.lie(down)
             self.agent.carry(self.episode.slowed)
             self.agent.keep_out(self.episode.forbidden)
         if self.affects_agent and self.gpu_sim_enabled:

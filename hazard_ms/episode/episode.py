@@ -151,6 +151,12 @@ class Episode:
         """Levels of the K hazards at `points` [m], world frame, [E, P, 3]: [E, K, P], each in its hazard's unit."""
         return torch.stack([h.image(self.states[h.name], self.world, points) for h in self.hazards], dim=1)
 
+    def lying(self) -> Tensor | None:
+        """Whether the agent lies on the ground where a hazard threw it over, [E], bool; None: none ever does."""
+        falls = [h.fallen(self.states[h.name], self.world) for h in self.hazards]
+        known = [fell for fell in falls if fell is not None]
+        return torch.stack(known).any(0) if known else None
+
     def slowed(self, velocity: Tensor) -> Tensor:
         """The agent's own `velocity` [m/s], [E, 2], after each hazard in turn has slowed it."""
         for hazard in self.hazards:

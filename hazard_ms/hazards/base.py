@@ -174,6 +174,10 @@ class Hazard(abc.ABC):
         """
         return torch.eye(3, device=world.device)[:1].expand(world.num_envs, 3)
 
+    def fallen(self, state: Any, world: World) -> Tensor | None:
+        """Whether an agent that the hazard affects lies on the ground, [E], bool; None: it never falls."""
+        return None
+
     def agent_info(self, state: Any, world: World) -> dict[str, Tensor]:
         """The numbers of `info` about the agent, by name, [E] each; with units as the hazard declares."""
         return {}

@@ -18,9 +18,9 @@ from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.flood.flood import Flood
 from hazard_ms.hazards.flood.realistic.inundation import Inundation
 from hazard_ms.hazards.flood.water import Water
-from hazard_ms.hazards.wind.wind import FASTEST, SLOWEST, Wind
+from hazard_ms.hazards.wind.wind import Wind
 from hazard_ms.registry import HAZARDS, find, load
-from hazard_ms.spec.severity import SCALED, SEVERITIES, USUAL, chosen
+from hazard_ms.spec.severity import MIDDLE, SCALED, SEVERITIES, USUAL, chosen
 
 FREQUENCIES = {  # frames and physics steps per second: a frame is one env step
     "paper": (30, 120),
@@ -41,6 +41,7 @@ _WIND = {
         scale=1.0, gain=100.0, implicit=False, projected=False, fixed_length=False, sweeping_share=0.2813746
     ),
     "realistic": Wind(
+        by_split=True,
         gain=1.0,
         crossflow=True,
         turbulence=0.0,
@@ -51,8 +52,11 @@ _WIND = {
         roughness=0.03,  # open ground [docs/physics.md 3.3]
         pavement=0.001,  # asphalt [docs/physics.md 3.3]
         lift=0.4,  # suction of 0.7 above less 0.3 below [docs/physics.md 3.3]
+        plates=True,
         gust_intensity=0.172,  # 1 / ln(10 m / 0.03 m)
         sheltered=True,
+        topples=True,
+        breaks=True,
         sweeping_share=1.0,  # the agent drifts at the speed at which its robot really slides [docs/physics.md 3.3]
     ),
 }
@@ -91,7 +95,7 @@ def wind(preset: str, severity: str = USUAL) -> Wind:
     law, level = _WIND[known(preset, tuple(_WIND))], SEVERITIES[chosen(severity, preset)]
     if preset != SCALED:
         return law
-    return dataclasses.replace(law, scale=level.wind / (0.5 * (SLOWEST + FASTEST)))
+    return dataclasses.replace(law, scale=level.wind / MIDDLE)
 
 
 def known(preset: str, presets: tuple[str, ...] = PRESETS) -> str:

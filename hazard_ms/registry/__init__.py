@@ -228,7 +228,7 @@ register_hazard(
     "wind",
     "hazard_ms.hazards.presets:wind",
     "hazard_ms.effects.wind:WindEffects",
-    "hazard_ms.validation.wind_cases:cases",
+    ("hazard_ms.validation.wind_cases:cases", "hazard_ms.validation.storm_cases:cases"),
     "hazard_ms.validation.curves:wind_charts",
 )
 

@@ -57,6 +57,8 @@ class HazardFetch(PlanarRobot, Fetch):
         reach=0.95,
         elbow_room=0.70,
         nearest=0.40,
+        stance=0.51,  # of the base, as its width
+        drag_height=0.55,  # half of 1.10 m, its height with the torso down (Fetch Robotics, hardware overview)
     )
     rest = TUCKED
     ride_height = RIDE_HEIGHT

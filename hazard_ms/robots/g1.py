@@ -84,6 +84,9 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
         elbow_room=0.45,
         nearest=0.25,
         stoops=((0.12, 1.00), (0.36, 0.78), (0.34, 0.50)),
+        stance=0.19,  # length of its soles between the contacts of its description
+        drag_height=0.66,  # half of 1.32 m (Unitree's specification)
+        rising=8.0,  # as long as getting up slowly and smoothly takes a G1 [He et al. 2025, arXiv 2502.12152; ours]
     )
     rest = REST
     ride_height = 0.0

@@ -27,11 +27,9 @@ from hazard_ms.spec.checks import one_of
 FORWARD_STEP = 1.0 / 62.0  # walking speed of the benchmark [m per frame]
 TURN_STEP = float(np.deg2rad(6.0))  # turning speed of the benchmark [rad per frame]
 HEAD_FOV = 2.0 * np.pi / 3.0  # vertical field of view of the benchmark's head camera [rad]
-# the first three joints, as ManiSkill calls them
-BASE_JOINTS = ("root_x_axis_joint", "root_y_axis_joint", "root_z_rotation_joint")
+BASE_JOINTS = ("root_x_axis_joint", "root_y_axis_joint", "root_z_rotation_joint")  # as ManiSkill calls them
 LOOK_AHEAD = 3.0  # frames within which the base surely stops
-# points of the base's rim that are kept out of forbidden floor: 0.04 m apart, so that no corner of it slips between
-RIM = 48
+RIM = 48  # points of the base's rim that are kept out of forbidden floor: 0.04 m apart, so that no corner slips between
 
 
 class PlanarRobot(Robot):
@@ -165,16 +163,19 @@ class PlanarRobot(Robot):
         self._set_drive(torch.where(stop[:, None], 0.0, velocity))
         return stop
 
+    def lie(self, down: Tensor) -> None:
+        self._set_drive(torch.where(down[:, None], 0.0, self._drive(3)))
+
     def carry(self, slowed: Callable[[Tensor], Tensor]) -> None:
         self._set_drive(slowed(self._drive()))
 
-    def _drive(self) -> Tensor:
-        """Velocity at which the base is to drive [m/s], world frame, [E, 2]."""
-        return torch.stack([j.drive_velocity_target.reshape(-1) for j in self.robot.active_joints[:2]], dim=-1)
+    def _drive(self, count: int = 2) -> Tensor:
+        """Velocities that the base's first `count` joints are to have [m/s], [rad/s], world frame, [E, count]."""
+        return torch.stack([j.drive_velocity_target.reshape(-1) for j in self.robot.active_joints[:count]], dim=-1)
 
     def _set_drive(self, velocity: Tensor) -> None:
-        index = torch.arange(2, dtype=torch.int32, device=self.device)
-        self.robot.set_joint_drive_velocity_targets(velocity, self.robot.active_joints[:2], index)
+        index = torch.arange(velocity.shape[1], dtype=torch.int32, device=self.device)
+        self.robot.set_joint_drive_velocity_targets(velocity, self.robot.active_joints[: len(index)], index)
 
     def hand_kinematics(
         self, joints: NDArray[np.float64], number: int, moving: list[int]

@@ -68,6 +68,13 @@ class Robot(abc.ABC):
         """
 
     @abc.abstractmethod
+    def lie(self, down: Tensor) -> None:
+        """Take all of this frame's drive, turns too, from robots that lie on the ground: `down`, bool [E].
+
+        Call it after the action is set and before `carry`.
+        """
+
+    @abc.abstractmethod
     def carry(self, slowed: Callable[[Tensor], Tensor]) -> None:
         """Change this frame's drive to what is left of it.
 

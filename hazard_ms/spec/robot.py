@@ -14,7 +14,8 @@ GRASP_REACH = 0.15
 class Build:
     """The weight, size and limits of a robot.
 
-    Raises ValueError for a mass, width, drag area or friction that is not positive.
+    Raises ValueError for a mass, width, drag area, friction, stance, height of the drag or time to stand up that is not
+    positive.
     """
 
     mass: float  # [kg]
@@ -31,11 +32,24 @@ class Build:
     elbow_room: float
     nearest: float  # horizontal distance from the base's middle below which the hand would meet its own base [m]
     stoops: tuple[tuple[float, float], ...] = ()  # other places where bending or crouching can bring the shoulder [m]
+    stance: float = math.inf  # least width of the ground between its wheels or soles [m]; infinite: it never falls over
+    drag_height: float = 0.5  # height above the floor at which drag in air acts on it [m]
+    rising: float = math.inf  # time in which it stands up again after a fall [s]; infinite: it stays down
 
     def __post_init__(self) -> None:
         for name in ("mass", "width", "drag_area", "friction"):
             if not 0.0 < getattr(self, name) < math.inf:
                 raise ValueError(f"{name} must be a positive number, got {getattr(self, name)!r}")
+        for name in ("stance", "drag_height", "rising"):
+            if not getattr(self, name) > 0.0:
+                raise ValueError(f"{name} must be positive, got {getattr(self, name)!r}")
+
+    def upright_moment(self, weight: float) -> float:
+        """The largest moment [N m] about an edge of its stance that it withstands with `weight` [N] on the ground.
+
+        It stands stiffly upright, its weight in the middle; leaning against the push is not counted.
+        """
+        return 0.5 * self.stance * weight
 
     def span(self, height: float) -> tuple[float, float]:
         """The least and largest horizontal distance from the base [m] at which the hand gets to `height` [m]."""

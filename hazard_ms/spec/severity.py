@@ -2,7 +2,8 @@
 
 Wind    mean speed at 10 m: a gale of Beaufort 8, 17.2 to 20.7 m/s, reached; a storm of Beaufort 10, 24.5 to 28.4 m/s;
         a hurricane of category 1 on the Saffir-Simpson scale, 33 to 42 m/s [WMO-No. 306; NOAA]. Streets of one storm
-        differ: they have two thirds to four thirds of it, as the scene's own 2.5 to 5 m/s are of their middle.
+        differ: each has the share of it that its scene's wind is of the middle of the winds of its split, from two
+        thirds to four thirds.
 Flood   0.3, 0.5 or 1.0 m of water outside the doors, up to the calf, the knee and the waist of a person; it comes in
         as over a weir of a door's width, 0.4 b sqrt(2 g) h^1.5 at first [docs/physics.md L-28].
 Fire    growth of t-squared fires: 1 MW after 300, 150, 75 s [NFPA 204: medium, fast, ultra-fast; EN 1991-1-2 annex E
@@ -19,6 +20,10 @@ from dataclasses import dataclass
 from hazard_ms.spec.checks import one_of
 
 SCALED = "realistic"  # the preset that severity scales
+WINDS = (2.5, 5.0)  # slowest and fastest wind of a scene [m/s] [the original's shipped scenes, docs/physics.md 1.3]
+MIDDLE = 0.5 * sum(WINDS)  # of these winds [m/s]
+STRONGER_WINDS = {"hard": (5.0, 8.0)}  # those of scenes of other splits [m/s] [ours]
+STREETS = 2.0 / 3.0, 4.0 / 3.0  # least and largest share of a storm's wind in one of its streets [-] [ours]
 
 
 @dataclass(frozen=True)
@@ -39,6 +44,11 @@ SEVERITIES = {
     "extreme": Severity(40.0, 1.0, 0.1876, 4500.0, 1.0, 1.8),
 }
 USUAL = "severe"
+
+
+def usual_wind(split: str) -> float:
+    """The middle of the winds that scenes of a `split` have [m/s]."""
+    return 0.5 * sum(STRONGER_WINDS.get(split, WINDS))
 
 
 def chosen(severity: str, preset: str) -> str:

@@ -31,6 +31,12 @@ TOPS = wp.constant(3.0)
 POINTS = wp.constant(4)
 NODES = wp.constant(wp.vec4(-0.8611363116, -0.3399810436, 0.3399810436, 0.8611363116))
 WEIGHTS = wp.constant(wp.vec4(0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226))
+# Flat plates [Holmes, Letchford & Lin 2006, Investigations of plate-type windborne debris, part II]: the force is
+# normal to the face, and up to an angle of STALL between face and air it grows in proportion to it, to PEAK of that on
+# a plate across the wind
+STALL = wp.constant(0.698132)  # 40 degrees [rad]
+PEAK = wp.constant(1.71 / 1.15)
+FLAT = wp.constant(0.2)  # largest thickness of a plate, in its middle edges [-] [ours]
 CELL = wp.constant(0.5)  # edge of a cell of a map of shelter [m] [ours]
 LOWEST = wp.constant(0.5)  # height below which fixtures shelter nothing [m] [ours]
 THIN = wp.constant(1e-6)  # least half height [m], so that 0 / 0 cannot occur
@@ -75,6 +81,44 @@ def unit(slip: wp.vec3) -> wp.vec3:
 
 
 @wp.func
+def plate_normal(extent: wp.vec3) -> wp.vec3:
+    """Unit vector across the faces of a plate with edges `extent` [m], body frame; 0 for what is no plate."""
+    x, y, z = extent[0], extent[1], extent[2]
+    thin = wp.min(x, wp.min(y, z))
+    middle = x + y + z - thin - wp.max(x, wp.max(y, z))
+    if thin > FLAT * middle:
+        return wp.vec3()
+    if z == thin:
+        return wp.vec3(0.0, 0.0, 1.0)
+    if y == thin:
+        return wp.vec3(0.0, 1.0, 0.0)
+    return wp.vec3(1.0, 0.0, 0.0)
+
+
+@wp.func
+def steepness(sine: float) -> float:
+    """Force on a face over that on one across the wind, and over the `sine` of the angle between face and air."""
+    steep = wp.clamp(wp.abs(sine), 1e-3, 1.0)
+    angle = wp.asin(steep)
+    if angle < STALL:
+        return PEAK * angle / STALL / steep
+    return 1.0 / steep
+
+
+@wp.func
+def pressure_point(across: wp.vec3, extent: wp.vec3, normal: wp.vec3) -> wp.vec3:
+    """Place of the force on a plate [m] from its middle, body frame; `across`: unit vector of the air against it."""
+    sine = wp.dot(across, normal)
+    angle = wp.asin(wp.clamp(wp.abs(sine), 0.0, 1.0)) * 57.29578  # [degrees]
+    ahead = float(0.0)
+    if angle < 38.0:
+        ahead = 0.3 - 0.22 * angle / 38.0
+    elif angle < 82.5:
+        ahead = 0.08 * wp.cos(2.0 * (angle - 38.0) / 57.29578)
+    return -ahead * wp.cw_mul(extent, unit(across - sine * normal))
+
+
+@wp.func
 def logarithmic(height: float, roughness: float) -> float:
     """Share of the wind at 10 m that blows at `height` [m] over ground of `roughness` [m], by the logarithmic law.
 
@@ -95,6 +139,17 @@ def profile(height: float, roughness: float, pavement: float) -> float:
         return logarithmic(height, roughness)
     raised = wp.clamp(height, 0.0, JOIN) / pavement + TOPS
     return logarithmic(wp.max(height, JOIN), roughness) * wp.log(raised) / wp.log(JOIN / pavement + TOPS)
+
+
+@wp.func
+def gustiness(height: float, excess: float, roughness: float) -> float:
+    """Wind at `height` [m] over its mean there, in a gust that is `excess` of the mean at 10 m above it at 10 m.
+
+    The deviation of the wind's speed is the same at all heights of the surface layer, so in shares of the mean it is
+    1 / ln(z / z0) [docs/physics.md 3.3]. The air below JOIN adapts to a gust faster than the gust passes: there it is
+    the share at JOIN. A lull can bring the wind to a standstill, but does not turn it.
+    """
+    return wp.max(1.0 + excess / logarithmic(wp.max(height, JOIN), roughness), 0.0)
 
 
 @wp.func

@@ -7,7 +7,7 @@ import warp as wp
 from hazard_ms.hazards.wind import air as laws
 from hazard_ms.kernels import draws
 from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.boxes import axes_of, spans, to_body
+from hazard_ms.kernels.boxes import axes_of, face_areas, spans, to_body
 from hazard_ms.kernels.drag import spin_drag
 from hazard_ms.kernels.launch import OPTIONS
 
@@ -31,6 +31,7 @@ class Rules:
     roughness: float
     pavement: float
     lift: float
+    plates: bool
 
 
 @wp.struct
@@ -53,10 +54,10 @@ class Air:
 @wp.func
 def open_speed(mean: float, gust: float, height: float, rules: Rules) -> float:
     """Speed of the air along its heading [m/s] at `height` [m] in the open, from its `mean` [m/s] and the `gust`."""
-    here = mean * (1.0 + rules.gust_intensity * gust)
-    if rules.roughness > 0.0:
-        here = here * laws.profile(height, rules.roughness, rules.pavement)
-    return here
+    if rules.roughness == 0.0:
+        return mean * (1.0 + rules.gust_intensity * gust)
+    blown = laws.gustiness(height, rules.gust_intensity * gust, rules.roughness)
+    return mean * blown * laws.profile(height, rules.roughness, rules.pavement)
 
 
 @wp.func
@@ -73,6 +74,32 @@ def speeds(rules: Rules, air: Air, points: wp.array2d(dtype=wp.vec3), found: wp.
     """Write the speed of the air along its heading [m/s] at every one of the `points` [m]."""
     e, p = wp.tid()
     found[e, p] = speed_at(e, points[e, p], rules, air)
+
+
+@wp.kernel
+def topple(
+    dt: float,
+    toppling: float,
+    rising: float,
+    chest: float,
+    rules: Rules,
+    air: Air,
+    agent: wp.array(dtype=wp.vec3),
+    lies: wp.array(dtype=bool),
+    lain: wp.array(dtype=float),
+):
+    """Let agents fall over where the air at the height `chest` [m] is as fast as `toppling` [m/s].
+
+    They stand up after `rising` [s], and fall again if it still is.
+    """
+    e = wp.tid()
+    time = lain[e] + dt
+    if lies[e] and time >= rising:
+        lies[e] = False
+    if not lies[e]:
+        time = 0.0
+        lies[e] = speed_at(e, agent[e] + wp.vec3(0.0, 0.0, chest), rules, air) >= toppling
+    lain[e] = time
 
 
 @wp.kernel
@@ -144,22 +171,35 @@ def in_profile(e: int, b: int, dt: float, rules: Rules, air: Air, bodies: Bodies
     heading = wp.vec3(air.heading[e][0], air.heading[e][1], 0.0)
     half = 0.5 * spans(axes, size)[2]
     whole, moment, rate = wp.vec3(), wp.vec3(), float(0.0)
+    lifted, tilted, rising = float(0.0), float(0.0), float(0.0)
+    plate = wp.vec3()
+    if rules.plates:
+        plate = laws.plate_normal(size)
+    normal, face = axes * plate, wp.dot(plate, face_areas(size))
     for k in range(laws.POINTS):
         up = wp.vec3(0.0, 0.0, laws.NODES[k] * half)
         here = air.felt[e, b] * speed_at(e, bodies.position[e, b] + up, rules, air)
         relative = here * heading - bodies.velocity[e, b]
-        area = laws.projected_area(to_body(axes, laws.unit(relative)), size)
-        pull = laws.WEIGHTS[k] * air.strength[e, b] * laws.DENSITY * area * wp.length(relative)
-        whole += pull * relative
-        moment += wp.cross(up, pull * relative)
-        rate += pull
-    held = 1.0 / (1.0 + laws.per_mass(rate, mass) * dt)
+        against = wp.dot(laws.unit(relative), normal)
+        area = laws.projected_area(to_body(axes, laws.unit(relative)), size) - face * wp.abs(against)
+        pull = laws.WEIGHTS[k] * air.strength[e, b] * laws.DENSITY * wp.length(relative)
+        on_face = pull * face * laws.steepness(against) * wp.dot(relative, normal)
+        whole += pull * area * relative
+        moment += wp.cross(up, pull * area * relative)
+        rate += pull * area
+        lifted += on_face
+        tilted += laws.NODES[k] * half * on_face
+        rising += pull * face * laws.steepness(against)
+    held, lying = 1.0 / (1.0 + laws.per_mass(rate, mass) * dt), 1.0 / (1.0 + laws.per_mass(rising, mass) * dt)
     main = held * wp.length(whole)
-    turn = held * moment + main * air.twist[e, b]
+    turn = held * moment + lying * tilted * wp.cross(wp.vec3(0.0, 0.0, 1.0), normal) + main * air.twist[e, b]
     if rules.pressure:
-        turn = turn + main * (axes * laws.pressure_arm(to_body(axes, laws.unit(whole)), size))
+        across = to_body(axes, laws.unit(whole))
+        turn = turn + main * (axes * laws.pressure_arm(across, size))
+        turn = turn + lying * lifted * (axes * wp.cross(laws.pressure_point(across, size, plate), plate))
         turn = turn + spin_drag(bodies.angular_velocity[e, b], axes, size, mass, laws.DENSITY, dt, 0.0)
-    return held * whole + main * air.sway[e, b] + suction(e, b, half, rules, air, bodies), turn
+    pushed = held * whole + lying * lifted * normal + main * air.sway[e, b]
+    return pushed + suction(e, b, half, rules, air, bodies), turn
 
 
 @wp.func

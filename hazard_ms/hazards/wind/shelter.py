@@ -1,10 +1,10 @@
-"""The lee of houses and hedges: a map made once per episode, since the mean wind keeps its direction (torch).
+"""The lee of houses, hedges and cars: a map made once per episode, since the mean wind keeps its direction (torch).
 
-From every cell a ray goes upwind over the height map of the fixtures. An obstacle of height H at distance d takes the
-share DEEPEST (1 - d / (LEE H)) of the wind, up to half its height; above, the loss falls to nothing at its top. The
-deepest loss counts. A fit to measured windbreaks: a quarter of the wind left close behind, all of it back ten heights
-downwind [ours]. Limits: no eddies, no jets around corners, and a ray is as thin as a cell, so the lee does not close
-behind an end. Cells: E environments, Y by X.
+From every cell a ray goes upwind over the height map of the fixtures. What it meets takes the share of the wind that
+hazard_ms.hazards.wind.wakes gives for its height, shape and width, at most DEEPEST, up to half its height; above, the
+loss falls to nothing at its top. The deepest loss counts. Fixtures that touch, such as the pieces of a hedge, are as
+wide as they are together. Limits: no eddies, no jets around corners, nothing is lost beside the ends of an obstacle or
+above it. Cells: E environments, Y by X.
 """
 
 from __future__ import annotations
@@ -15,15 +15,18 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.fire.floor import half_spans
+from hazard_ms.hazards.wind import wakes
 from hazard_ms.hazards.wind.air import CELL, LOWEST
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.catalogue import CATEGORIES
 
-LEE = 10.0  # length of the lee in heights of the obstacle [ours]
-DEEPEST = 0.75  # share of the wind that a solid obstacle takes [ours]
+DEEPEST = 0.75  # largest share of the wind that a solid obstacle takes, where air turns round behind it [ours]
+# Coefficients of the wakes of fences and of blunt blocks [Taylor & Salmon 1993: 0.8 for fences, 0.25 to 0.4 for long
+# low buildings, 0.2 to 0.35 for cubes], and thicknesses in heights up to and from which they hold: air that has
+# passed over an edge comes down again on a roof as deep as high [Hosker 1984: from 0.3 to 1]
+FENCE, BLOCK, THIN, THICK = 0.8, 0.3, 0.3, 1.0
 # Share of the wind that each kind of fixture holds back; 1 for all others [ours]
 SOLIDITY = {"cart": 0.0, "street_lamp": 0.0, "tree": 0.5, "hedge": 0.8, "fence": 0.8}
-_BLOCK = 2**20  # most cells that are worked on at a time
 
 
 def map_size(world: World) -> tuple[int, int]:
@@ -38,10 +41,10 @@ def south_west(world: World) -> Tensor:
     return torch.tensor([[-s.room.beyond] * 2 for s in world.specs], device=world.device)
 
 
-def height_map(world: World, rows: Tensor, shape: tuple[int, int]) -> tuple[Tensor, Tensor]:
-    """Height [m] and solidity [-] of the highest sheltering fixture over each cell, both [N, Y, X].
+def height_map(world: World, rows: Tensor, shape: tuple[int, int]) -> tuple[Tensor, Tensor, Tensor]:
+    """Height [m], solidity and coefficient of the wake [-] of the highest sheltering fixture over each cell.
 
-    They are 0 where there is none. `rows` are N indices of environments, `shape` is Y, X.
+    All [N, Y, X], and 0 where there is none. `rows` are N indices of environments, `shape` is Y, X.
     """
     corner = south_west(world)[rows]
     y, x = ((torch.arange(n, device=world.device) + 0.5) * CELL for n in shape)
@@ -51,10 +54,9 @@ def height_map(world: World, rows: Tensor, shape: tuple[int, int]) -> tuple[Tens
     half = half_spans(world.rotation[rows], world.extent[rows])
     high = world.position[rows, :, 2] + half[..., 2]
     counts = (solid > 0.0) & (high >= LOWEST)
-    height, solidity = (
-        torch.zeros(len(rows), *shape, device=world.device),
-        torch.zeros(len(rows), *shape, device=world.device),
-    )
+    blunt = ((world.extent[rows, :, :2].amin(-1) / high.clamp(min=LOWEST) - THIN) / (THICK - THIN)).clamp(0.0, 1.0)
+    wake = solid * (FENCE + (BLOCK - FENCE) * blunt)
+    height, solidity, coefficient = torch.zeros(3, len(rows), *shape, device=world.device).unbind()
     for b in counts.any(0).nonzero().flatten().tolist():  # over the things of a scene, at reset only
         over = (
             _over(x, y, world.position[rows, b], world.rotation[rows, b], world.extent[rows, b])
@@ -62,8 +64,9 @@ def height_map(world: World, rows: Tensor, shape: tuple[int, int]) -> tuple[Tens
         )
         top = torch.where(over, high[:, b, None, None], 0.0)
         solidity = torch.where(top > height, solid[:, b, None, None], solidity)
+        coefficient = torch.where(top > height, wake[:, b, None, None], coefficient)
         height = torch.maximum(height, top)
-    return height, solidity
+    return height, solidity, coefficient
 
 
 def _over(x: Tensor, y: Tensor, middle: Tensor, rotation: Tensor, extent: Tensor) -> Tensor:
@@ -76,30 +79,20 @@ def _over(x: Tensor, y: Tensor, middle: Tensor, rotation: Tensor, extent: Tensor
     return ((c * dx + s * dy).abs() < half_x) & ((c * dy - s * dx).abs() < half_y)
 
 
-def lee(height: Tensor, solidity: Tensor, heading: Tensor) -> tuple[Tensor, Tensor]:
+def lee(world: World, height: Tensor, solidity: Tensor, coefficient: Tensor, heading: Tensor) -> tuple[Tensor, Tensor]:
     """Loss of wind near the ground, 0 to DEEPEST [-], and height [m] of what causes it, both [N, Y, X].
 
-    `height` [m] and `solidity` [-], [N, Y, X], are those of `height_map`; `heading` has unit vectors, [N, 2].
+    `height` [m], `solidity` and `coefficient` [-], [N, Y, X], are those of `height_map`; `heading` has unit vectors,
+    [N, 2]. The kernels run in the launches of `world`.
     """
-    block = max(1, _BLOCK // height[0].numel())
-    parts = [slice(k, k + block) for k in range(0, len(height), block)]
-    made = [_lee(height[p], solidity[p], heading[p]) for p in parts]
-    return torch.cat([m[0] for m in made]), torch.cat([m[1] for m in made])
-
-
-def _lee(height: Tensor, solidity: Tensor, heading: Tensor) -> tuple[Tensor, Tensor]:
-    rows, wide, deep = torch.arange(len(height), device=height.device)[:, None, None], height.shape[2], height.shape[1]
-    y, x = (torch.arange(n, device=height.device, dtype=torch.float32) for n in (deep, wide))
-    loss, cause = torch.zeros_like(height), torch.zeros_like(height)
-    longest = min(math.hypot(wide, deep), LEE * float(height.max()) / CELL)
-    for step in range(1, math.ceil(longest) + 1):  # a cell at a time upwind, at reset only
-        at_x = (x - step * heading[:, 0, None, None]).round().long()
-        at_y = (y[:, None] - step * heading[:, 1, None, None]).round().long()
-        there = (at_x >= 0) & (at_x < wide) & (at_y >= 0) & (at_y < deep)
-        index = rows, at_y.clamp(0, deep - 1), at_x.clamp(0, wide - 1)
-        high = torch.where(there, height[index], 0.0)
-        new = DEEPEST * solidity[index] * (1.0 - step * CELL / (LEE * high).clamp(min=CELL)).clamp(min=0.0)
-        new = torch.where(high > 0.0, new, 0.0)
-        cause = torch.where(new > loss, high, cause)
-        loss = torch.maximum(loss, new)
+    heading, nowhere = heading.contiguous(), torch.full_like(height, math.inf)
+    right, left, ends = nowhere, -nowhere, (nowhere.clone(), -nowhere)
+    for _ in range(sum(height.shape[1:])):  # an end is known to cells that are so many steps away, at reset only
+        world.launches.run(wakes.widen, tuple(height.shape), heading, height, right, left, *ends)
+        if height.device.type == "cpu" and torch.equal(right, ends[0]) and torch.equal(left, ends[1]):
+            break
+        (right, left), ends = ends, (right, left)
+    loss, cause = torch.empty_like(height), torch.empty_like(height)
+    maps = height, solidity, coefficient, right, left
+    world.launches.run(wakes.lee, tuple(height.shape), DEEPEST, heading, *maps, loss, cause)
     return loss, cause

@@ -14,8 +14,8 @@ cart has settled: it feels nothing, for ever. Constants: docs/physics.md 1.3; wh
 `realistic` is the same with c = Cd / 2 for the gain, the whole relative velocity, gusts, sheltered lees, as a torque
 the pressure upwind of the centre, and the logarithmic profile, over which force and torque are integrated from a
 thing's base to its top. There the new velocity is a weighted mean of the thing's own and of those of the air that
-meets it, so wind alone makes no thing faster than its gusts, in any direction. Wind damages nothing. Things that it
-carries away stop at the enclosure that `Room.beyond` sets. Limits: no lift off the ground, no added mass; things do not
+meets it, so wind alone makes no thing faster than its gusts, in any direction. Blows break fragile things, and robots
+fall over. What is carried away stops at the enclosure that `Room.beyond` sets. Limits: no added mass; things do not
 shelter one another.
 """
 
@@ -28,10 +28,11 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.base import Hazard, Level, Push, State, quantity
-from hazard_ms.hazards.wind import gusts, kernels, shelter
+from hazard_ms.hazards.base import Hazard, Level, Push, State
+from hazard_ms.hazards.wind import blows, breaking, gusts, kernels, shelter
 from hazard_ms.hazards.wind.air import REFERENCE
-from hazard_ms.hazards.wind.sweeping import sweeping_speed
+from hazard_ms.hazards.wind.sweeping import sweeping_speed, toppling_speed
+from hazard_ms.hazards.wind.wind_state import WindState
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.draws import word
 from hazard_ms.kernels.launch import of_environments
@@ -40,29 +41,11 @@ from hazard_ms.simulation.containers import container_index, in_containers
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity, rounding
 from hazard_ms.spec.catalogue import IMMOVABLE
+from hazard_ms.spec.severity import MIDDLE, STREETS, WINDS, usual_wind
 
-# Range of a wind that the scene leaves open [m/s] [the original's shipped scenes, docs/physics.md 1.3]
-SLOWEST, FASTEST = 2.5, 5.0
 TALL = 2.0  # height that neither a robot nor a thing to rescue exceeds [m] [ours]
 CHEST = 1.0  # height at which the wind acts on the agent [m] [ours]
-
-
-@dataclass
-class WindState(State):
-    """State of the wind with C carts and a shelter map of Y x X cells."""
-
-    heading: Tensor = quantity("E 2", "", "where the wind blows to, a unit vector")
-    speed: Tensor = quantity("E", "m/s", "mean wind, at 10 m where there is a profile")
-    gust: Tensor = quantity("E", "", "excess over the mean wind in standard deviations")
-    felt: Tensor = quantity("E B", "", "share of the wind that a thing feels")
-    strength: Tensor = quantity("E B", "", "force over density, area and speed squared")
-    sway: Tensor = quantity("E B 3", "", "sideways force over the force along the wind, the vector r")
-    twist: Tensor = quantity("E B 3", "m", "torque over the force along the wind")
-    carts: Tensor = quantity("E C", "", "index of a cart, -1 for none", dtype="int", fill=-1, low=-1, high="B")
-    settled: Tensor = quantity("E B", "", "lies in a cart: the wind does not touch it any more", dtype="bool")
-    corner: Tensor = quantity("E 2", "m", "south-west corner of the shelter map")
-    loss: Tensor = quantity("E Y X", "", "share of the wind that is lost near the ground")
-    cause: Tensor = quantity("E Y X", "m", "height of what shelters the cell")
+NEAR = 0.1  # what takes a blow within this distance of the agent has hit it [m] [ours]
 
 
 @dataclass(frozen=True)
@@ -72,7 +55,11 @@ class Wind(Hazard):
     name: ClassVar[str] = "wind"
     state_type: ClassVar[type[State]] = WindState
     level: ClassVar[Level] = Level("wind", "m/s", 0.0, 6.0, "bone", (148, 157, 171), least=0.0, told_up_to=TALL)
-    tells: ClassVar[dict[str, Quantity]] = {"agent_wind": Quantity("speed of the air at the agent's chest", "m/s", 0.0)}
+    tells: ClassVar[dict[str, Quantity]] = {
+        "agent_wind": Quantity("speed of the air at the agent's chest", "m/s", 0.0),
+        "agent_fallen": Quantity("the agent lies on the ground", "", 0, 1),
+        "agent_struck": Quantity("energy of the hardest blow at the agent in the last frame", "J", 0.0),
+    }
     fills: ClassVar[bool] = True  # with haze
     open_air: ClassVar[bool] = True
     provides: ClassVar[dict[str, str]] = {"air": "velocity_at"}
@@ -83,6 +70,7 @@ class Wind(Hazard):
     # in the mean over winds and models, as 1 kg does at 0.3 in the original (docs/physics.md W-9's law); 0.79 of them
     # move (original: 0.77), 0.32 outrun the agent (0.31). [ours]
     scale: float = 0.3  # factor on the scene's wind
+    by_split: bool = False  # a scene's wind counts as its share of its split's, from two thirds to four thirds
     gain: float = 1400.0  # factor on rho A v^2 [the paper: "hand-adjusted"]
     # the exact step for a free body, else the original's explicit one, held at the flow's speed [docs/physics.md R12]
     implicit: bool = True
@@ -100,13 +88,16 @@ class Wind(Hazard):
     roughness: float = 0.0
     pavement: float = 0.0  # roughness length of what things lie on, for the lowest metre of air [m]; 0: as around
     lift: float = 0.0  # coefficient of lift of what lies on the ground in a profile, on its area seen from above
-    gust_intensity: float = 0.0  # standard deviation of the wind's speed over its mean
+    plates: bool = False  # in a profile, air lifts flat things by their faces
+    gust_intensity: float = 0.0  # standard deviation of the wind's speed over its mean, at 10 m if there is a profile
     gust_time: float = 5.0  # correlation time of gusts [s] [docs/physics.md W-20]
     sheltered: bool = False  # fixtures have a lee
     # The agent only drifts at this share of the speed at which its robot really slides, see
     # hazard_ms.hazards.wind.sweeping. With it Fetch, which slides at 39.73 m/s, drifts at 3.354 m/s: it keeps 0.8 of
     # its motion in the wind that a scene gives as 5 m/s. [ours]
     sweeping_share: float = 0.0844124
+    topples: bool = False  # it throws the agent over, too
+    breaks: bool = False  # blows damage things, and agents are told of those that hit them
 
     def __post_init__(self) -> None:
         for name in ("scale", "gain", "gust_time", "sweeping_share"):
@@ -120,8 +111,8 @@ class Wind(Hazard):
 
     @property
     def shown_level(self) -> Level:
-        """Colours up to the fastest mean wind of any scene: 2 m/s in `paper`, 5 in `shipped`, more in `realistic`."""
-        return replace(self.level, high=float(math.ceil(self.scale * FASTEST)))
+        """Colours up to the fastest mean wind: 2 m/s in `paper`, 5 in `shipped`, more in `realistic`."""
+        return replace(self.level, high=float(math.ceil(self.scale * WINDS[1])))
 
     def sizes(self, world: World) -> dict[str, int]:
         deep, wide = shelter.map_size(world) if self.sheltered else (1, 1)
@@ -130,19 +121,25 @@ class Wind(Hazard):
     def reset(self, state: WindState, world: World, rows: Tensor) -> None:
         wind = torch.tensor([world.specs[row].wind for row in rows.tolist()], device=world.device).reshape(-1, 2)
         draw = world.chance.uniform("wind.mean", 2)[rows]
-        angle, speed = 2.0 * math.pi * draw[:, 0], SLOWEST + (FASTEST - SLOWEST) * draw[:, 1]
+        angle, speed = 2.0 * math.pi * draw[:, 0], WINDS[0] + (WINDS[1] - WINDS[0]) * draw[:, 1]
         drawn = torch.stack([speed * rounding.cos(angle), speed * rounding.sin(angle)], -1)
-        wind = torch.where((wind == 0.0).all(-1, keepdim=True), drawn, wind)
-        state.speed[rows] = self.scale * wind.norm(dim=-1)
-        state.heading[rows] = wind / wind.norm(dim=-1, keepdim=True)
+        open_to_chance = (wind == 0.0).all(-1)
+        wind = torch.where(open_to_chance[:, None], drawn, wind)
+        strength = wind.norm(dim=-1)
+        state.heading[rows] = wind / strength[:, None]
+        if self.by_split:
+            usual = wind.new_tensor([usual_wind(world.specs[row].split) for row in rows.tolist()])
+            strength = MIDDLE * (strength / torch.where(open_to_chance, MIDDLE, usual)).clamp(*STREETS)
+        state.speed[rows] = self.scale * strength
         state.gust[rows] = world.chance.normal("wind.gust")[rows] if self.gust_intensity else 0.0
         state.felt[rows] = self._felt_share(world)[rows]
         state.strength[rows] = self.gain * (0.5 * world.lookup("drag_coefficient")[rows] if self.shaped else 1.0)
+        state.endurance[rows] = breaking.endurance(world)[rows]
         state.carts[rows] = container_index(world)[rows]
         if self.sheltered:
             state.corner[rows] = shelter.south_west(world)[rows]
             obstacles = shelter.height_map(world, rows, (state.loss.shape[1], state.loss.shape[2]))
-            state.loss[rows], state.cause[rows] = shelter.lee(*obstacles, state.heading[rows])
+            state.loss[rows], state.cause[rows] = shelter.lee(world, *obstacles, state.heading[rows])
 
     def _felt_share(self, world: World) -> Tensor:
         """Share of the wind that every thing feels, [E, B]: 1 / (1 + resistance), 0 if the resistance is above 10."""
@@ -173,6 +170,11 @@ class Wind(Hazard):
         state.settled.logical_or_(in_containers(world, state.carts, state.settled))
         if self.gust_intensity:
             state.gust.copy_(gusts.gust(state.gust, dt, self.gust_time, world.chance.normal("wind.gust")))
+        if self.breaks:
+            blown = world.launches.struct(Bodies, world), state.before, state.struck
+            world.launches.run(blows.strike, tuple(world.exists.shape), dt, *self._air(state, world), *blown)
+        if self.topples and world.agent_build is not None:
+            self._topple(state, world, dt)
         if not self.turbulence and not self.torque:
             return
         scale = gusts.per_frame(dt)
@@ -187,6 +189,12 @@ class Wind(Hazard):
             *self._air(state, world),
             world.launches.struct(Bodies, world),
         )
+
+    def _topple(self, state: WindState, world: World, dt: float) -> None:
+        """Let agents fall, lie and stand up during `dt` [s]."""
+        speeds = toppling_speed(world.robot), world.robot.rising
+        agent = *self._air(state, world), world.agent_position, state.lies, state.lain
+        world.launches.run(kernels.topple, (world.num_envs,), dt, *speeds, CHEST, *agent)
 
     def _air(self, state: WindState, world: World) -> tuple[Argument, Argument]:
         """The rules and the air as kernels take them."""
@@ -204,8 +212,8 @@ class Wind(Hazard):
         return self.speed_at(state, world, points)[..., None] * state.heading[:, None]
 
     def damaged(self, state: WindState, world: World) -> Tensor:
-        """Bodies that the wind damages, [E, B], bool: none, since it only carries them off."""
-        return torch.zeros_like(world.exists)
+        """Bodies that break by a blow, [E, B], bool: none in `paper` and `shipped`, whose wind only carries off."""
+        return state.struck > state.endurance if self.breaks else torch.zeros_like(world.exists)
 
     def image(self, state: WindState, world: World, points: Tensor) -> Tensor:
         """Speed of the air [m/s] at `points` [m], [E, P, 3], world frame, before any thing's resistance: [E, P]."""
@@ -215,15 +223,27 @@ class Wind(Hazard):
         """Motion that is left to the agent, [E, 3]: the share of its own velocity, and a velocity x, y [m/s] to add.
 
         Together they are a weighted mean of its own velocity and the air's, so it is carried no faster than the wind.
-        It is never toppled.
+        One that lies on the ground only slides, once the wind outdoes its friction: at what is faster then.
         """
         speed = self.speed_at(state, world, self._chest(world))
         swept = self.sweeping_share * sweeping_speed(world.robot)
         kept = (1.0 - (speed / swept).square()).clamp(min=0.0)
-        return torch.cat([kept, (1.0 - kept) * speed * state.heading], 1)
+        drift = (1.0 - kept) * speed
+        if self.topples:
+            down = state.lies[:, None]
+            kept, drift = torch.where(down, 0.0, kept), torch.where(down, (speed - swept).clamp(min=0.0), drift)
+        return torch.cat([kept, drift * state.heading], 1)
+
+    def fallen(self, state: WindState, world: World) -> Tensor | None:
+        return state.lies if self.topples else None
 
     def agent_info(self, state: WindState, world: World) -> dict[str, Tensor]:
-        return {"agent_wind": self.image(state, world, self._chest(world))[:, 0]}
+        told = {"agent_wind": self.image(state, world, self._chest(world))[:, 0]}
+        if self.topples:
+            told["agent_fallen"] = state.lies.clone()
+        if self.breaks:
+            told["agent_struck"] = torch.where(breaking.at_the_agent(world, NEAR), state.struck, 0.0).amax(1)
+        return told
 
     def _chest(self, world: World) -> Tensor:
         """Place where the wind acts on the agent [m], [E, 1, 3], world frame."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from hazard_ms.spec import Vec2
+from hazard_ms.spec.severity import STRONGER_WINDS, WINDS
 
 Area = tuple[float, float, float, float]
 
@@ -76,7 +77,7 @@ class Region:
     rules: tuple[Rule, ...]
     aisle: float = 0.9  # width of the passages [m]
     targets: int = 15  # number of things that can blow away [docs/benchmark.md 1]
-    wind: tuple[float, float] = (2.5, 5.0)  # speed [m/s] docs/physics.md 1.3: the shipped scenes
+    wind: tuple[float, float] = WINDS  # slowest and fastest [m/s]
 
 
 def dashes(
@@ -218,6 +219,6 @@ PARK = Region(
     ),
 )
 
-PARKING_HARD = replace(PARKING, name="parking_hard", targets=20, wind=(5.0, 8.0))
+PARKING_HARD = replace(PARKING, name="parking_hard", targets=20, wind=STRONGER_WINDS["hard"])
 
 REGIONS: dict[str, Region] = {r.name: r for r in (STREET, CROSSING, PARKING, PARK, PARKING_HARD)}

@@ -13,7 +13,8 @@ from sapien.physx import PhysxCpuSystem, PhysxRigidDynamicComponent
 
 from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards.base import Push
-from hazard_ms.hazards.wind.wind import Wind, WindState
+from hazard_ms.hazards.wind.wind import Wind
+from hazard_ms.hazards.wind.wind_state import WindState
 from hazard_ms.simulation.physx import CpuHandles
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import UPRIGHT, AgentStart, Body, Fixture, Quat, Room, SceneSpec, Vec2, Vec3

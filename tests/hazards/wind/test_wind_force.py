@@ -18,7 +18,9 @@ from tests.worlds.wind_worlds import STILL, Block, Thing, begin, push, run, stre
 
 LAW = Wind(gain=1.0, scale=1.0, **STILL)
 SHIPPED = dataclasses.replace(wind("shipped"), **STILL)
-REAL = dataclasses.replace(wind("realistic"), scale=1.0, roughness=0.0, gust_intensity=0.0, sheltered=False)
+REAL = dataclasses.replace(
+    wind("realistic"), by_split=False, scale=1.0, roughness=0.0, gust_intensity=0.0, sheltered=False
+)
 RHO = 1.225
 HEAVY = 1e9  # so heavy that the step is of no account [kg]
 EVERY = pytest.mark.parametrize("preset", _WIND)
@@ -42,7 +44,8 @@ def test_the_force_at_rest_is_rho_a_v_squared(copies: int) -> None:
 def test_twice_the_wind_is_four_times_the_force(preset: str, factor: float) -> None:
     """W-10 of docs/physics.md."""
     things = [Thing((0.1, 0.4, 0.2), HEAVY), Thing((0.5, 0.1, 0.3), HEAVY, rotation=about_z(0.7), category="bottle")]
-    one, other = (push(wind(preset), street(things, (f * 2.1, f * 1.3))).force for f in (1.0, factor))
+    law = dataclasses.replace(wind(preset), by_split=False)
+    one, other = (push(law, street(things, (f * 2.1, f * 1.3))).force for f in (1.0, factor))
     assert torch.allclose(other, factor**2 * one, rtol=1e-5)
     assert (one.norm(dim=-1) > 0.1).all()
 
@@ -147,7 +150,7 @@ def test_a_step_never_overshoots_the_flow(
     preset: str, edges: Any, mass: float, speed: float, u: float, dt: float
 ) -> None:
     """W-17 of docs/physics.md."""
-    law = dataclasses.replace(wind(preset), scale=1.0, **STILL)
+    law = dataclasses.replace(wind(preset), by_split=False, scale=1.0, **STILL)
     world = street([Thing(edges, mass)], (u, 0.0))
     state = begin(law, world)
     world.velocity[0, 0, 0] = speed

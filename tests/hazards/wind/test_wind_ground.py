@@ -134,7 +134,7 @@ def test_sliding_in_the_realistic_wind() -> None:
     """W-24: slide at U = sqrt(2 mu m g / (rho Cd A)): 0.6 kg of cardboard, 0.3 m wide and high, friction 0.4; its Cd is
     1.05.
     """
-    real = dataclasses.replace(wind("realistic"), roughness=0.0, gust_intensity=0.0, scale=1.0)
+    real = dataclasses.replace(wind("realistic"), by_split=False, roughness=0.0, gust_intensity=0.0, scale=1.0)
     thing = Thing((0.4, 0.3, 0.3), 0.6, friction=0.4)
     u = math.sqrt(2 * 0.4 * 0.6 * GRAVITY / (RHO * 1.05 * 0.09))
     shares = (0.9, 0.98, 1.02, 1.1)
@@ -150,7 +150,7 @@ def test_sliding_in_the_realistic_wind() -> None:
 @pytest.mark.parametrize(("share", "falls"), [(0.97, False), (1.03, True)])
 def test_toppling_in_the_realistic_wind(share: float, falls: bool) -> None:
     """W-24: topple at U = sqrt(2 m g b / (rho Cd A h)): a slim carton on rough ground."""
-    real = dataclasses.replace(wind("realistic"), roughness=0.0, gust_intensity=0.0, scale=1.0)
+    real = dataclasses.replace(wind("realistic"), by_split=False, roughness=0.0, gust_intensity=0.0, scale=1.0)
     thing = Thing((0.1, 0.3, 0.4), 0.8, friction=1.0)
     u = math.sqrt(2 * 0.8 * GRAVITY * 0.1 / (RHO * 1.05 * 0.12 * 0.4))
     yard = Yard(real, [thing], (share * u, 0.0), (30, 120))

@@ -131,7 +131,7 @@ def test_a_free_plate_turns_broadside_on(angle: float) -> None:
     """Its normal, at first `angle` from the wind, comes into line with it; it overshoots, as nothing but its spin's own
     drag stops it.
     """
-    real = dataclasses.replace(wind("realistic"), roughness=0.0, gust_intensity=0.0, scale=1.0)
+    real = dataclasses.replace(wind("realistic"), by_split=False, roughness=0.0, gust_intensity=0.0, scale=1.0)
     turned = (math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2))
     yard = Yard(real, [Thing((0.02, 0.5, 0.3), 0.4, rotation=turned)], (8.0, 0.0), (50, 200), gravity=False)
     seen = []

@@ -69,7 +69,7 @@ def test_wind_damages_nothing_and_the_image_is_its_speed(preset: str) -> None:
 def test_the_agent_is_slowed_against_the_flow_and_never_outruns_it(preset: str, u: float) -> None:
     """With its own velocity v it moves at k v + (1 - k) u: 1 - k grows with the square of the wind."""
     law = wind(preset, "moderate" if preset == "realistic" else "severe")
-    law = dataclasses.replace(law, gust_intensity=0.0, roughness=0.0)
+    law = dataclasses.replace(law, by_split=False, gust_intensity=0.0, roughness=0.0)
     world = street([Thing()], (0.6 * u, -0.8 * u), copies=3)
     world.agent_build = HazardFetch.build
     state = begin(law, world)

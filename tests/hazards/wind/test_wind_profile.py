@@ -18,7 +18,7 @@ from hazard_ms.hazards.wind.wind import Wind
 from tests.worlds.fire_worlds import about_z
 from tests.worlds.wind_worlds import Block, Thing, begin, push, street
 
-LIFTS = dataclasses.replace(wind("realistic"), scale=1.0, gust_intensity=0.0, sheltered=False)
+LIFTS = dataclasses.replace(wind("realistic"), by_split=False, scale=1.0, gust_intensity=0.0, sheltered=False)
 LAW = dataclasses.replace(LIFTS, lift=0.0)
 RHO, BOX = 1.225, 1.05  # density of air [kg/m^3], drag coefficient of boxes [-]
 HEAVY = 1e9  # so heavy that the step is of no account [kg]

@@ -183,6 +183,9 @@ def test_partitions_cut_a_scene_into_rooms_and_openings_know_theirs() -> None:
         (0.02, 0.9, 2.1, 1.2, 2, -1),
         (0.02, 0.0, 2.6, 0.02, 1, 2),
     ]
+    through = (holes[1], Opening("door", "north", 8.0, 0.9, 2.0))  # where water comes in, one of them a stand-in
+    flooded = openings(room, through)
+    assert flooded[1] == (0.9, 0.0, 2.0, 0.9, 1, -1) and flooded[3] == (0.9, 0.0, 2.0, 0.9, 2, -1) and len(flooded) == 5
     turned = Room((5.0, 10.0), partitions=(Partition("partition_1", "x", 6.0),), openings=(
         Opening("door", "north", 2.0, 0.9, 2.0), Opening("door", "west", 2.0, 0.9, 2.0),
     ))  # fmt: skip

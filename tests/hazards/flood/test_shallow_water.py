@@ -11,6 +11,7 @@ import torch
 
 from hazard_ms.hazards.flood.realistic import floor_plan
 from hazard_ms.hazards.flood.realistic.inundation import Inundation
+from hazard_ms.hazards.openings import inlets
 from hazard_ms.spec import Fixture, Opening, Partition
 from hazard_ms.validation.experiments.basin import SMOOTH, Basin, door
 from tests.worlds.flood_worlds import Thing, begin, room
@@ -69,15 +70,15 @@ def test_a_gap_under_a_door_lets_little_water_through() -> None:
 def test_water_comes_in_through_doors_and_else_through_the_middle_of_the_side() -> None:
     world, _ = flat()
     spec = world.specs[0]
-    assert [(o.wall, o.centre) for o in floor_plan.openings(spec)] == [("south", 1.5)]
+    assert [(o.wall, o.centre) for o in inlets(spec)] == [("south", 1.5)]
     shut = dataclasses.replace(spec, room=dataclasses.replace(spec.room, openings=()), second_flood_side="west")
-    assert [(o.wall, o.centre, o.width) for o in floor_plan.openings(shut)] == [("north", 3.0, 0.9), ("west", 2.0, 0.9)]
+    assert [(o.wall, o.centre, o.width) for o in inlets(shut)] == [("north", 3.0, 0.9), ("west", 2.0, 0.9)]
     both = dataclasses.replace(spec, flood_side="east", second_flood_side="south")  # the door is in the second wall
-    assert [(o.wall, o.centre) for o in floor_plan.openings(both)] == [("south", 1.5), ("east", 2.0)]
+    assert [(o.wall, o.centre) for o in inlets(both)] == [("south", 1.5), ("east", 2.0)]
     other = dataclasses.replace(spec, flood_side="east", second_flood_side="west")
-    assert [o.wall for o in floor_plan.openings(other)] == ["south", "west"]
+    assert [o.wall for o in inlets(other)] == ["south", "west"]
     with pytest.raises(ValueError, match="flood_side must be one of west, east, south, north, got 'up'"):
-        floor_plan.openings(dataclasses.replace(shut, flood_side="up"))
+        inlets(dataclasses.replace(shut, flood_side="up"))
 
 
 def test_water_flows_round_what_stands_on_the_floor_and_under_what_has_legs() -> None:

@@ -43,6 +43,7 @@ from hazard_ms.hazards.fire.realistic import (
 )
 from hazard_ms.hazards.fire.realistic.blaze_state import HEATED, BlazeState
 from hazard_ms.hazards.fire.realistic.twozone import rooms
+from hazard_ms.hazards.openings import inlets
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
 from hazard_ms.spec.severity import SEVERITIES, USUAL
@@ -98,7 +99,7 @@ class Blaze(Hazard):
             "S": lattices,
             "K": window,
             "F": lattices * flames,
-            "O": max(1, *(len(rooms.openings(s.room)) for s in world.specs)),
+            "O": max(1, *(len(rooms.openings(s.room, inlets(s))) for s in world.specs)),
             "R": max(len(rooms.parts(s.room)) for s in world.specs),
         }
 

@@ -11,6 +11,7 @@ from hazard_ms.hazards.fire.realistic import burning, fuels
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.radiation import AIR, KELVIN
 from hazard_ms.hazards.fire.realistic.twozone import lining, rooms
+from hazard_ms.hazards.openings import inlets
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.catalogue import CATEGORIES
 
@@ -32,7 +33,8 @@ def describe_rooms(state: BlazeState, world: World, rows: Tensor, room: float) -
     _fill(state, rows, ("zone_end", "zone_area", "zone_edge"), [rooms.parts(s.room) for s in specs])
     state.zone_wall[rows] = state.zone_area[rows]
     fill_with_air(state, rows, room)
-    gaps = [rooms.openings(s.room) for s in specs]
+    flooded = "water" in world.fields
+    gaps = [rooms.openings(s.room, inlets(s) if flooded else ()) for s in specs]
     state.vents[rows] = _padded([[g[:4] for g in row] for row in gaps], (0.0,) * 4, state.vents)
     _fill(state, rows, ("vent_from", "vent_to"), [[(g.room, g.other) for g in row] for row in gaps])
     linings = [lining.LININGS.get(s.room.wall, lining.GYPSUM) for s in specs]

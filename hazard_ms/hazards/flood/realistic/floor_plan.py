@@ -17,19 +17,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.hazards.openings import SIDES, inlets
 from hazard_ms.scenes.boxes import yaw_of
 from hazard_ms.scenes.solids import parts_of
-from hazard_ms.spec import Opening, Room, SceneSpec, Vec2
+from hazard_ms.spec import Room, SceneSpec, Vec2
 
 CELL = 0.1  # side of a cell [m]
-DOOR = 0.9  # width of an opening where a scene has no door [m] [ours: that of a front door]
 SHEET = 0.05  # height below which what lies on the floor (rugs) does not count [m] [ours]
 GAP = 0.05  # height above the ground below which a part stands on it [m] [ours]
 NARROW = 0.08  # width below which water flows round a part (legs) as if it were not there [m] [ours]
 LEAK = 0.02  # height of the gap under a closed door between rooms [m] [docs/physics.md L-27]
 BESIDE = 5  # cells of floor from the jamb of a door to where the level of the room is read [ours]
 BEYOND = 100.0  # height of what is not floor [m]
-SIDES = ("west", "east", "south", "north")  # numbers of the quantity inlet_side
 
 Grid = NDArray[np.float32]
 
@@ -110,7 +109,7 @@ def _inlets(spec: SceneSpec, size: tuple[int, int]) -> tuple[list[int], list[int
     sides: list[int] = []
     widths: list[float] = []
     heights: list[float] = []
-    for opening in openings(spec):
+    for opening in inlets(spec):
         side = SIDES.index(opening.wall)
         across = side // 2  # the axis that water comes in along
         last = math.ceil(spec.room.size[across] / CELL - 1e-6) - 1
@@ -137,24 +136,6 @@ def _beside(cell: int, side: int, inlets: set[int], pitch: int, bed: Grid, open_
             if beyond and bed[at] == 0:
                 found[sign] = (-beyond, abs(at - cell), at)
     return min(found.values())[2] if found else cell
-
-
-def openings(spec: SceneSpec) -> list[Opening]:
-    """The openings that water comes in through: outer doors, or stand-ins for them where they are in too few walls."""
-    doors = [o for o in spec.room.openings if o.kind == "door" and o.wall in SIDES]
-    walls = {door.wall for door in doors}
-    second = [] if spec.second_flood_side is None else [spec.second_flood_side]
-    sides = [*second, spec.flood_side] if doors else [spec.flood_side, *second]
-    without = [wall for wall in sides if wall not in walls]
-    missing = max(0, 1 + len(second) - len(walls))
-    return doors + [_middle(spec.room, wall) for wall in without[:missing]]
-
-
-def _middle(room: Room, wall: str) -> Opening:
-    """An opening in the middle of an outer wall."""
-    if wall not in SIDES:
-        raise ValueError(f"flood_side must be one of {', '.join(SIDES)}, got {wall!r}")
-    return Opening("door", wall, room.size[1 if SIDES.index(wall) < 2 else 0] / 2, DOOR, 2.0)
 
 
 def _ground(

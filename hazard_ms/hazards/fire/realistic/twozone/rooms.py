@@ -7,6 +7,7 @@ are left out.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from hazard_ms.spec import Opening, Room
@@ -50,19 +51,23 @@ def parts(room: Room) -> list[Part]:
     return [Part(end, size * wide, 2.0 * (size + wide)) for end, size in zip(ends, sizes, strict=True)]
 
 
-def openings(room: Room) -> list[Gap]:
-    """Doors and windows, which are closed but for gaps, open doorways, and gaps in partitions that have none."""
+def openings(room: Room, standing_open: Sequence[Opening] = ()) -> list[Gap]:
+    """Doors and windows, which are closed but for gaps, open doorways, and gaps in partitions that have none.
+
+    Doors that are `standing_open` are as wide as they are; those that the room does not have count, too.
+    """
     row = parts(room)
     inner = sorted((p for p in room.partitions if p.axis == room.partitions[0].axis), key=lambda p: p.at)
     names = {p.name: k for k, p in enumerate(inner)}
     found = []
-    for o in room.openings:
+    for o in (*room.openings, *(o for o in standing_open if o not in room.openings)):
         top = o.sill + o.height
         if o.wall in names:
             found.append(Gap(o.width, o.sill, top, o.width, names[o.wall], names[o.wall] + 1))
         elif o.kind != "doorway":
-            widest = o.width if o.kind == "window" else GAP
-            found.append(Gap(GAP, o.sill, top, widest, _part_at(room, row, o), OUTSIDE))
+            width = o.width if o in standing_open else GAP
+            widest = o.width if o.kind == "window" else width
+            found.append(Gap(width, o.sill, top, widest, _part_at(room, row, o), OUTSIDE))
     joined = {g.room for g in found if g.other != OUTSIDE}
     found += [Gap(GAP, 0.0, room.height, GAP, k, k + 1) for k in range(len(row) - 1) if k not in joined]
     return found

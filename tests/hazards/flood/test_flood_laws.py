@@ -81,7 +81,7 @@ def test_a_lobby_behind_the_door_is_not_filled_above_the_street() -> None:
 
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_a_stream_on_the_floor_does_not_carry_the_film_on_a_step(mirrored: bool) -> None:
-    """A stream runs askew past the corner of a block, on which a millimetre of water rests: that only begins to fall."""
+    """A stream runs askew past the corner of a block; a millimetre of water at rest on it only begins to fall."""
     ground = np.zeros((20, 10))
     ground[10:, :5] = 0.5
     basin = Basin((2.0, 1.0), ground[:, ::-1] if mirrored else ground)

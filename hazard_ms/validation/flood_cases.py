@@ -25,6 +25,7 @@ from hazard_ms.validation.experiments.flood import (
     free_fall,
     logs,
     period,
+    rolling,
     shipped_frames,
     sinking,
     slope_after,
@@ -65,6 +66,8 @@ def of_motion() -> Iterator[Case]:
     balls = {0.2: 0.287141, 0.5: 0.5, 0.9: 0.8042}
     yield from table("L-11", "a ball of {} floats at", balls, 0.01, lambda s: floating_depths()[BALL, s])
     yield from table("L-13", "heave period of a box, s = {}", HEAVE, 0.03, period, unit="s")
+    # 2 C B / sqrt(GM), C = 0.373 + 0.023 B / d - 0.043 L / 100 m [IMO, 2008 IS Code, 2.3.4]
+    yield Case("L-54", "roll period of a box as of ships", 2.129, 0.10, lambda: rolling(0.5), "s")
     yield from table(
         "L-14", "terminal speed (kg/m3, shape, Cd) {}", TERMINAL, 5e-3, lambda k: terminal()[k], unit="m/s"
     )

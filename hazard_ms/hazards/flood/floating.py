@@ -4,7 +4,7 @@
     drag      quadratic, per face, on the share f of each face, at the same point; and of turning
               (hazard_ms.kernels.drag)
     damping   by waves: 2 zeta sqrt(rho g A m) of heaving at a waterline A, and the same rate of turning
-    inertia   force and torque of the water are divided by 1 + Ca rho V f / m: some of the water moves along
+    inertia   net force, and torque of lift and drag, are divided by 1 + Ca rho V f / m: some of the water moves along
 
 The lift of a body that floats acts as a spring. In a step too long for it, X = (rho g A / m) dt^2 > 1, the net of lift
 and weight is divided by X: then lift moves nothing farther than to its level, and where a body floats does not change.
@@ -100,9 +100,9 @@ def push(liquid: Liquid, body: Body, wet: Immersion, flow: wp.vec3, height: floa
     rate = 2.0 * liquid.damping * wp.sqrt(displaced * wet.waterline * gravity)
     heaving = body.velocity[2] + dragged[2] * step  # after the drag: together they never reverse a motion
     made.force = dragged + wp.vec3(0.0, 0.0, net + weight - heaving * m * rate / (1.0 + rate * dt))
-    lifted = dragged + wp.vec3(0.0, 0.0, lift / stiff)
+    lifted = dragged * carried + wp.vec3(0.0, 0.0, lift / stiff)
     slowed = spin_drag(body.spin, body.axes, body.extent, m, soaked, dt, rate)
-    made.torque = wp.cross(wet.arm, lifted) + slowed
+    made.torque = wp.cross(wet.arm, lifted) / carried + slowed
     return made
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 
+import numpy as np
 import pytest
 import torch
 
@@ -63,6 +64,47 @@ def test_the_level_of_the_room_is_read_beside_the_door() -> None:
 
     assert read() == [15] * 5 + [33] * 4
     assert read(partitions=(Partition("near", "y", 1.8),)) == [33] * 9
+
+
+def test_a_lobby_behind_the_door_is_not_filled_above_the_street() -> None:
+    """A lobby of one row of cells behind the door: it fills up to the level outside and no higher."""
+    ground = np.zeros((64, 60))
+    ground[:, 1:] = 3.0
+    ground[:20], ground[29:] = 3.0, 3.0
+    basin = Basin((6.4, 6.0), ground, law=Inundation(outside=0.5), openings=(door(),))
+    basin.state.inlet_beside[:] = basin.state.inlet
+    for _ in range(30):
+        basin.run(1 / 30)
+        assert basin.get("depth")[20:29, 0].max() <= 0.5 + 1e-5
+    assert basin.get("depth")[20:29, 0] == pytest.approx(np.full(9, 0.5), abs=1e-3)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_stream_on_the_floor_does_not_carry_the_film_on_a_step(mirrored: bool) -> None:
+    """A stream runs askew past the corner of a block; a millimetre of water at rest on it only begins to fall."""
+    ground = np.zeros((20, 10))
+    ground[10:, :5] = 0.5
+    basin = Basin((2.0, 1.0), ground[:, ::-1] if mirrored else ground)
+    basin.put("depth", np.where(basin.get("bed") > 0, 0.001, 0.4))
+    streams = np.where(basin.get("bed") > 0, 0.0, 1.0)
+    basin.put("velocity_x", streams)
+    basin.put("discharge_x", 0.4 * streams)
+    across = np.full((20, 10), -0.5 if mirrored else 0.5)
+    across[10:] = 0.0
+    basin.put("velocity_y", across)
+    basin.run(1 / 120, 1 / 120)
+    edge = basin.get("velocity_y")[10, 5] * (-1.0 if mirrored else 1.0)
+    assert 0.0 < edge < 0.02
+
+
+def test_a_film_gets_no_faster_than_the_wave_that_runs_onto_it() -> None:
+    """Water 0.2 m deep comes at 1.5 m/s towards a millimetre at the edge of a plateau: no more comes in than all."""
+    i = np.arange(40)
+    basin = Basin((4.0, 0.1), np.where(i < 20, 0.5, 0.0)[:, None], np.where(i < 19, 0.2, 0.001 * (i < 20))[:, None])
+    basin.put("velocity_x", np.where(i < 20, 1.5, 0.0)[:, None])
+    basin.put("discharge_x", np.where(i < 20, 0.3, 0.0)[:, None])
+    basin.run(1 / 120, 1 / 120)
+    assert 1.2 < basin.get("velocity_x")[20, 0] < 1.6
 
 
 def test_a_doorway_between_rooms_lets_through_what_an_outer_door_does() -> None:

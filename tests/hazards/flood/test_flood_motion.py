@@ -154,7 +154,7 @@ LIGHT = [
 def test_sheets_lighter_than_cardboard_come_to_rest(preset: str, step: float) -> None:
     """Lift on 11 g accelerates with 16 g: in steps this long it is a spring too stiff for the simulator's scheme."""
     tank = Tank(dataclasses.replace(on_a_plane(flood(preset)), gain=0.0), LIGHT, step=step)
-    heights = np.array([at[:, 2] for at in tank.run(4.0)])
+    heights = np.array([at[:, 2] for at in tank.run(6.0)])
     assert 0.3 < heights.min() and heights.max() < 1.6
     assert np.ptp(heights[-len(heights) // 6 :], axis=0).max() < 0.03
 

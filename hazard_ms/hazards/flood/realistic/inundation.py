@@ -5,8 +5,9 @@
              velocity of the water where they are (.basin, .currents)
 
 What stands on the floor is ground for the water, so nothing is pushed through a wall, and things float into eddies
-behind sofas. Inside furniture that is not full of water, it stands as high as around it. Limits: depth-averaged, so
-nothing is drawn under; things do not act on the water; closed doors and windows other than outer doors hold.
+behind sofas. Inside furniture that is not full of water, it stands as high as around it. Doors between rooms are closed
+but for the gap under them. Limits: depth-averaged, so nothing is drawn under; things do not act on the water; furniture
+does not float; doors and windows do not break.
 """
 
 from __future__ import annotations

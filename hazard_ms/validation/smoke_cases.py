@@ -22,10 +22,13 @@ from hazard_ms.validation.experiments.compartments import (
     steckler,
     two_rooms,
 )
+from hazard_ms.validation.experiments.smoke_room import WOOD
 
 BOARD = (0.17e-3, 960.0, 1.1, 0.016)  # gypsum board: conductivity, density, heat capacity, thickness
-ISO_9705 = Compartment((3.6, 2.4, 2.4), (door(0.8, 2.0),), 8000.0)
-TWO_HOLES = Compartment((4.0, 4.0, 2.6), (door(0.9, 2.0, "south", 2.0), door(1.2, 1.2, "north", 2.0, 0.9)), 10000.0)
+ISO_9705 = Compartment((3.6, 2.4, 2.4), (door(0.8, 2.0),), 8000.0, combustion=WOOD)
+TWO_HOLES = Compartment(
+    (4.0, 4.0, 2.6), (door(0.9, 2.0, "south", 2.0), door(1.2, 1.2, "north", 2.0, 0.9)), 10000.0, combustion=WOOD
+)
 LARGER = Compartment((4.0, 4.0, 2.6), (door(0.9, 2.0, "south", 2.0),), 1000.0)
 BENCH = Compartment((21.7, 7.04, 3.82), (door(2.0, 2.0, "west", 3.52),), 1190.0, MARINITE, 0.44, 1190.0 / 178.0**2)
 MQH = (  # size and door [m], power [kW], time [s]
@@ -54,6 +57,9 @@ def of_flashover() -> Iterator[Case]:
     )
     yield Case("C-1", "their pressure", 0.0, 20.0, lambda: burnt(ISO_9705, at)[600.0].pressure, "Pa", absolute=True)
     yield Case("C-1", "10 MW, door and window", 6185.0, 0.3, lambda: burnt(TWO_HOLES, (300.0,))[300.0].power, "kW")
+    yield Case(
+        "C-10", "their layer after 600 s (Law)", 1163.0, 0.2, lambda: 20.0 + burnt(ISO_9705, at)[600.0].rise, "C"
+    )
     for name, case, power in (("3.6 x 2.4 m", ISO_9705, 1202.0), ("4 x 4 m", LARGER, 1522.0)):
         run = functools.partial(flashover, case)
         yield Case("C-2", f"power of flashover, {name} (Thomas)", power, 0.35, run, "kW", slow=True)

@@ -11,7 +11,7 @@ import torch
 from hazard_ms.hazards.fire.realistic import smoke, tenability
 from hazard_ms.hazards.fire.realistic.twozone.lining import GYPSUM, Lining
 from hazard_ms.spec import Opening, Partition, Room
-from hazard_ms.validation.experiments.smoke_room import INSULATED, SLOT, Burner, burn, course, fire_at, rooms
+from hazard_ms.validation.experiments.smoke_room import INSULATED, METHANE, SLOT, Burner, burn, course, fire_at, rooms
 
 FIBRE = Lining(0.09e-3, 200.0, 0.013)  # ceramic fibre board of Steckler's room: k rho c as FDS and CFAST take it
 MARINITE = Lining(0.12e-3, 737 * 1.25, 0.0254)  # of the room of ICFMP's benchmark exercise 3
@@ -31,6 +31,7 @@ class Compartment:
     growth: float = math.inf  # [kW/s^2]
     partitions: tuple[Partition, ...] = ()
     at: tuple[float, float] | None = None  # where it burns [m]
+    combustion: float = METHANE  # heat per fuel [kJ/kg]
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ def burnt(case: Compartment, times: tuple[float, ...]) -> dict[float, Now]:
     state, world = rooms(room, case.lining)
     for number, door in enumerate(case.doors):
         state.vents[0, number, 0] = door.width
-    burner = Burner(case.power, case.size, radiant=case.radiant, step=STEP)
+    burner = Burner(case.power, case.size, radiant=case.radiant, combustion=case.combustion, step=STEP)
     fire = fire_at(*(case.at or (case.size[0] / 2, case.size[1] / 2)), burner)
     seen, now, power = {}, 0.0, 0.0
     for time in times:

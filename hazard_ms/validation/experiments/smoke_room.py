@@ -26,7 +26,8 @@ PANEL = Lining(0.12e-3, 737 * 1.42, 0.05)  # gypsum panel of N-8 [docs/physics.m
 TIMES = (30.0, 60.0, 120.0, 225.0, 600.0)  # [s]
 FULL = 0.01  # share of the height below which a layer fills its room [ours]
 PER_AREA = 500.0  # heat release of a burner per area [kW/m^2] [ours]
-WOOD_SOOT = 0.015 / 11900  # yield of a wood fire [kg/kJ] [docs/physics.md 3.1]
+METHANE, WOOD = 50000.0, 11900.0  # heat per fuel of burners, and of wood [kJ/kg]
+WOOD_SOOT = 0.015 / WOOD  # yield of a wood fire [kg/kJ] [docs/physics.md 3.1]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -40,6 +41,7 @@ class Burner:
     radiant: float = 0.35  # share of the heat that is radiated
     ambient: float = 20.0  # [C]
     soot: float = WOOD_SOOT  # [kg/kJ]
+    combustion: float = METHANE  # heat per fuel [kJ/kg]
     step: float = 0.75  # [s]
 
 
@@ -64,7 +66,11 @@ def fire_at(x: float, y: float, burner: Burner) -> radiation.Fires:
 
 def burn(state: BlazeState, world: World, burner: Burner, fire: radiation.Fires, seconds: float) -> float:
     """Let the fire burn for `seconds`; returns its heat release in the end [kW]."""
-    yields = fire.power.new_tensor([burner.soot, 0.0, 0.0, 0.0, 1.0 / 11900]).expand(*fire.power.shape, -1).contiguous()
+    yields = (
+        fire.power.new_tensor([burner.soot, 0.0, 0.0, 0.0, 1.0 / burner.combustion])
+        .expand(*fire.power.shape, -1)
+        .contiguous()
+    )
     power = fire.power
     for _ in range(round(seconds / burner.step)):
         power = smoke.advance(state, world, fire, yields, burner.ambient, burner.step)

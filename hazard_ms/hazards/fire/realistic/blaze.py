@@ -49,7 +49,6 @@ from hazard_ms.spec import Quantity
 from hazard_ms.spec.severity import SEVERITIES, USUAL
 
 ESTABLISHED = 60.0  # age of the fires with which a scene begins [s] [ours]
-FLOOR_YIELDS = kindling.yields(fuels.MATERIALS["wood"])  # of burning floor, per heat [kg/kJ]
 UPDATE = 1 / 6  # unit in which pictures count the age of flames on things: 5 frames of the original [s]
 CHEST = 1.0  # height at which the agent feels heat and smoke [m] [ours]
 
@@ -150,9 +149,7 @@ class Blaze(Hazard):
 
     def _smoke(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> radiation.Fires:
         """Advance the smoke by `step` seconds of fire; returns the fires as far as they have oxygen."""
-        floor = fires.power.new_tensor(FLOOR_YIELDS).expand(*state.flame_age.shape, -1)
-        yields = torch.cat([state.yields, floor], 1)
-        burns = smoke.advance(state, world, fires, yields, self.room_temperature, step)
+        burns = smoke.advance(state, world, fires, state.yields, self.room_temperature, step)
         state.heat_release.copy_(burns.sum(1))
         here = smoke.zone_of(state, world.agent_position[:, None])
         for name in ("height", "temperature", "density"):

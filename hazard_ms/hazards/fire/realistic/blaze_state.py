@@ -69,7 +69,7 @@ class BlazeState(FireState):
     zone_area: Tensor = quantity("E R", "m^2", "area of the floor; 0 for no room", low=0.0)
     zone_edge: Tensor = quantity("E R", "m", "circumference of the room")
     zone_smoke: Tensor = quantity(
-        f"E R {PARTS}", "", "the layer: mass [kg], excess heat [kJ], soot, lack of oxygen, CO, HCN [kg]"
+        f"E R {PARTS}", "", "the layer: mass [kg], excess heat [kJ], soot, lack of oxygen against air, CO, HCN [kg]"
     )
     zone_air: Tensor = quantity(f"E R {PARTS}", "", "the same of the air below it")
     zone_wall: Tensor = quantity("E R", "m^2", "ceiling and walls that it covers", low=0.0)

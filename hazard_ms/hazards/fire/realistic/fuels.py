@@ -32,6 +32,12 @@ class Material:
     cyanide: float = 0.0  # hydrogen cyanide per burnt mass with enough air [kg/kg] [M: SFPE, Purser]
     cyanide_smothered: float = 0.0  # the same without [kg/kg] [M: SFPE, Purser]
 
+    @property
+    def yields(self) -> tuple[float, ...]:
+        """Yields per heat [kg/kJ]: soot, carbon monoxide, hydrogen cyanide with enough air and without, and fuel."""
+        parts = (self.soot, self.monoxide, self.cyanide, self.cyanide_smothered, 1.0)
+        return tuple(part / self.combustion for part in parts)
+
 
 MATERIALS: dict[str, Material] = {
     # particleboard 12.7 mm; plywood's heat of combustion; wood crib's 11 g/m^2 s [3.1]; soot of wood [M]

@@ -90,11 +90,5 @@ def describe_things(state: BlazeState, world: World, rows: Tensor) -> None:
     for name in ("growth", "peak", "decline"):
         getattr(state, name)[rows] = getattr(made, name)[rows]
     state.burn_end[rows] = torch.where(state.curve >= 0, burning.lasting(state.curve), made.end)[rows]
-    table = torch.tensor([yields(fuels.material(c)) for c in CATEGORIES], device=world.device)
+    table = torch.tensor([fuels.material(c).yields for c in CATEGORIES], device=world.device)
     state.yields[rows] = table[category][rows]
-
-
-def yields(made: fuels.Material) -> tuple[float, ...]:
-    """Yields of a material per heat [kg/kJ]: soot, CO, HCN with enough air and without, and itself."""
-    parts = (made.soot, made.monoxide, made.cyanide, made.cyanide_smothered, 1.0)
-    return tuple(part / made.combustion for part in parts)

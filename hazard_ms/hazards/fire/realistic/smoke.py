@@ -5,6 +5,7 @@ The laws of the layers are those of `.twozone`.
 
 from __future__ import annotations
 
+import functools
 from functools import partial
 from typing import NamedTuple
 
@@ -12,6 +13,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.base import none_set
+from hazard_ms.hazards.fire.realistic import fuels
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.radiation import AIR, GRAVITY, KELVIN, Fires, alight, in_blocks
 from hazard_ms.hazards.fire.realistic.twozone import balance, zones
@@ -37,23 +39,31 @@ class _Sources(NamedTuple):
     radiant: Tensor
     diameter: Tensor
     yields: Tensor
+    floor: Tensor
     burns: Tensor
 
 
 def advance(state: BlazeState, world: World, fires: Fires, yields: Tensor, room: float, step: float) -> Tensor:
     """Carry the smoke over `step` [s]; returns the heat release [kW], [E, M], for which the fires have oxygen.
 
-    `yields` [kg/kJ], [E, M, YIELDS], is what each fire makes, `room` the temperature outside [C].
+    `yields` [kg/kJ], [E, B, YIELDS], is what each of the first B fires makes, the others are of wood; `room` is the
+    temperature outside [C].
     """
     work = state.zone_area[..., None].expand(-1, -1, balance.WORK)
     burns, work, upper, lower = world.launches.results(
         zones.advance, fires.power, work, state.zone_smoke, state.zone_air
     )
     place, power, radiant, diameter = (v.contiguous() for v in fires)
-    source = _Sources(place, power, radiant, diameter, yields, burns)
+    source = _Sources(place, power, radiant, diameter, yields, _of_wood(place.device), burns)
     structs = world.launches.struct(zones.Sources, source), world.launches.struct(balance.Rooms, state)
     world.launches.run(zones.advance, (len(burns),), step, room, *structs, work, upper, lower)
     return burns
+
+
+@functools.lru_cache(maxsize=4)
+def _of_wood(device: torch.device) -> Tensor:
+    """Yields of burning floor [kg/kJ], [1, YIELDS]."""
+    return torch.tensor([fuels.MATERIALS["wood"].yields], device=device)
 
 
 def zone_of(state: BlazeState, points: Tensor) -> Tensor:

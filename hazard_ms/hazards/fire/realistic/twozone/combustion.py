@@ -59,15 +59,16 @@ def burn(e: int, r: int, dt: float, rooms: Rooms, work: wp.array3d(dtype=float))
 
 @wp.func
 def products(e: int, r: int, dt: float, rooms: Rooms, work: wp.array3d(dtype=float)) -> gas.Gas:
-    """Soot, lack of oxygen and poisons that the fires of a room add to its layer in `dt` [s]."""
+    """Gas, soot, lack of oxygen and poisons that the fires of a room add to its layer in `dt` [s]."""
     made = gas.Gas()
     power, share, hunger = work[e, r, balance.POWER], rooms.zone_share[e, r], work[e, r, balance.HUNGER]
     if power > 0.0:
         poor = wp.clamp((hunger - LEAN_AIR) / (POOR_AIR - LEAN_AIR), 0.0, 1.0)
         lean, rich = work[e, r, balance.LEAN], work[e, r, balance.RICH]
         made[gas.SOOT] = dt * share * work[e, r, balance.SOOT]
-        made[gas.LACK] = dt * share * power / PER_OXYGEN
         fuel = share * work[e, r, balance.FUEL]
+        made[gas.MASS] = dt * fuel
+        made[gas.LACK] = dt * (share * power / PER_OXYGEN + gas.OXYGEN * fuel)
         made[gas.MONOXIDE] = dt * wp.max(share * work[e, r, balance.MONOXIDE], fuel * monoxide(hunger))
         made[gas.CYANIDE] = dt * share * (lean + poor * (rich - lean))
     return made

@@ -2,7 +2,7 @@
 
 A layer has a mass m and an excess heat E: its temperature is T_0 + E / (c m), its volume m T / 353. c is the mean heat
 capacity of air between both, 1 + 0.0001 (T - T_0) kJ/kg K. It also has soot, carbon monoxide and hydrogen cyanide, and
-lacks oxygen. All of these go along with a share of its mass.
+lacks oxygen against as much air: what burns becomes gas, too. All of these go along with a share of its mass.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ NATURAL = 0.15 * 0.030e-3 * (radiation.GRAVITY * 0.70 / (350.0 * 20.9e-6**2)) **
 TOUCH = 0.1  # share of the height below which the layer begins to touch the floor [ours]
 AT_ONCE = 0.5  # share of a volume that does not fit into a room which leaves it in the next part of a step [ours]
 STEFAN = wp.constant(radiation.STEFAN)
-KELVIN = wp.constant(radiation.KELVIN)
+AIR, KELVIN = wp.constant(radiation.AIR), wp.constant(radiation.KELVIN)
 
 
 @wp.func
@@ -83,6 +83,7 @@ def warm(e: int, r: int, slab: lining.Slab, room: float, dt: float, rooms: Rooms
         need = need - rest * lining.gain(slab, work[e, r, balance.LOWER]) * (hot - lower) - shine * (hot - room)
     spare = gas.volume(smoke, room) + gas.volume(air, room) - floor * tall
     made = need * gas.swelling(smoke) + warmed * gas.swelling(air)
+    made = made + share * work[e, r, balance.FUEL] * (room + KELVIN) / AIR
     work[e, r, balance.NEED] = made + AT_ONCE * spare / dt
 
 

@@ -37,13 +37,17 @@ Yields = wp.types.vector(length=YIELDS, dtype=float)
 
 @wp.struct
 class Sources:
-    """M fires of each environment, see radiation.Fires; `yields` [kg/kJ], and `burns` [kW], what oxygen allows them."""
+    """M fires of each environment, see radiation.Fires; `burns` [kW]: what oxygen allows them.
+
+    `yields` [kg/kJ] are those of the first fires, those of the `floor` hold for all others.
+    """
 
     place: wp.array2d(dtype=wp.vec3)
     power: wp.array2d(dtype=float)
     radiant: wp.array2d(dtype=float)
     diameter: wp.array2d(dtype=float)
     yields: wp.array2d(dtype=Yields)
+    floor: wp.array(dtype=Yields)
     burns: wp.array2d(dtype=float)
 
 
@@ -75,7 +79,9 @@ def gather(e: int, fires: Sources, rooms: Rooms, work: wp.array3d(dtype=float)):
             work[e, r, balance.CONVECTED] = work[e, r, balance.CONVECTED] + (1.0 - fires.radiant[e, k]) * power
             work[e, r, balance.BASE] = work[e, r, balance.BASE] + power * point[2]
             work[e, r, balance.AREA] = work[e, r, balance.AREA] + wide * wide / plumes.PER_AREA
-            made = power * fires.yields[e, k]
+            made = power * fires.floor[0]
+            if k < fires.yields.shape[1]:
+                made = power * fires.yields[e, k]
             for part in range(YIELDS):
                 column = balance.SOOT + part
                 work[e, r, column] = work[e, r, column] + made[part]

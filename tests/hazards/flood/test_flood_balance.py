@@ -38,7 +38,7 @@ def check_closed(flooding: Flooding, frames: int) -> None:
     for frame in range(frames):
         flooding.step()
         now = flooding.energy
-        assert now < energy + 2e-4 * start, (name, frame)  # velocities and depths are known half a step apart
+        assert now < energy + 5e-4 * start, (name, frame)  # velocities and depths are known half a step apart
         assert flooding.speed < 2.0 * GRAVITY**0.5, (name, frame)
         energy = now
     assert energy < 0.7 * start and flooding.volume == pytest.approx(volume, rel=1e-6), name

@@ -9,8 +9,7 @@ import math
 import numpy as np
 import torch
 
-from hazard_ms.robots.fetch import HazardFetch
-from hazard_ms.robots.g1 import HazardG1
+from hazard_ms.registry import ROBOTS, find, load
 from hazard_ms.validation.experiments.wind import REAL, gusty, three_seconds
 from hazard_ms.validation.experiments.yard import Block, Thing, Yard, begin, run, street
 
@@ -81,7 +80,7 @@ def distance_after(time: float) -> float:
 def topples_at(robot: str) -> float:
     """Steady wind [m/s] at a standing robot's chest that throws it over, to 1 cm/s."""
     world, low, high = street([Thing()], (10.0, 0.0)), 0.0, 100.0
-    world.agent_build = {"fetch": HazardFetch, "g1": HazardG1}[robot].build
+    world.agent_build = load(find(ROBOTS, robot, "robot").robot).build
     law = dataclasses.replace(CALM_AIR, sheltered=False)
     while high - low > 0.01:
         middle, state = 0.5 * (low + high), begin(law, world)

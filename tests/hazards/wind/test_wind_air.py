@@ -170,6 +170,16 @@ def test_the_lee_is_that_of_traced_rays(heading: float, block: Block) -> None:
     assert (shares < 0.95).sum() > 3 and (shares == 1.0).sum() > 5
 
 
+@pytest.mark.parametrize(("deep", "coefficient"), [(3.0, 0.3), (1.95, 0.55), (0.5, 0.8)])
+def test_a_block_takes_less_of_the_wind_than_a_fence_of_its_size(deep: float, coefficient: float) -> None:
+    """3 m wide and high, 12 m behind it: air comes down again on the roof of what is deep."""
+    law = dataclasses.replace(REAL, scale=1.0, roughness=0.0, gust_intensity=0.0)
+    world = street([Thing()], (4.0, 0.0), [Block("house", (3.0 - deep / 2, 8.0, 0.0), (deep, 3.0, 3.0))])
+    left = float(law.image(begin(law, world), world, torch.tensor([[[15.0, 8.1, 0.1]]]))) / 4.0
+    want = taylor_salmon(np.array(12.0), 3.0, coefficient, 1.5, 1.5)
+    assert left == pytest.approx(1.0 - float(want), abs=0.05)
+
+
 @pytest.mark.parametrize("turn", [0.0, 0.6])
 def test_pieces_of_a_hedge_shelter_as_one_and_more_than_one_piece(turn: float) -> None:
     """Ten pieces of 1.6 m, also where the wind meets them slantwise; the lee of what is narrow is short."""

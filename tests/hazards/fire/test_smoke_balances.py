@@ -111,6 +111,9 @@ def test_a_room_after_flashover_burns_what_its_door_lets_in() -> None:
         burns = burn(state, world, burner, fire_at(1.8, 1.2, burner), seconds)
         assert burns == pytest.approx(1500.0 * 1.6 * math.sqrt(2.0), rel=0.3)
         assert abs(float(state.zone_pressure)) < 15.0
+        warmth = torch.stack([state.zone_temperature, state.zone_low_temperature]) + 273.15
+        mass = torch.stack([state.zone_smoke, state.zone_air])[..., MASS]
+        assert float((mass * warmth).sum()) / 353.0 == pytest.approx(3.6 * 2.4 * 2.4, rel=0.05)  # no gas too much
     assert 900.0 < float(state.zone_temperature) < 1600.0  # nothing is cut off
 
 

@@ -80,8 +80,8 @@ def fire(preset: str, severity: str = USUAL) -> Fire | Blaze:
     law, level = _FIRE[known(preset)], SEVERITIES[chosen(severity, preset)]
     if not isinstance(law, Blaze):
         return law
-    first = {"first_release": level.fire_start, "first_base": level.fire_base, "first_height": level.fire_height}
-    return dataclasses.replace(law, growth=level.fire_growth, **first)
+    law = dataclasses.replace(law, growth=level.fire_growth, first_release=level.fire_start)
+    return dataclasses.replace(law, first_base=level.fire_base, first_height=level.fire_height)
 
 
 def flood(preset: str, severity: str = USUAL) -> Flood:

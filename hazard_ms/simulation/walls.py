@@ -1,4 +1,4 @@
-"""What lies between two places: the inner walls of a scene, and the doorways in them (torch and Warp).
+"""Inner walls of scenes and the doorways in them: what lies between two places (torch; Warp: hazard_ms.hazards.walls).
 
 Everything that goes straight, as heat and flames do, asks here: a wall lets it pass where the straight line from one
 place to the other goes through an open doorway. Places are points [m], [..., 3], world frame; walls are planes in the
@@ -10,16 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import torch
-import warp as wp
 from torch import Tensor
 
-from hazard_ms.kernels.launch import OPTIONS
-from hazard_ms.spec import SceneSpec
-
-wp.set_module_options(OPTIONS)
+from hazard_ms.spec import Partition, SceneSpec
 
 NOWHERE = 1e6  # where a wall that does not exist is [m]: farther than any place
-Frame = wp.types.vector(length=5, dtype=float)
 
 
 @dataclass(frozen=True)
@@ -33,7 +28,7 @@ class Walls:
     @classmethod
     def of(cls, specs: tuple[SceneSpec, ...], device: torch.device | str) -> Walls:
         """The inner walls of `specs`."""
-        walls = [[(float(p.axis == "x"), p.at, p.thickness / 2) for p in s.room.partitions] for s in specs]
+        walls = [[_wall(p) for p in s.room.partitions] for s in specs]
         doorways = [_doorways(s) for s in specs]
         return cls(
             any(walls), _padded(walls, (0.0, NOWHERE, 0.0), device), _padded(doorways, (-1.0, *[0.0] * 4), device)
@@ -47,8 +42,12 @@ class Walls:
         return cls(False, *made)
 
     def part(self, rows: Tensor | slice) -> Walls:
-        """The walls of the environments `rows`."""
+        """The walls of the environments `rows`, indices [R] or a slice."""
         return Walls(self.any, self.wall[rows], self.doorway[rows])
+
+
+def _wall(partition: Partition) -> tuple[float, ...]:
+    return float(partition.axis == "x"), partition.at, partition.thickness / 2
 
 
 def _doorways(spec: SceneSpec) -> list[tuple[float, ...]]:
@@ -107,38 +106,3 @@ def within(walls: Walls, x: Tensor, y: Tensor, half: float) -> Tensor:
             through |= (number == w) & (sill <= 0.0) & (along - half >= low) & (along + half <= high)
         found |= ((place - at).abs() < thick + half) & ~through
     return found
-
-
-@wp.struct
-class Partitions:
-    """The fields of Walls with the same names."""
-
-    wall: wp.array2d(dtype=wp.vec3)
-    doorway: wp.array2d(dtype=Frame)
-
-
-@wp.func
-def passes(e: int, w: int, place: float, height: float, walls: Partitions) -> bool:
-    """Whether the wall `w` of environment `e` is open at `place` along it and at `height` [m]."""
-    for d in range(walls.doorway.shape[1]):
-        hole = walls.doorway[e, d]
-        if int(hole[0]) == w and place > hole[1] and place < hole[2] and height >= hole[3] and height < hole[4]:
-            return True
-    return False
-
-
-@wp.func
-def clear(e: int, here: wp.vec3, there: wp.vec3, walls: Partitions) -> bool:
-    """Whether no wall of environment `e` lies between two places [m], see `blocked`."""
-    for w in range(walls.wall.shape[1]):
-        wall = walls.wall[e, w]
-        mine, yours = here[0], there[0]
-        start, end = here[1], there[1]
-        if wall[0] > 0.0:
-            mine, yours = here[1], there[1]
-            start, end = here[0], there[0]
-        if (mine < wall[1]) != (yours < wall[1]):
-            share = (wall[1] - mine) / (yours - mine)
-            if not passes(e, w, start + share * (end - start), here[2] + share * (there[2] - here[2]), walls):
-                return False
-    return True

@@ -144,14 +144,12 @@ class World:
         for e, (spec, row) in enumerate(zip(specs, things, strict=True)):
             n = len(row)
             world.extent[e, :n] = torch.tensor(extents[e], device=device)
-            world.mass[e, :n] = torch.tensor(masses[e], device=device)
+            world.mass[e, :n], world.exists[e, :n] = torch.tensor(masses[e], device=device), True
             world.rotation[e, :n] = torch.tensor([t.rotation for t in row], device=device)
-            world.exists[e, :n] = True
             world.movable[e, :n] = torch.tensor([isinstance(t, Body) for t in row], device=device)
             world.category[e, :n] = torch.tensor([order.index(t.category) for t in row], device=device)
-            world.target[e, :n] = torch.tensor(
-                [isinstance(t, Body) and t.category in spec.target_categories for t in row], device=device
-            )
+            wanted = [isinstance(t, Body) and t.category in spec.target_categories for t in row]
+            world.target[e, :n] = torch.tensor(wanted, device=device)
             world.value[e, :n] = torch.tensor([float(CATEGORIES[t.category].value) for t in row], device=device)
             base = torch.tensor([t.position for t in row], device=device)
             world.position[e, :n] = cls.centre_of(base, world.rotation[e, :n], world.extent[e, :n])
@@ -208,15 +206,14 @@ class World:
 
     def lookup(self, attribute: str) -> Tensor:
         """A numeric attribute of the catalogue (temperatures in [C]) of every thing, float32 [E, B]; 0 for padding."""
-        table = torch.tensor([float(getattr(c, attribute)) for c in CATEGORIES.values()], device=self.device)
-        return torch.where(self.exists, table[self.category.clamp(min=0)], 0.0)
+        of_each = torch.tensor([float(getattr(c, attribute)) for c in CATEGORIES.values()], device=self.device)
+        return torch.where(self.exists, of_each[self.category.clamp(min=0)], 0.0)
 
     def index(self, env: int, name: str) -> int:
         """Index along B of the thing called `name` in scene `env`. Raises ValueError if no thing has that name."""
         if name not in self.names[env]:
-            raise ValueError(
-                f"a thing in {self.specs[env].name} must be one of {', '.join(self.names[env])}, got {name!r}"
-            )
+            known = ", ".join(self.names[env])
+            raise ValueError(f"a thing in {self.specs[env].name} must be one of {known}, got {name!r}")
         return self.names[env].index(name)
 
     def read(self) -> None:
@@ -230,10 +227,7 @@ class World:
             self.handles.place(rows, self.base_of(self.position, self.rotation, self.extent), self.rotation)
 
     def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
-        """Keep the bodies of the mask `frozen`, [E, B], at `base` [m], [E, B, 3], and `rotation`, [E, B, 4].
-
-        All other bodies are free.
-        """
+        """Keep the bodies of the mask `frozen`, [E, B], at `base` [m], [E, B, 3], and `rotation`, and free all others."""
         if self.handles is not None:
             self.handles.freeze(frozen, base, rotation)
 

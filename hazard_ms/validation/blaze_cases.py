@@ -8,7 +8,8 @@ from collections.abc import Iterator
 
 from hazard_ms.hazards.case import Case, table
 from hazard_ms.hazards.fire.realistic import fuels, tenability
-from hazard_ms.validation.experiments import correlations, smoke_room
+from hazard_ms.validation import correlations
+from hazard_ms.validation.experiments import smoke_room
 from hazard_ms.validation.experiments.blaze import (
     burner_flux,
     cell_ignition,

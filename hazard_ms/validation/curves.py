@@ -9,9 +9,9 @@ import numpy as np
 import torch
 
 from hazard_ms.hazards.fire.realistic import burning, fuels
-from hazard_ms.validation import blaze_cases, fire_cases, flood_cases
+from hazard_ms.validation import blaze_cases, correlations, fire_cases, flood_cases
 from hazard_ms.validation.charts import Chart, Line
-from hazard_ms.validation.experiments import correlations, fire, flood, smoke_room, wind
+from hazard_ms.validation.experiments import fire, flood, smoke_room, wind
 from hazard_ms.validation.experiments.blaze import PLAIN
 from hazard_ms.validation.experiments.fire_room import room_world
 

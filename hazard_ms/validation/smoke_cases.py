@@ -9,7 +9,7 @@ import functools
 from collections.abc import Iterator
 
 from hazard_ms.hazards.case import Case, table
-from hazard_ms.validation.experiments import correlations
+from hazard_ms.validation import correlations
 from hazard_ms.validation.experiments.compartments import (
     MARINITE,
     Compartment,

@@ -11,8 +11,9 @@ import warp as wp
 
 from hazard_ms.hazards import presets
 from hazard_ms.hazards.base import Hazard
+from hazard_ms.hazards.walls import Partitions, clear
 from hazard_ms.kernels.launch import Launches
-from hazard_ms.simulation.walls import Partitions, Walls, blocked, clear, within
+from hazard_ms.simulation.walls import Walls, blocked, within
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Partition, Room, SceneSpec
 from tests.worlds.fire_worlds import room_world

@@ -19,9 +19,9 @@ from hazard_ms.hazards.fire import coupling, floor, heat, spread
 from hazard_ms.hazards.fire.declared import TELLS, TEMPERATURE, ignites
 from hazard_ms.hazards.fire.fire_state import BURNING, BURNT, NORMAL, FireState, lit, some_flames
 from hazard_ms.hazards.fire.kernels import Heat, temperature_at
+from hazard_ms.hazards.walls import Partitions
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.launch import of_environments
-from hazard_ms.simulation.walls import Partitions
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
 

@@ -16,7 +16,7 @@ from hazard_ms.hazards.fire.realistic import front as edge
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.simulation.world import World
-from hazard_ms.validation.experiments import correlations
+from hazard_ms.validation import correlations
 from hazard_ms.validation.experiments.fire_room import room_world
 
 HALL = (20.0, 20.0)  # floor of the rooms in which one fire burns [m]

@@ -14,7 +14,7 @@ from hazard_ms.hazards.fire.fire import can_burn, enlisted, light
 from hazard_ms.hazards.fire.realistic import radiation, scorch
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.twozone.balance import Rooms
-from hazard_ms.simulation.walls import Partitions
+from hazard_ms.hazards.walls import Partitions
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import rounding
 

@@ -56,7 +56,7 @@ def alight(fires: Fires) -> tuple[Fires, Tensor]:
 
 
 def in_blocks(work: Callable[..., Tensor], fires: Fires, walls: Walls, points: Tensor, *more: Tensor) -> Tensor:
-    """What `work` makes of fires, walls, `points` [m], [E, P, 3], and `more`, [E, ...], as if of all at once.
+    """The result of `work` on fires, walls, `points` [m], [E, P, 3], and `more`, [E, ...], of all environments.
 
     On a CPU it works on so few of them at a time that all pairs of fires and points stay in its cache.
     """

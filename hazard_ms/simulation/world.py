@@ -227,7 +227,7 @@ class World:
             self.handles.place(rows, self.base_of(self.position, self.rotation, self.extent), self.rotation)
 
     def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
-        """Keep the bodies of the mask `frozen`, [E, B], at `base` [m], [E, B, 3], and `rotation`, and free all others."""
+        """Keep the bodies of the mask `frozen`, [E, B], at `base` [m], [E, B, 3], and `rotation`; free all others."""
         if self.handles is not None:
             self.handles.freeze(frozen, base, rotation)
 

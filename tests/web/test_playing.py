@@ -108,6 +108,7 @@ def played(rescue: Rescue, folder: Path) -> Page:
     return page
 
 
+@pytest.mark.long
 @pytest.mark.render
 @pytest.mark.timeout(300)
 def test_a_process_that_dies_before_the_film_is_there_costs_nothing(tmp_path: Path) -> None:

@@ -115,7 +115,7 @@ def test_what_hangs_under_a_ceiling_feels_the_jet_below_it() -> None:
     state = begin(REAL, world)
     state.flame_age[:, 0] = 1e3
     points = torch.tensor([[[4.0, 1.0, 2.9], [4.0, 1.0, 2.5]]])
-    _, gas = REAL._exposure(state, REAL._fires(state, world), points)
+    _, gas = REAL._exposure(state, world, REAL._fires(state, world), points)
     want = 5.38 * (REAL.first_release / 3.0) ** (2 / 3) / 3.0
     assert gas[0].tolist() == pytest.approx([20.0 + want, 20.0], rel=0.01)
 

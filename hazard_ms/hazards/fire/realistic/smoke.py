@@ -139,7 +139,7 @@ def visibility(state: BlazeState, points: Tensor) -> Tensor:
     here = zone_of(state, points)
     high = points[..., 2] > state.zone_height.gather(1, here)
     thick = torch.where(high, state.zone_density.gather(1, here), state.zone_low_density.gather(1, here))
-    return SEEN / thick.clamp(min=SEEN / FARTHEST)
+    return (SEEN / thick.clamp(min=SEEN / FARTHEST)).clamp(max=FARTHEST)
 
 
 def _above(room: float, fires: Fires, walls: Walls, points: Tensor) -> Tensor:

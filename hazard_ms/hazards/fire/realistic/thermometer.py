@@ -106,7 +106,7 @@ def show(
             wide = diameter / 2.0 + PLUME_WIDTH * apart[2]
             if apart[2] >= 0.0 and aside <= wide * wide and clear(e, place, point, walls):
                 rise = wp.max(rise, plume_rise(power, radiant, diameter, apart[2], room))
-    gas = room
+    gas = rooms.zone_low_temperature[e, r]
     if point[2] > rooms.zone_height[e, r]:
         gas = rooms.zone_temperature[e, r]
     found[e, p] = wp.min(adiabatic(flux, wp.min(gas + rise, hottest), room), hottest)

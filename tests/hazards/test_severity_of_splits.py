@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
@@ -25,6 +26,11 @@ LEAST, MOST = 2 / 3, 4 / 3  # shares of a storm in its streets
 SCATTER = 0.05
 
 
+def some(names: Sequence[str]) -> list[Any]:
+    """Splits as parameters; building the scenes of all but `hard` takes a minute: --long."""
+    return [pytest.param(name, marks=[] if name == "hard" else [pytest.mark.long]) for name in names]
+
+
 @functools.cache
 def worlds(family: str, split: str) -> tuple[World, ...]:
     return tuple(make_world((splits.scene(name),), torch.device("cpu")) for name in splits.scene_names(split, family))
@@ -37,7 +43,7 @@ def started(law: Any, world: World) -> Any:
 
 
 @SEVERITIES
-@pytest.mark.parametrize("split", splits.split_names("outdoor"))
+@pytest.mark.parametrize("split", some(splits.split_names("outdoor")))
 def test_the_wind_of_a_split_is_that_of_the_table(
     split: str, severity: str, storm: float, depth: float, release: float
 ) -> None:
@@ -49,7 +55,7 @@ def test_the_wind_of_a_split_is_that_of_the_table(
 
 
 @SEVERITIES
-@pytest.mark.parametrize("split", splits.split_names("indoor"))
+@pytest.mark.parametrize("split", some(splits.split_names("indoor")))
 def test_the_fires_of_the_start_share_the_release_of_the_table(
     split: str, severity: str, storm: float, depth: float, release: float
 ) -> None:
@@ -61,7 +67,7 @@ def test_the_fires_of_the_start_share_the_release_of_the_table(
 
 
 @SEVERITIES
-@pytest.mark.parametrize("split", splits.split_names("indoor"))
+@pytest.mark.parametrize("split", some(splits.split_names("indoor")))
 def test_water_stands_outside_an_open_way_in_as_deep_as_in_the_table(
     split: str, severity: str, storm: float, depth: float, release: float
 ) -> None:

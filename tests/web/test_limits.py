@@ -94,6 +94,7 @@ def test_a_rescue_too_many_is_refused_while_all_are_looked_at_and_else_takes_the
         assert journal(folder, first).exists() and journal(folder, second).exists()
 
 
+@pytest.mark.long
 def test_a_rescue_that_nobody_looks_at_gives_its_process_back_and_goes_on_later(tmp_path: Path) -> None:
     folder = tmp_path / "rescues"
     with serving(folder, "--idle", str(IDLE / 60.0)) as server:

@@ -82,7 +82,7 @@ def unit(slip: wp.vec3) -> wp.vec3:
 
 @wp.func
 def plate_normal(extent: wp.vec3) -> wp.vec3:
-    """Unit vector across the faces of a plate with edges `extent` [m], body frame; 0 for what is no plate."""
+    """Unit vector across the faces of a plate with edges `extent` [m], body frame; 0 for other shapes."""
     x, y, z = extent[0], extent[1], extent[2]
     thin = wp.min(x, wp.min(y, z))
     middle = x + y + z - thin - wp.max(x, wp.max(y, z))

@@ -35,6 +35,7 @@ def result(process: subprocess.Popen[str]) -> dict[str, str]:
     return json.loads(out.strip().splitlines()[-1])
 
 
+@pytest.mark.long  # the usual tests compare other processes' episodes: tests/env/test_episode_hashes.py
 def test_same_bits_after_other_episodes_and_in_a_new_process() -> None:
     """Three seeds forwards in one process and backwards in another, so that every episode comes after other ones."""
     forwards, backwards = start(SEEDS, "1"), start(SEEDS[::-1], "2")
@@ -43,7 +44,7 @@ def test_same_bits_after_other_episodes_and_in_a_new_process() -> None:
     assert len(set(first.values())) == len(SEEDS), "different seeds must give different episodes"
 
 
-@pytest.mark.long  # the usual tests compare other processes' episodes of fire, flood and wind: test_episode_hashes.py
+@pytest.mark.long
 @pytest.mark.parametrize("physics", ["paper", "realistic"])
 @pytest.mark.parametrize("env_id", ["HazardFlood-v1", "HazardWind-v1", "HazardCompound-v1"])
 def test_same_bits_in_every_task(env_id: str, physics: str) -> None:

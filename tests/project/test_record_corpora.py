@@ -8,7 +8,7 @@ from tests.worlds.hostile.corpus import BATCH, RECORDS
 from tests.worlds.hostile.reading import read_corpus
 
 
-def test_forty_hostile_records_of_each_kind() -> None:
+def test_ten_hostile_records_of_each_kind() -> None:
     read_corpus("records", 0, len(RECORDS))
 
 

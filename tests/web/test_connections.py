@@ -46,7 +46,7 @@ def answered(host: str, token: str) -> float:
     return time.monotonic() - start
 
 
-@pytest.mark.parametrize("said", [b"", b"GET / HTTP/1.1\r\nHost: 127"])
+@pytest.mark.parametrize("said", [pytest.param(b"", marks=pytest.mark.long), b"GET / HTTP/1.1\r\nHost: 127"])
 def test_idle_connections_keep_nobody_out_and_do_not_fill_the_disk(
     served: tuple[str, str, Path, Path], said: bytes
 ) -> None:

@@ -26,6 +26,7 @@ from pathlib import Path
 MEMORY = 1_000_000_000  # that reading one file may take [bytes]
 PROCESSOR_TIME, RECORD_TIME = 60.0, 10.0  # likewise, and for records [s]
 BATCH = 40  # records that one process reads
+FEW = 10  # likewise, of each kind, where all kinds are read one after another
 ADDRESSES = 8_000_000_000  # that reading a record may ask for, so that no bomb takes the machine along [bytes]
 HANGING = 600  # when a process is ended [s]
 READ, REFUSED, UNDOCUMENTED = 0, 3, 4  # how a process ends
@@ -119,8 +120,8 @@ def read_original(number: int, folder: Path) -> tuple[str, Callable[[], int]]:
     return kind, bring
 
 
-def read_records(corpus: str, number: int, folder: Path) -> tuple[str, Callable[[], int]]:
-    """The hostile records of a number, BATCH of them, since starting a process takes longer; and what reads them."""
+def read_records(corpus: str, number: int, folder: Path, batch: int = BATCH) -> tuple[str, Callable[[], int]]:
+    """The hostile records of a number, a batch of them, since starting a process takes longer; and what reads them."""
     from tests.worlds.hostile.audit import watch
     from tests.worlds.hostile.records import record
 
@@ -130,7 +131,7 @@ def read_records(corpus: str, number: int, folder: Path) -> tuple[str, Callable[
     secret.write_text("of its reader")
     module.write_text("open(__file__ + '.run', 'w')\n")
     acts = {}
-    for each in range(BATCH * number, BATCH * (number + 1)):
+    for each in range(batch * number, batch * (number + 1)):
         (inside / str(each)).mkdir(parents=True)
         acts[each] = record(corpus, each, inside / str(each), secret, module)
 
@@ -171,7 +172,9 @@ RECORDS = (
 )
 CORPORA = {"models": read_model, "scenes": read_scene, "originals": read_original}
 CORPORA |= {name: partial(read_records, name) for name in RECORDS}
-CORPORA["records"] = lambda number, folder: read_records(RECORDS[number % len(RECORDS)], number // len(RECORDS), folder)
+CORPORA["records"] = lambda number, folder: read_records(
+    RECORDS[number % len(RECORDS)], number // len(RECORDS), folder, FEW
+)
 
 
 def answer(words: str) -> int:

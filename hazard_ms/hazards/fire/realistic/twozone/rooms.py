@@ -1,7 +1,7 @@
 """The rooms of a scene, and the openings between them and to the outside, as the smoke of a realistic fire sees them.
 
-Partitions cut a scene into rooms that stand in a row along x or y. Limit: partitions across the first one's direction
-are left out.
+Partitions cut a scene into rooms that stand in a row along x or y; rooms without an opening between them share nothing.
+Limit: partitions across the first one's direction are left out.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from hazard_ms.scenes.walls import WALLS
 from hazard_ms.spec import Opening, Room
 
-GAP = 0.02  # width of the gaps of a closed door or window [m] [docs/physics.md 4.4]
 OUTSIDE = -1  # in place of a room's number
 
 
@@ -22,17 +22,6 @@ class Part(NamedTuple):
     end: float  # where it ends along the row [m]
     area: float  # area of its floor [m^2]
     edge: float  # circumference [m]
-
-
-class Gap(NamedTuple):
-    """An opening between two rooms, or between a room and the outside."""
-
-    width: float  # [m]
-    sill: float  # height of its lower end [m]
-    top: float  # height of its upper end [m]
-    widest: float  # width without panes [m]
-    room: int  # number of a room
-    other: int  # number of the room behind it, or OUTSIDE
 
 
 def across(room: Room) -> bool:
@@ -51,26 +40,23 @@ def parts(room: Room) -> list[Part]:
     return [Part(end, size * wide, 2.0 * (size + wide)) for end, size in zip(ends, sizes, strict=True)]
 
 
-def openings(room: Room, standing_open: Sequence[Opening] = ()) -> list[Gap]:
-    """Doors and windows, which are closed but for gaps, open doorways, and gaps in partitions that have none.
+def joined(room: Room, openings: Sequence[Opening]) -> list[tuple[int, int]]:
+    """The rooms on both sides of each of the `openings`, the second OUTSIDE in outer walls.
 
-    Doors that are `standing_open` are as wide as they are; those that the room does not have count, too.
+    Those in a partition that is left out join a room with itself, and pass nothing.
     """
     row = parts(room)
     inner = sorted((p for p in room.partitions if p.axis == room.partitions[0].axis), key=lambda p: p.at)
     names = {p.name: k for k, p in enumerate(inner)}
-    found = []
-    for o in (*room.openings, *(o for o in standing_open if o not in room.openings)):
-        top = o.sill + o.height
-        if o.wall in names:
-            found.append(Gap(o.width, o.sill, top, o.width, names[o.wall], names[o.wall] + 1))
-        elif o.kind != "doorway":
-            width = o.width if o in standing_open else GAP
-            widest = o.width if o.kind == "window" else width
-            found.append(Gap(width, o.sill, top, widest, _part_at(room, row, o), OUTSIDE))
-    joined = {g.room for g in found if g.other != OUTSIDE}
-    found += [Gap(GAP, 0.0, room.height, GAP, k, k + 1) for k in range(len(row) - 1) if k not in joined]
-    return found
+    outer = {*WALLS}
+    return [
+        (names[o.wall], names[o.wall] + 1)
+        if o.wall in names
+        else (_part_at(room, row, o), OUTSIDE)
+        if o.wall in outer
+        else (0, 0)
+        for o in openings
+    ]
 
 
 def _part_at(room: Room, row: list[Part], opening: Opening) -> int:

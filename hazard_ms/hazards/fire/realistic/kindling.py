@@ -29,8 +29,10 @@ def describe_rooms(state: BlazeState, world: World, rows: Tensor, room: float) -
     state.smoke_height[rows] = state.height[rows]
     state.zone_height[rows] = state.height[rows, None]
     state.roofed[rows] = torch.tensor([float(not s.room.open_air) for s in specs], device=world.device)
-    state.zone_across[rows] = torch.tensor([int(rooms.across(s.room)) for s in specs], device=world.device)
-    _fill(state, rows, ("zone_end", "zone_area", "zone_edge"), [rooms.parts(s.room) for s in specs])
+    state.zone_columns[rows] = torch.tensor([len(rooms.ends(s.room, 0)) for s in specs], device=world.device)
+    for axis, name in enumerate(("zone_end_x", "zone_end_y")):
+        _fill(state, rows, (name,), [[(end,) for end in rooms.ends(s.room, axis)] for s in specs])
+    _fill(state, rows, ("zone_area", "zone_edge"), [rooms.parts(s.room) for s in specs])
     state.zone_wall[rows] = state.zone_area[rows]
     fill_with_air(state, rows, room)
     if "water" in world.fields:

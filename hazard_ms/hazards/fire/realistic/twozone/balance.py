@@ -38,8 +38,9 @@ class Rooms:
     vents: wp.array2d(dtype=wp.vec4)
     vent_from: wp.array2d(dtype=wp.int64)
     vent_to: wp.array2d(dtype=wp.int64)
-    zone_across: wp.array(dtype=wp.int64)
-    zone_end: wp.array2d(dtype=float)
+    zone_columns: wp.array(dtype=wp.int64)
+    zone_end_x: wp.array2d(dtype=float)
+    zone_end_y: wp.array2d(dtype=float)
     zone_area: wp.array2d(dtype=float)
     zone_edge: wp.array2d(dtype=float)
     zone_smoke: wp.array2d(dtype=Gas)
@@ -135,7 +136,7 @@ def surplus(
 
 @wp.func
 def balance(e: int, air: float, rooms: Rooms, work: wp.array3d(dtype=float)):
-    """Find the pressures of all rooms, of those together that openings join; without one to the outside it is 0."""
+    """Find the pressures of rooms in a row, of those together that openings join; 0 without one to the outside."""
     count = rooms.zone_area.shape[1]
     start = int(0)
     vented = joined(e, 0, OUTSIDE, rooms)

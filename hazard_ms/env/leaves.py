@@ -41,7 +41,7 @@ class Leaves:
         self._middle, self._along = (torch.tensor(of, device=world.device).reshape(-1, 3) for of in (middle, along))
 
     def places(self) -> Tensor:
-        """Where the middles of the leaves belong now [m], [L, 3], world frame of their environment."""
+        """Middles of the leaves as the doors are open now [m], [L, 3], world frame of their environment."""
         e, k = self._where.unbind(1)
         state = self._world.openings.state
         slid = self._middle - state.open[e, k, None] * self._along

@@ -113,7 +113,7 @@ class Hazard(abc.ABC):
         return None
 
     def strain(self, state: Any, world: World) -> Strain | None:
-        """What it does to doors and windows now, see `Strain`; None: nothing. Changes nothing.
+        """The load and heat that it puts on doors and windows now, see `Strain`; None: none. Changes nothing.
 
         It is asked every openings.EVERY frames, after `advance`.
         """

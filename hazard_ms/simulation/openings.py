@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import torch
 from torch import Tensor
@@ -44,7 +44,7 @@ EVERY = 5  # frames from one look at loads and heat to the next: those of a fire
 
 
 class Plan(NamedTuple):
-    """What stays of the openings of E scenes, [E, O] each unless it says otherwise."""
+    """The openings of E scenes as they are built, [E, O] each unless it says otherwise."""
 
     exists: Tensor  # bool
     door: Tensor  # whether it has a leaf that can be opened, bool
@@ -63,7 +63,7 @@ class Plan(NamedTuple):
 
 
 class Strain(NamedTuple):
-    """What a hazard does to openings at one time, [E, O] each."""
+    """Load and heat that a hazard puts on openings at one time, [E, O] each."""
 
     force: Tensor  # net force on what closes them, towards the second side [N]
     ageing: Tensor  # standard fire per time [s/s]
@@ -72,7 +72,7 @@ class Strain(NamedTuple):
 
 @dataclass
 class OpeningState(State):
-    """What changes of O openings."""
+    """The part of O openings that changes: how far they are open, and what they still bear."""
 
     open: Tensor = quantity("E O", "", "share of the width that is open", low=0.0, high=1.0)
     broken: Tensor = quantity("E O", "", "leaf or pane is gone", dtype="bool")
@@ -126,7 +126,7 @@ class Openings:
 
     @property
     def ways(self) -> tuple[Tensor, Tensor]:
-        """Which doorways and doors in inner walls there are, as Walls has them, and which are open, [E, D], bool."""
+        """Masks [-] of the doorways and doors in inner walls, as in Walls: those there are, those open, [E, D]."""
         there = self._index >= 0
         return there, there & (self.share.gather(1, self._index.clamp(min=0)) > 0.0)
 
@@ -181,26 +181,25 @@ def _plan(
     specs: Sequence[SceneSpec], rows: Sequence[Sequence[Opening]], count: int, device: torch.device | str
 ) -> Plan:
     made = [[_entry(spec, o) for o in row] for spec, row in zip(specs, rows, strict=True)]
-    nothing = Plan(*[False] * 5, *[0.0] * 5, math.inf, math.inf, 0.0, [[0.0] * 3] * 2)  # type: ignore[arg-type]
+    nothing = (*[False] * 5, *[0.0] * 5, math.inf, math.inf, 0.0, [[0.0] * 3] * 2)
     padded = [[*row, *[nothing] * (count - len(row))] for row in made]
-    return Plan(
-        *(torch.tensor([[entry[k] for entry in row] for row in padded], device=device) for k in range(len(nothing)))
-    )
+    columns = (torch.tensor([[entry[k] for entry in row] for row in padded], device=device) for k in range(14))
+    return Plan(*columns)
 
 
-def _entry(spec: SceneSpec, o: Opening) -> Plan:
-    """One opening as numbers, in the place of tensors."""
+def _entry(spec: SceneSpec, o: Opening) -> tuple[Any, ...]:
+    """The fields of Plan of one opening, as numbers."""
     room, outside, spare = spec.room, o.wall in WALLS, o not in spec.room.openings
     door, window = o.kind == "door" and not spare, o.kind == "window"
     strength = OUTER_STRENGTH if outside else INNER_STRENGTH
     resistance = OUTER_RESISTANCE if outside else INNER_RESISTANCE
     deep = thickness_of(room, o.wall) if not outside else 0.0
-    sides = [on_wall(room, o.wall, o.centre, 0.0, depth) for depth in (-BESIDE, deep + BESIDE)]
+    sides = [list(on_wall(room, o.wall, o.centre, 0.0, depth)) for depth in (-BESIDE, deep + BESIDE)]
     if outside:  # water and heat are those before it
         sides[1] = sides[0]
     pane = PANE_STRENGTH * o.width * o.height if window else math.inf
-    return Plan(  # type: ignore[arg-type]
+    return (
         *(True, door, window, outside, o in inlets(spec)),
         *(o.width, o.sill, o.sill + o.height, o.centre + o.width / 2, GAP if door or window else 0.0),
-        *(strength if door else pane, resistance if door else math.inf, o.share, [list(s) for s in sides]),
+        *(strength if door else pane, resistance if door else math.inf, o.share, sides),
     )

@@ -56,7 +56,7 @@ def _wall(partition: Partition) -> tuple[float, ...]:
 def _doorways(spec: SceneSpec) -> list[tuple[float, ...]]:
     """Doorways and doors in inner walls, in the order of the room's openings, as open as at frame 0."""
     numbers = {p.name: float(k) for k, p in enumerate(spec.room.partitions)}
-    found = []
+    found: list[tuple[float, ...]] = []
     for o in spec.room.openings:
         if o.wall in numbers:
             low, high = o.centre - o.width / 2, o.centre + o.width / 2

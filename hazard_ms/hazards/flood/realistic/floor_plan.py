@@ -106,12 +106,12 @@ def plan_of(spec: SceneSpec, size: tuple[int, int], edges: Mapping[str, Sequence
         np.pad(grid, 1, constant_values=edge).astype(np.float32).ravel()
         for grid, edge in ((ground, BEYOND), (open_x, 0.0), (open_y, 0.0))
     )
-    inlet, side, width, high, number, along = _inlets(spec, size)
-    doors = leaf_sides(spec, size)
-    crossing = [(c, d.side, d.opening, at) for d in doors for c, at in zip(d.cells, d.along, strict=True)]
+    inlet, side, width, high, number, places = _inlets(spec, size)
+    sides = leaf_sides(spec, size)
+    crossing = [(c, d.side, d.opening, at) for d in sides for c, at in zip(d.cells, d.along, strict=True)]
     leaf = [list(column) for column in zip(*crossing, strict=True)] if crossing else [[]] * 4
     near = [_beside(c, k, set(inlet), size[1] + 2, bed, (west, south)) for c, k in zip(inlet, side, strict=True)]
-    return FloorPlan(bed, west, south, inlet, side, near, width, high, number, along, *leaf)
+    return FloorPlan(bed, west, south, inlet, side, near, width, high, number, places, *leaf)
 
 
 def leaf_sides(spec: SceneSpec, size: tuple[int, int]) -> list[Crossing]:

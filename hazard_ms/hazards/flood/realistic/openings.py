@@ -68,7 +68,7 @@ def _heights(world: World, opening: Tensor, along: Tensor) -> Tensor:
 
 
 def press(level: Tensor, outside: float, world: World, weight: float) -> Strain:
-    """What water of the `weight` [N/m^3] does to openings between the levels [m], [E, O, 2], of both their sides.
+    """Force [N] of water on openings, [E, O], between its levels [m], [E, O, 2], on both sides; `weight` is [N/m^3].
 
     Outdoors it stands `outside` [m] deep.
     """

@@ -39,7 +39,7 @@ def ageing(heat: Tensor, spent: Tensor) -> Tensor:
 
 
 def faces(world: World) -> Tensor:
-    """Points [m], [E, 2 O, 3], world frame, at which heat on both sides of all openings is read: first, then second."""
+    """Points [m], [E, P, 3], world frame, at which the heat on openings is read: O first sides, then O second ones."""
     plan = world.openings.plan
     points = plan.beside.transpose(1, 2).clone()  # [E, 2, O, 3]
     points[..., 2] += (plan.sill + HIGH * (plan.top - plan.sill))[:, None]
@@ -68,9 +68,9 @@ def fallen(state: BlazeState, world: World) -> Tensor:
 
 
 def strain(state: BlazeState, world: World, flux: Tensor, gas: Tensor, room: float, time_scale: float) -> Strain:
-    """What smoke of a `room` of so many [C] does to openings; fire is `time_scale` times as fast as the episode.
+    """Force [N] and heat of smoke on openings, [E, O] each, in a scene of `room` [C].
 
-    `flux` [kW/m^2] and `gas` [C], [E, 2 O], are those at `faces`.
+    `flux` [kW/m^2] and `gas` [C], [E, 2 O], are those at `faces`; fire is `time_scale` times as fast as the episode.
     """
     plan, held = world.openings.plan, world.openings.state.hold
     heat = (flux + CONVECTION * (gas - room)).unflatten(1, (2, -1)).amax(1)

@@ -95,7 +95,7 @@ def solve(e: int, count: int, matrix: wp.array3d(dtype=float)):
 def downhill(
     e: int, part: float, air: float, rooms: Rooms, work: wp.array3d(dtype=float), matrix: wp.array3d(dtype=float)
 ) -> float:
-    """How steeply it still goes down after a `part` of a step; below 0 beyond the lowest point of its line."""
+    """Find the descent that is left after a `part` of a step; below 0 beyond the lowest point of its line."""
     count = rooms.zone_area.shape[1]
     found = float(0.0)
     for r in range(count):

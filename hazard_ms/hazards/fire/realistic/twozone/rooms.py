@@ -30,7 +30,7 @@ def _cuts(room: Room, axis: int) -> list[Partition]:
 
 
 def ends(room: Room, axis: int) -> list[float]:
-    """Where rooms end along an axis, 0 x, 1 y [m]; the last ones nowhere."""
+    """Coordinates at which rooms end along an axis, 0 x, 1 y [m]; the last ones end nowhere."""
     return [*(p.at for p in _cuts(room, axis)), math.inf]
 
 

@@ -32,12 +32,12 @@ from hazard_ms.spec import Opening, SceneSpec
 # of 0.9 x 2.0 m, 16 mm over its height; EN 12101-6 takes 0.01 to 0.02 m^2
 GAP = 0.02
 # Net force that a closed leaf bears [N]: EN 1627 presses with 3 kN where a door of the class RC 1 or RC 2 is held. An
-# inner door of 0.9 m so breaks at 0.82 m of water on one side: closed doors hold 0.6 to 1.0 m [Kelman and Spence 2004]
+# inner door of 0.9 m so breaks at 0.82 m of water on one side; buildings are to be sealed up to 0.6 m only [PPS 25]
 INNER_STRENGTH = 3000.0
 OUTER_STRENGTH = 6000.0  # hung and locked twice as firmly: 1.17 m of water [ours]
 PANE_STRENGTH = 3500.0  # pressure that a pane bears [Pa] [NFPA 921: glass breaks at 3.4 to 6.9 kPa]
-# Standard fire that a leaf bears [s]: ordinary inner doors 5 to 20 min, hollow ones the least (doors sold for 20 min
-# are solid and 35 mm thick) [ours: 10 min]; outer doors are solid
+# Standard fire that a leaf bears [s]: thin panels 5 min, panels faced on both sides 10 to 20 min [IEBC, Resource A,
+# table 5.1] [ours: 10 min]; outer doors are solid
 INNER_RESISTANCE, OUTER_RESISTANCE = 600.0, 1200.0
 BESIDE = 0.2  # distance from the faces of a wall at which both sides of an opening are looked at [m] [ours]
 EVERY = 5  # frames from one look at loads and heat to the next: those of a fire's updates [ours]

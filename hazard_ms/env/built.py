@@ -12,6 +12,7 @@ from mani_skill.utils.common import to_tensor
 from mani_skill.utils.structs.types import SimConfig
 from torch import Tensor
 
+from hazard_ms.env.leaves import Leaves
 from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.grasp import Hand
 from hazard_ms.episode.situation import Situation
@@ -73,6 +74,7 @@ class BuiltEnv(BaseEnv):
         self.world = building.make_world(self.specs, self.device)
         self.world.agent_build = self.agent.build
         self.episode = Episode(self.world, self.task.hazards, self.task.safe_place)
+        self.leaves = Leaves(self.scene, self.world)
         self.situation = Situation(self.episode, self.agent, self.affects_agent)
 
     def _load_lighting(self, options: dict[str, Any]) -> None:
@@ -95,6 +97,7 @@ class BuiltEnv(BaseEnv):
             self.task.arrange(self.situation, env_idx)
         self.episode.see(self.agent)
         self.episode.begin_hazards(env_idx)
+        self.leaves.move()
 
     def _step_action(self, action: Any) -> Any:
         """As ManiSkill's, which looks again at what an action is; one that is checked already needs no second look."""
@@ -111,6 +114,7 @@ class BuiltEnv(BaseEnv):
         return action
 
     def _before_control_step(self) -> None:
+        self.leaves.move()
         if self.affects_agent:
             down = self.episode.lying()
             if down is not None and not none_set(down):

@@ -22,6 +22,8 @@ from hazard_ms.hazards.base import Hazard, Push, State, none_set
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.pushing import free_only
 from hazard_ms.robots.robot import Robot
+from hazard_ms.simulation.openings import EVERY
+from hazard_ms.simulation.walls import leaves
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SafePlace
 
@@ -42,6 +44,9 @@ class Episode:
         self.sim_error = torch.zeros(world.num_envs, dtype=torch.bool, device=world.device)
         self.limits, self.recorder = Limits(world), FlightRecorder()
         self._pushers = tuple(h for h in hazards if type(h).force is not Hazard.force)
+        self._strainers = tuple(h for h in hazards if type(h).strain is not Hazard.strain)
+        # what opens and breaks is part of the state where anything can
+        self._opens = bool(self._strainers) or any(leaves(spec) for spec in world.specs)
         world.fields = shared_fields(hazards, self.states, world)
         self._frozen = torch.zeros_like(world.safe)  # bodies that the simulator keeps in place
         self._start = (world.position.clone(), world.rotation.clone())
@@ -49,7 +54,8 @@ class Episode:
     @property
     def parts(self) -> dict[str, State]:
         """Every record with declared quantities, by name."""
-        return {**self.states, "damage": self.damage, "rescue": self.rescue, "hand": self.hand}
+        openings = {"openings": self.world.openings.state} if self._opens else {}
+        return {**self.states, **openings, "damage": self.damage, "rescue": self.rescue, "hand": self.hand}
 
     def begin(self, rows: Tensor, seeds: Tensor) -> None:
         """Put everything in the environments `rows` [R] back in its place, with new `seeds` [R].
@@ -62,6 +68,8 @@ class Episode:
         self.sim_error[rows] = False
         for part in self.parts.values():
             part.clear(rows)
+        if self._opens:
+            world.openings.begin(rows)
         world.position[rows], world.rotation[rows] = self._start[0][rows], self._start[1][rows]
         world.velocity[rows] = world.angular_velocity[rows] = 0.0
         self.thaw(rows)
@@ -105,12 +113,19 @@ class Episode:
                 )
 
     def advance(self, dt: float) -> None:
-        """Advance the clock and each hazard, in order, and record damage; call it after each frame of `dt` seconds."""
+        """Advance the clock and each hazard, in order, and record damage; call it after each frame of `dt` seconds.
+
+        Then doors and windows bear what the hazards do to them.
+        """
         self.world.chance.tick()
         for hazard in self.hazards:
             hazard.advance(self.states[hazard.name], self.world, dt)
         for hazard in self.hazards:
             self.damage.add(hazard.damaged(self.states[hazard.name], self.world), self.world)
+        due = self.world.chance.due(EVERY) if self._strainers else None
+        if due is not None:
+            given = (h.strain(self.states[h.name], self.world) for h in self._strainers)
+            self.world.openings.bear([s for s in given if s is not None], due, EVERY * dt)
 
     def use_hand(self, gripper: tuple[Tensor, Tensor], closed: Tensor, bag: Callable[[], Tensor]) -> None:
         """Let the hands take, carry and let go, and record rescues.

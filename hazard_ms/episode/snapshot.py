@@ -40,6 +40,8 @@ def restore(episode: Episode, saved: dict[str, Any], rows: Tensor) -> None:
     for name, part in episode.parts.items():
         shapes = {k: v.shape[1:] for k, v in part.save().items()}
         part.restore({k: v.reshape(len(rows), *shapes[k]) for k, v in saved[name].items()}, rows)
+    if "openings" in episode.parts:
+        world.openings.apply()
     words = saved["chance"]["seed"]
     world.chance.restart(rows, words[:, 0] + words[:, 1] * WORD, saved["chance"]["frame"][:, 0])
     episode.sim_error[rows] = False  # only states of a sound simulation are restored

@@ -5,6 +5,7 @@ Generators, tests and the oracle use it; agents see only their own maps.
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 from collections.abc import Iterable
@@ -15,9 +16,9 @@ from scipy import ndimage
 
 from hazard_ms.assets.index import asset
 from hazard_ms.scenes.boxes import Array, Box, box_of
-from hazard_ms.scenes.shell import shell
-from hazard_ms.scenes.walls import on_wall, runs_along_x, thickness_of
-from hazard_ms.spec import Room, SceneSpec, Vec2
+from hazard_ms.scenes.shell import leaf, shell
+from hazard_ms.scenes.walls import WALLS, on_wall, runs_along_x, thickness_of
+from hazard_ms.spec import Opening, Room, SceneSpec, Vec2
 
 FLOOR_CELL = 0.05  # edge of a cell [m]; cell (i, j) is centred on ((i + 0.5) FLOOR_CELL, (j + 0.5) FLOOR_CELL)
 RUG_HEIGHT = 0.03  # fixtures lower than this are driven over: rugs [m] [ours]
@@ -62,21 +63,27 @@ def take(free: Grid, size: Vec2, boxes: Iterable[Box], radius: float) -> Grid:
 
 
 def partitions(room: Room) -> list[Box]:
-    """The boxes of the walls inside a room: pieces beside and above doorways."""
+    """The boxes of the walls inside a room: pieces beside and above doorways, and leaves as far as they are closed."""
     names = tuple(f"wall_{p.name}_" for p in room.partitions)
     pieces = [b for b in shell(room) if b.name.startswith(names)] if names else []
+    pieces += [leaf(room, _shut(o)) for o in room.openings if o.wall not in WALLS and o.share < 1.0]
     return [
         Box(*b.centre[:2], b.size[0] / 2, b.size[1] / 2, 0.0, b.centre[2] - b.size[2] / 2, b.centre[2] + b.size[2] / 2)
         for b in pieces
     ]
 
 
+def _shut(o: Opening) -> Opening:
+    """The part of a door that is closed at frame 0: its lower end along the wall."""
+    return dataclasses.replace(o, width=(1.0 - o.share) * o.width, centre=o.centre - o.share * o.width / 2)
+
+
 def doorways(room: Room) -> list[Box]:
-    """The boxes of doorways inside a room, thresholds included: nothing stands or burns in them."""
+    """The boxes of doorways and doors inside a room, thresholds included: nothing stands or burns in them."""
     spots = [
         (o, on_wall(room, o.wall, o.centre, 0.0, thickness_of(room, o.wall) / 2))
         for o in room.openings
-        if o.kind == "doorway"
+        if o.wall not in WALLS
     ]
     sizes = [
         (o.width / 2, THRESHOLD_DEPTH) if runs_along_x(room, o.wall) else (THRESHOLD_DEPTH, o.width / 2)

@@ -38,6 +38,9 @@ def to_json(spec: SceneSpec) -> str:
     for name in ("second_flood_side", "parameters"):  # few scenes have any
         if not data[name]:
             del data[name]
+    for opening in data["room"]["openings"]:
+        if opening["open"] is None:
+            del opening["open"]
     return json.dumps(data, indent=1, allow_nan=False) + "\n"
 
 

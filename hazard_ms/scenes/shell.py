@@ -1,7 +1,7 @@
 """The shell of a room as boxes: floor, walls with openings cut out, ceiling and skirting; in the open, the ground.
 
-This is data only, without SAPIEN. Doors are closed and windows have panes, so that nothing gets out; doorways, in
-partitions, are open.
+This is data only, without SAPIEN. Outer doors are closed and windows have panes, so that nothing gets out; openings in
+partitions are empty here, since the leaves of their doors move (`leaf`).
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from hazard_ms.spec.checks import one_of
 
 FRAME = 0.05  # width of door and window frames [m]
 SKIRTING = (0.08, 0.012)  # height, thickness [m]
+LEAF = 0.04  # thickness of door leaves [m]
 HORIZON = 60.0  # how far the ground is drawn around an open place [m]
 PATCH_HEIGHT = 0.002  # by which a patch of ground stands out of what it lies on [m]
 
@@ -97,7 +98,7 @@ def _wall(room: Room, wall: str) -> Iterator[ShellBox]:
         for piece in pieces:
             yield from _panel(room, wall, f"wall_{wall}_{number}", *piece)
             number += 1
-        if o.kind == "doorway":
+        if wall not in WALLS:
             yield from _lining(room, o, f"{o.kind}_{wall}_{number}")
         else:
             yield from _closed(room, o, f"{o.kind}_{wall}_{number}")
@@ -137,6 +138,15 @@ def _lining(room: Room, o: Opening, name: str) -> Iterator[ShellBox]:
     yield _box(
         room, o.wall, f"{name}_top", "door", (o.centre, o.height - 0.01), (o.width, 0.02), deep, "trim", collides=False
     )
+
+
+def leaf(room: Room, o: Opening) -> ShellBox:
+    """The leaf of a door in a partition, closed: in the middle of its thickness."""
+    middle, deep = (o.centre, o.sill + o.height / 2), thickness_of(room, o.wall) / 2
+    return _box(
+        room, o.wall, f"door_{o.wall}_leaf", "door", middle, (o.width, o.height),
+        (deep - LEAF / 2, deep + LEAF / 2), "door",
+    )  # fmt: skip
 
 
 def _closed(room: Room, o: Opening, name: str) -> Iterator[ShellBox]:

@@ -27,10 +27,12 @@ def check(room: Room) -> None:
         if o.kind not in OPENING_KINDS or min(o.width, o.height) <= 0.0 or o.sill < 0.0:
             raise ValueError(f"an opening must be one of {', '.join(OPENING_KINDS)} of positive size, got {o}")
         wall_length(room, o.wall)
-        if (o.kind == "doorway") != (o.wall not in WALLS):
+        if (o.kind == "doorway" and o.wall in WALLS) or (o.kind == "window" and o.wall not in WALLS):
             raise ValueError(
-                f"a doorway must be in a partition, a door or window in one of the walls {', '.join(WALLS)}, got {o}"
+                f"a doorway must be in a partition, a window in one of the walls {', '.join(WALLS)}, got {o}"
             )
+        if o.open is not None and (o.kind != "door" or not 0.0 <= o.open <= 1.0):
+            raise ValueError(f"open must be a share from 0 to 1, and that of a door, got {o}")
     if room.open_air and (room.openings or room.partitions):
         raise ValueError(
             f"a place in the open must have no openings and partitions, got {(*room.openings, *room.partitions)}"

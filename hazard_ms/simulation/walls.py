@@ -1,8 +1,9 @@
 """Inner walls of scenes and the doorways in them: what lies between two places (torch; Warp: hazard_ms.hazards.walls).
 
 Everything that goes straight, as heat and flames do, asks here: a wall lets it pass where the straight line from one
-place to the other goes through an open doorway. Places are points [m], [..., 3], world frame; walls are planes in the
-middle of their thickness, and run from one side of a room to the other.
+place to the other goes through a doorway, or through what is open of a door (hazard_ms.simulation.openings). Places are
+points [m], [..., 3], world frame; walls are planes in the middle of their thickness, and run from one side of a room to
+the other.
 """
 
 from __future__ import annotations
@@ -12,22 +13,24 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from hazard_ms.spec import Partition, SceneSpec
+from hazard_ms.spec import Opening, Partition, SceneSpec
 
 NOWHERE = 1e6  # where a wall that does not exist is [m]: farther than any place
 
 
 @dataclass(frozen=True)
 class Walls:
-    """The inner walls of E scenes: W walls and D doorways in each, at least one of both; some do not exist."""
+    """The inner walls of E scenes: W walls and D doorways or doors in each, at least one of both; not all exist."""
 
     any: bool  # whether any scene has one
     wall: Tensor  # axis that it crosses (0 x, 1 y), where, and half of its thickness [m], [E, W, 3]
-    doorway: Tensor  # number of its wall (-1 for none), lower and upper end along it, sill and top [m], [E, D, 5]
+    # number of its wall (-1 for none), lower and upper end along it of what is open now, sill and top [m], [E, D, 5]
+    doorway: Tensor
 
     @classmethod
+    @torch.inference_mode(False)
     def of(cls, specs: tuple[SceneSpec, ...], device: torch.device | str) -> Walls:
-        """The inner walls of `specs`."""
+        """The inner walls of `specs`. Their tensors can be changed in place, in inference mode and out of it."""
         walls = [[_wall(p) for p in s.room.partitions] for s in specs]
         doorways = [_doorways(s) for s in specs]
         return cls(
@@ -51,12 +54,21 @@ def _wall(partition: Partition) -> tuple[float, ...]:
 
 
 def _doorways(spec: SceneSpec) -> list[tuple[float, ...]]:
+    """Doorways and doors in inner walls, in the order of the room's openings, as open as at frame 0."""
     numbers = {p.name: float(k) for k, p in enumerate(spec.room.partitions)}
-    return [
-        (numbers[o.wall], o.centre - o.width / 2, o.centre + o.width / 2, o.sill, o.sill + o.height)
-        for o in spec.room.openings
-        if o.kind == "doorway"
-    ]
+    found: list[tuple[float, ...]] = []
+    for o in spec.room.openings:
+        if o.wall in numbers:
+            low, high = o.centre - o.width / 2, o.centre + o.width / 2
+            low = low if o.share == 1.0 else high - o.share * o.width
+            found.append((numbers[o.wall], low, high, o.sill, o.sill + o.height))
+    return found
+
+
+def leaves(spec: SceneSpec) -> list[Opening]:
+    """The doors in the inner walls of a scene."""
+    names = {p.name for p in spec.room.partitions}
+    return [o for o in spec.room.openings if o.kind == "door" and o.wall in names]
 
 
 def _padded(rows: list[list[tuple[float, ...]]], empty: tuple[float, ...], device: torch.device | str) -> Tensor:
@@ -92,7 +104,7 @@ def _across(across: Tensor, place: Tensor) -> Tensor:
 def within(walls: Walls, x: Tensor, y: Tensor, half: float) -> Tensor:
     """Whether squares of half the edge `half` [m] around `x`, `y` [m], [E, ...], overlap a wall: [E, ...], bool.
 
-    In a doorway they do not.
+    In a doorway, and in what is open of a door, they do not.
     """
     x, y = torch.broadcast_tensors(x, y)
     found = torch.zeros(x.shape, dtype=torch.bool, device=x.device)

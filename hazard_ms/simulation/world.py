@@ -17,6 +17,7 @@ from torch import Tensor
 
 from hazard_ms.kernels.launch import Launches
 from hazard_ms.simulation.chance import Chance
+from hazard_ms.simulation.openings import Openings
 from hazard_ms.simulation.walls import Walls
 from hazard_ms.spec import Body, Build, SceneSpec
 from hazard_ms.spec.catalogue import CATEGORIES
@@ -69,10 +70,8 @@ class World:
     agent_position    [E, 3]     middle of the agent's base on the floor [m]
     agent_heading     [E]        anticlockwise from +x [rad]
 
-    `fields` holds what hazards tell each other, as functions of points [m], [E, P, 3]. The episode makes sure that each
-    has one writer:
-    water  level of the water [m], [E, P]
-    air    velocity of the air x, y [m/s], [E, P, 2]
+    `fields` holds what hazards tell each other, as functions of points [m], [E, P, 3], with one writer each: `water`,
+    the level of the water [m], [E, P], and `air`, the velocity of the air x, y [m/s], [E, P, 2].
     """
 
     specs: tuple[SceneSpec, ...]
@@ -108,10 +107,7 @@ class World:
         masses: list[list[float]],
         device: torch.device | str = "cpu",
     ) -> World:
-        """The world of `specs`, with everything at its place.
-
-        `extents` [m] and `masses` [kg] hold each scene's bodies, then its fixtures.
-        """
+        """The world of `specs`, all in place; `extents` [m] and `masses` [kg] are those of bodies, then fixtures."""
         things = [s.things for s in specs]
         shape = (len(specs), max(len(t) for t in things))
 
@@ -140,14 +136,13 @@ class World:
             agent_position=torch.tensor([[*s.agent_start.position, 0.0] for s in specs], device=device),
             agent_heading=torch.tensor([s.agent_start.heading for s in specs], device=device),
         )
-        order = list(CATEGORIES)
         for e, (spec, row) in enumerate(zip(specs, things, strict=True)):
             n = len(row)
             world.extent[e, :n] = torch.tensor(extents[e], device=device)
             world.mass[e, :n], world.exists[e, :n] = torch.tensor(masses[e], device=device), True
             world.rotation[e, :n] = torch.tensor([t.rotation for t in row], device=device)
             world.movable[e, :n] = torch.tensor([isinstance(t, Body) for t in row], device=device)
-            world.category[e, :n] = torch.tensor([order.index(t.category) for t in row], device=device)
+            world.category[e, :n] = torch.tensor([[*CATEGORIES].index(t.category) for t in row], device=device)
             wanted = [isinstance(t, Body) and t.category in spec.target_categories for t in row]
             world.target[e, :n] = torch.tensor(wanted, device=device)
             world.value[e, :n] = torch.tensor([float(CATEGORIES[t.category].value) for t in row], device=device)
@@ -195,8 +190,13 @@ class World:
 
     @functools.cached_property
     def walls(self) -> Walls:
-        """The inner walls of the scenes, and their doorways."""
+        """The inner walls of the scenes, and their doorways, as open as `openings` are."""
         return Walls.of(self.specs, self.device)
+
+    @functools.cached_property
+    def openings(self) -> Openings:
+        """The doors, windows and doorways of the scenes, and their state."""
+        return Openings(self.specs, self.walls, self.device)
 
     @functools.cached_property
     def targets(self) -> Tensor:

@@ -44,7 +44,7 @@ class Fixture:
 
 @dataclass(frozen=True)
 class Opening:
-    """A door (closed), a window (with panes) or a doorway (open) cut out of a wall."""
+    """A door, a window (with panes) or a doorway (open, without a leaf) cut out of a wall."""
 
     kind: str  # door | window | doorway
     wall: str  # south, east, north, west, or the name of a partition
@@ -52,6 +52,12 @@ class Opening:
     width: float  # [m]
     height: float  # [m]
     sill: float = 0.0  # height of the lower edge [m]
+    open: float | None = None  # share of a door's width that is open at frame 0; None: 0, closed
+
+    @property
+    def share(self) -> float:
+        """Share of its width that is open at frame 0."""
+        return (1.0 if self.kind == "doorway" else 0.0) if self.open is None else self.open
 
 
 @dataclass(frozen=True)

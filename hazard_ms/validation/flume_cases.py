@@ -77,8 +77,16 @@ def of_steady_flows() -> Iterator[Case]:
     yield Case("L-52", "diagonal seiche of a room", 3.6414, 0.02, channel.swashing, "s")
 
 
+def of_doors() -> Iterator[Case]:
+    """Closed doors between rooms: O of docs/physics.md 2.6."""
+    # 0.611 a sqrt(2 g H), a = 0.9 x 0.02 m
+    yield Case("O-1", "0.5 m of water before a closed door", 0.03445, 0.08, flume.under_door, "m^3/s")
+    yield Case("O-2", "water that breaks a closed door", 0.8, 0.2, flume.breaking_depth, "m", absolute=True)
+
+
 def cases() -> Iterator[Case]:
     """All cases of this module."""
     yield from of_laws()
     yield from of_channels()
     yield from of_steady_flows()
+    yield from of_doors()

@@ -13,7 +13,9 @@ from hazard_ms.validation import correlations
 from hazard_ms.validation.experiments.compartments import (
     MARINITE,
     Compartment,
+    behind_a_closed_door,
     burnt,
+    burnt_through,
     door,
     filled,
     flashover,
@@ -95,8 +97,18 @@ def of_poisons() -> Iterator[Case]:
         yield Case("C-9", f"helpless by {name}", minutes, 0.01, functools.partial(helpless, part, mole / 28.96), "min")
 
 
+def of_doors() -> Iterator[Case]:
+    """Closed doors between rooms: O of docs/physics.md 2.6."""
+    # rho / 2 (V / (0.7 A))^2 with V = 200 / 353 m^3/s and A = 0.02 x 2.0 m^2
+    yield Case("O-3", "200 kW behind a closed door: pressure", 245.7, 0.10, lambda: behind_a_closed_door(200.0), "Pa")
+    yield Case("O-4", "a door in the furnace of ISO 834", 600.0, 0.08, lambda: burnt_through(None), "s")
+    layers = {600.0: 515.9, 800.0: 239.5, 1000.0: 124.9}  # integral of q_furnace(t) / q over 600 s
+    yield from table("O-4", "a door under a black layer of {} C", layers, 0.03, burnt_through, unit="s")
+
+
 def cases() -> Iterator[Case]:
     """All cases of this module."""
     yield from of_flashover()
     yield from of_layers()
     yield from of_poisons()
+    yield from of_doors()

@@ -13,7 +13,7 @@ import pytest
 from hazard_ms.scenes.files import read_scenes
 from hazard_ms.scenes.schema import LARGEST_FILE, check, from_json, to_json
 from hazard_ms.scenes.splits import scene
-from hazard_ms.spec import Parameter, SceneSpec
+from hazard_ms.spec import Opening, Parameter, SceneSpec
 
 SPEC = scene("kitchen_a/03")
 
@@ -133,4 +133,9 @@ def test_every_field_is_written() -> None:
     assert given.parameter("earthquake", "peak", 1.0) == 3.5
     assert given.parameter("fire", "peak", 1.0) == 1.0 == SPEC.parameter("earthquake", "peak", 1.0)
     assert set(data["bodies"][0]) == {f.name for f in dataclasses.fields(SPEC.bodies[0])}
-    assert set(data["room"]["openings"][0]) == {f.name for f in dataclasses.fields(SPEC.room.openings[0])}
+    fields = {f.name for f in dataclasses.fields(SPEC.room.openings[0])}
+    assert set(data["room"]["openings"][0]) == fields - {"open"}  # as in the files of scenes whose doors are closed
+    ajar = Opening("door", "south", 1.0, 0.9, 2.0, open=0.25)
+    room = dataclasses.replace(SPEC.room, openings=(ajar,))
+    again = from_json(to_json(dataclasses.replace(SPEC, room=room)))
+    assert again.room.openings == (ajar,) and again.room.openings[0].share == 0.25

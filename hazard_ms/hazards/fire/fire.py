@@ -197,14 +197,14 @@ def enlisted(state: FireState, aim: Tensor, kept: Tensor) -> Tensor:
 def can_burn(state: FireState, world: World, aim: Tensor, crowd: int) -> Tensor:
     """Whether the cells `aim`, [E, C], can burn, [E, C], bool; -1 for no cell.
 
-    They must be free of furniture, of flames, of `crowd` things, and must not be the aim of an earlier flame.
+    They must be free of furniture, closed doors, flames, `crowd` things, and not be the aim of an earlier flame.
     """
     there = (aim >= 0) & state.free.flatten(1).gather(1, aim.clamp(min=0))
     place = spread.places(aim, state.anchor, state.free.shape[-1])
     there &= ~(floor.overlap(place, state.flame_place) & (state.flame_cell >= 0)[:, None]).any(-1)
     if none_set(there):
         return there
-    there &= floor.crowd(world, place) < crowd
+    there &= (floor.crowd(world, place) < crowd) & ~floor.shut(world, place[..., 0], place[..., 1])
     earlier = (floor.overlap(place, place) & there[:, None]).tril(-1)
     return there & ~earlier.any(-1)
 

@@ -58,7 +58,8 @@ def half_spans(rotation: Tensor, extent: Tensor) -> Tensor:
 def free_floor(world: World, rows: Tensor, anchor: Tensor, window: int, fixtures_block: bool) -> Tensor:
     """Cells in the room, in no wall, and under no fixture that stands on the floor, [R, S, K, K], bool.
 
-    `rows` are R indices of environments, `anchor` [m] is [R, S, 2], `window` is K.
+    Those in doors between rooms count as if these were open: `shut` tells which are not. `rows` are R indices of
+    environments, `anchor` [m] is [R, S, 2], `window` is K.
     """
     x, y = centres(anchor, window)
     x, y = x[..., None], y[..., None, :]
@@ -66,7 +67,8 @@ def free_floor(world: World, rows: Tensor, anchor: Tensor, window: int, fixtures
     margin = CELL / 2 - TOUCH
     free = (x >= margin) & (x <= wide - margin) & (y >= margin) & (y <= deep - margin)
     if world.walls.any:
-        free = free & ~within(world.walls.part(rows), x, y, margin)
+        walls = world.openings.opened if world.openings.inner else world.walls
+        free = free & ~within(walls.part(rows), x, y, margin)
     if not fixtures_block:
         return free
     half = half_spans(world.rotation[rows], world.extent[rows])
@@ -76,6 +78,13 @@ def free_floor(world: World, rows: Tensor, anchor: Tensor, window: int, fixtures
         box = (world.position[rows, b], world.rotation[rows, b], world.extent[rows, b], half[:, b])
         free = free & ~(_under(x, y, *box) & stands[:, b, None, None, None])
     return free
+
+
+def shut(world: World, x: Tensor, y: Tensor) -> Tensor:
+    """Whether flames at `x`, `y` [m], [E, ...], would be in a closed door, [E, ...], bool."""
+    if not world.openings.inner:
+        return torch.zeros_like(x, dtype=torch.bool)
+    return within(world.walls, x, y, CELL / 2 - TOUCH)
 
 
 def _under(x: Tensor, y: Tensor, middle: Tensor, rotation: Tensor, extent: Tensor, span: Tensor) -> Tensor:

@@ -125,6 +125,8 @@ class Flood(Hazard):
     def advance(self, state: FloodState, world: World, dt: float) -> None:
         state.time.add_(dt)
         self._rise(state, world)
+        if world.openings.inner:
+            state.doorway_distance.copy_(flow_paths.through_open(state, *world.openings.ways))
         world.launches.run(
             kernels.immerse,
             tuple(world.exists.shape),

@@ -1,11 +1,12 @@
 """Paths of water from the wall that it comes from to any place in a room (torch; per place: reach.py, Warp).
 
 Partitions run from one side of a room to the other, so its parts are rectangles in which water goes straight. Into
-parts along the source wall it comes from the whole wall; into the others through doorways, each reached by the shortest
-path. The depth decreases along the path, so a part behind a partition fills from its doorway, and the level is the same
-on both sides of it (but for the thickness of the partition, and at the outer edge of a doorway that water passes on its
-path elsewhere). Nothing flows through closed walls. Where water comes from a second wall, too, a path begins at
-whichever wall makes it shorter; that wall is described as a doorway without depth, in which the water already stands.
+parts along the source wall it comes from the whole wall; into the others through doorways, and doors that are open at
+all, each reached by the shortest path. The depth decreases along the path, so a part behind a partition fills from its
+doorway, and the level is the same on both sides of it (but for the thickness of the partition, and at the outer edge of
+a doorway that water passes on its path elsewhere). Nothing flows through closed walls and doors. Where water comes from
+a second wall, too, a path begins at whichever wall makes it shorter; that wall is described as a doorway without depth,
+in which the water already stands.
 """
 
 from __future__ import annotations
@@ -13,13 +14,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import torch
 from torch import Tensor
 
 from hazard_ms.hazards.flood import reach
 from hazard_ms.hazards.flood.flood_state import FloodState
 from hazard_ms.hazards.flood.reach import NEVER
 from hazard_ms.kernels.launch import Launches, of_environments
-from hazard_ms.spec import Partition, Room, SceneSpec, Vec2
+from hazard_ms.scenes.walls import WALLS
+from hazard_ms.spec import Opening, Partition, Room, SceneSpec, Vec2
 
 # Direction in which water flows in from each side of a room
 SIDES: dict[str, Vec2] = {"south": (0.0, 1.0), "east": (-1.0, 0.0), "north": (0.0, -1.0), "west": (1.0, 0.0)}
@@ -60,10 +63,10 @@ class FlowPaths(NamedTuple):
 
 
 def sizes(specs: tuple[SceneSpec, ...]) -> dict[str, int]:
-    """The largest numbers of partitions, W, and of doorways and second source walls together, D."""
+    """The largest numbers of partitions, W, and of doorways, doors beside them and second source walls, D."""
     return {
         "W": max(len(s.room.partitions) for s in specs),
-        "D": max(sum(o.kind == "doorway" for o in s.room.openings) + (s.second_flood_side is not None) for s in specs),
+        "D": max(len(_ways(s.room)) + (s.second_flood_side is not None) for s in specs),
     }
 
 
@@ -75,8 +78,9 @@ def paths_of(spec: SceneSpec, partitions: int, doorways: int) -> dict[str, Any]:
             raise ValueError(f"flood_side of {spec.name} must be one of {', '.join(SIDES)}, got {side!r}")
     room = spec.room
     sources = [_source(room, side) for side in sides]
-    found = [_doorway(room, o.wall, o.centre, o.width) for o in room.openings if o.kind == "doorway"]
-    distances = _doorway_distances(found, sources)
+    ways = _ways(room)
+    found = [_doorway(room, o.wall, o.centre, o.width) for o in ways]
+    distances = _doorway_distances(found, sources, [o.share > 0.0 for o in ways])
     for source in sources[1:]:
         found.append(_as_doorway(room, source))
         distances.append(0.0)
@@ -92,6 +96,11 @@ def paths_of(spec: SceneSpec, partitions: int, doorways: int) -> dict[str, Any]:
         "doorway_distance": distances + [NEVER] * spare,
         "doorway_part": [[d.part, d.differing] for d in found] + [[0, 0]] * spare,
     }
+
+
+def _ways(room: Room) -> list[Opening]:
+    """Doorways and doors in inner walls."""
+    return [o for o in room.openings if o.wall not in WALLS]
 
 
 def _across(partition: Partition) -> int:
@@ -138,16 +147,41 @@ def _straight(source: Source, doorway: Doorway) -> float:
     )
 
 
-def _doorway_distances(doorways: list[Doorway], sources: list[Source]) -> list[float]:
+def _doorway_distances(doorways: list[Doorway], sources: list[Source], is_open: list[bool]) -> list[float]:
     """Length of the shortest path from a source wall to each doorway [m]: straight, or from doorway to doorway."""
-    lengths = [min(_straight(source, d) for source in sources) for d in doorways]
+    pairs = zip(doorways, is_open, strict=True)
+    lengths = [min(_straight(source, d) for source in sources) if free else NEVER for d, free in pairs]
     for _ in doorways:  # each round finds at least one more shortest path
         for i, d in enumerate(doorways):
             for j, other in enumerate(doorways):
-                if i != j and _beside(d) & _beside(other):
+                if i != j and is_open[i] and is_open[j] and _beside(d) & _beside(other):
                     gap = [max(d.low[k] - other.high[k], other.low[k] - d.high[k], 0.0) for k in range(2)]
                     lengths[i] = min(lengths[i], lengths[j] + (gap[0] ** 2 + gap[1] ** 2) ** 0.5)
     return lengths
+
+
+def through_open(paths: FlowPaths | FloodState, there: Tensor, is_open: Tensor) -> Tensor:
+    """Path length of the water to each doorway [m], [E, D], through those that are open.
+
+    `there` and `is_open`, [E, C], are doorways and doors; a second source wall, after them, stays at 0.
+    """
+    box, part, differing = paths.doorway, paths.doorway_part[..., 0], paths.doorway_part[..., 1]
+    more = max(0, box.shape[1] - there.shape[1])
+    there, is_open = (torch.nn.functional.pad(of, (0, more))[:, : box.shape[1]] for of in (there, is_open))
+    second = ~there & (paths.doorway_distance == 0.0)
+    flow = paths.flow[:, None]
+    straight = paths.origin_length[:, None] + (flow * torch.where(flow > 0, box[..., :2], box[..., 2:])).sum(-1)
+    bits, source = paths.source_part[:, :1], paths.source_part[:, 1:]
+    along = ((part ^ source) & bits & ~differing) == 0  # a part beside it lies along the source wall
+    length = torch.where(second, 0.0, torch.where(along & is_open, straight, NEVER))
+    free = second | is_open
+    gap = (box[:, :, None, :2] - box[:, None, :, 2:]).clamp(min=0.0)
+    gap = torch.maximum(gap, gap.transpose(1, 2)).norm(dim=-1)  # [E, D, D]
+    both = ((part[:, :, None] ^ part[:, None]) & ~differing[:, :, None] & ~differing[:, None]) == 0
+    step = torch.where(both & free[:, :, None] & free[:, None], gap, NEVER)
+    for _ in range(box.shape[1]):  # each round finds at least one more shortest path
+        length = torch.minimum(length, (length[:, None] + step).amin(-1))
+    return torch.where(free, length, NEVER)
 
 
 def path_lengths(

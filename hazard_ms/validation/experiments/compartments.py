@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 import torch
 
-from hazard_ms.hazards.fire.realistic import smoke, tenability
+from hazard_ms.hazards.fire.realistic import radiation, smoke, tenability
+from hazard_ms.hazards.fire.realistic.twozone import leaves
 from hazard_ms.hazards.fire.realistic.twozone.lining import GYPSUM, Lining
 from hazard_ms.spec import Opening, Partition, Room
 from hazard_ms.validation.experiments.smoke_room import INSULATED, METHANE, SLOT, Burner, burn, course, fire_at, rooms
@@ -115,3 +116,30 @@ def helpless(part: int, share: float) -> float:
     gas = torch.zeros(6)
     gas[0], gas[part] = 1.0, share
     return 1 / 60 / float(tenability.toxic_rate(gas))
+
+
+def behind_a_closed_door(power: float) -> float:
+    """Pressure [Pa] of a fire of `power` [kW] in a room over that of the next, behind a closed door of 0.9 x 2.0 m."""
+    doors = (Opening("door", "wall", 2.0, 0.9, 2.0), door(1.0, 2.0, "east", 2.0))
+    room = Room((6.0, 4.0), openings=doors, partitions=(Partition("wall", "y", 3.0),))
+    state, world = rooms(room, INSULATED)
+    state.vents[0, 1, 0] = 1.0
+    burner = Burner(power, radiant=0.0, step=0.25)
+    burn(state, world, burner, fire_at(1.5, 2.0, burner), 5.0)
+    return float(state.zone_pressure[0, 0] - state.zone_pressure[0, 1])
+
+
+def burnt_through(warmth: float | None) -> float:
+    """Time [s] after which a door between rooms burns through: under a black layer of so many [C], or the furnace."""
+    room = Room(
+        (6.0, 4.0), openings=(Opening("door", "wall", 2.0, 0.9, 2.0),), partitions=(Partition("wall", "y", 3.0),)
+    )
+    state, world = rooms(room)
+    passed, cold = 0.0, torch.full((1, 2 * world.openings.count), 20.0)
+    while not bool(world.openings.state.broken[0, 0]):
+        now = 20.0 + 345.0 * math.log10(8.0 * passed / 60.0 + 1.0) if warmth is None else warmth
+        flux = torch.full_like(cold, radiation.STEFAN * ((now + 273.15) ** 4 - 293.15**4))
+        strain = leaves.strain(state, world, flux, torch.full_like(cold, now), 20.0, 1.0)
+        world.openings.bear([strain], torch.ones(1, dtype=torch.bool), 1.0)
+        passed += 1.0
+    return passed

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import torch
 
 from hazard_ms.hazards.flood.realistic.floor_plan import CELL
 from hazard_ms.spec import Opening, Partition
@@ -47,3 +48,29 @@ def doorway(deep: float = 0.5) -> float:
         depth[:60] = deep
         basin.put("depth", depth)
     return (behind[-1][0] - behind[60][0]) / (behind[-1][1] - behind[60][1])
+
+
+def under_door(deep: float = 0.5) -> float:
+    """Discharge [m^3/s] under a closed door from a room `deep` [m] in water into a dry one, over five seconds."""
+    wall, shut = Partition("middle", "y", 7.0), Opening("door", "middle", 6.0, WIDE, 2.0)
+    full = np.where(np.arange(140) < 70, deep, 0.0)[:, None] * np.ones((1, 120))
+    basin = Basin((14.0, 12.0), depth=full, openings=(shut,), partitions=(wall,))
+    basin.state.inlet[:] = -1
+    basin.run(5.0)
+    return float(basin.get("depth")[70:].sum()) * CELL**2 / basin.now
+
+
+def breaking_depth() -> float:
+    """Depth [m] of the water on one side at which a closed door between rooms breaks, within 1 mm."""
+    wall, shut = Partition("middle", "y", 3.0), Opening("door", "middle", 2.0, WIDE, 2.0)
+    low, high = 0.1, 2.0
+    while high - low > 1e-3:
+        middle = 0.5 * (low + high)
+        full = np.where(np.arange(60) < 30, middle, 0.0)[:, None] * np.ones((1, 40))
+        basin = Basin((6.0, 4.0), depth=full, openings=(shut,), partitions=(wall,))
+        basin.state.inlet[:] = -1
+        basin.run(1e-4, 1e-4)
+        openings = basin.world.openings
+        openings.bear([basin.law.strain(basin.state, basin.world)], torch.ones(1, dtype=torch.bool), 0.1)
+        low, high = (low, middle) if bool(openings.state.broken[0, 0]) else (middle, high)
+    return middle

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.twozone.lining import CELLS, GYPSUM, RATIO, Lining
-from hazard_ms.hazards.fire.realistic.twozone.rooms import openings, parts
+from hazard_ms.hazards.fire.realistic.twozone.rooms import ends, joined, parts
 from hazard_ms.spec import Opening, Partition, Room
 from hazard_ms.validation.experiments.smoke_room import (
     INSULATED,
@@ -175,20 +175,13 @@ def test_partitions_cut_a_scene_into_rooms_and_openings_know_theirs() -> None:
         Opening("window", "east", 2.0, 1.2, 1.2, 0.9),
     )
     room = Room((10.0, 5.0), openings=holes, partitions=inner)
-    assert [p.end for p in parts(room)] == [4.0, 7.0, math.inf]
+    assert ends(room, 0) == [4.0, 7.0, math.inf] and ends(room, 1) == [math.inf]
     assert [p.area for p in parts(room)] == pytest.approx([3.9 * 5.0, 2.8 * 5.0, 2.9 * 5.0])
     assert [p.edge for p in parts(room)] == pytest.approx([17.8, 15.6, 15.8])
-    assert openings(room) == [
-        (0.9, 0.0, 2.0, 0.9, 0, 1),
-        (0.02, 0.0, 2.0, 0.02, 1, -1),
-        (0.02, 0.9, 2.1, 1.2, 2, -1),
-        (0.02, 0.0, 2.6, 0.02, 1, 2),
-    ]
-    through = (holes[1], Opening("door", "north", 8.0, 0.9, 2.0))  # where water comes in, one of them a stand-in
-    flooded = openings(room, through)
-    assert flooded[1] == (0.9, 0.0, 2.0, 0.9, 1, -1) and flooded[3] == (0.9, 0.0, 2.0, 0.9, 2, -1) and len(flooded) == 5
+    assert joined(room, holes) == [(0, 1), (1, -1), (2, -1)]
+    assert joined(room, [Opening("door", "north", 8.0, 0.9, 2.0)]) == [(2, -1)]
     turned = Room((5.0, 10.0), partitions=(Partition("partition_1", "x", 6.0),), openings=(
         Opening("door", "north", 2.0, 0.9, 2.0), Opening("door", "west", 2.0, 0.9, 2.0),
     ))  # fmt: skip
-    assert [g.room for g in openings(turned)] == [1, 0, 0] and parts(turned)[0].end == 6.0
-    assert len(parts(Room((3.0, 2.0)))) == 1 and openings(Room((3.0, 2.0))) == []
+    assert joined(turned, turned.openings) == [(1, -1), (0, -1)] and ends(turned, 1) == [6.0, math.inf]
+    assert len(parts(Room((3.0, 2.0)))) == 1 and joined(Room((3.0, 2.0)), ()) == []

@@ -11,7 +11,7 @@ import torch
 
 from hazard_ms.hazards.flood.realistic import floor_plan
 from hazard_ms.hazards.flood.realistic.inundation import Inundation
-from hazard_ms.hazards.openings import inlets
+from hazard_ms.scenes.inlets import inlets
 from hazard_ms.spec import Fixture, Opening, Partition
 from hazard_ms.validation.experiments.basin import SMOOTH, Basin, door
 from tests.worlds.flood_worlds import Thing, begin, room

@@ -42,8 +42,8 @@ from hazard_ms.hazards.fire.realistic import (
     wetting,
 )
 from hazard_ms.hazards.fire.realistic.blaze_state import HEATED, BlazeState
-from hazard_ms.hazards.fire.realistic.twozone import rooms
-from hazard_ms.hazards.openings import inlets
+from hazard_ms.hazards.fire.realistic.twozone import leaves, rooms
+from hazard_ms.simulation.openings import Strain
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
 from hazard_ms.spec.severity import SEVERITIES, USUAL
@@ -98,7 +98,7 @@ class Blaze(Hazard):
             "S": lattices,
             "K": window,
             "F": lattices * flames,
-            "O": max(1, *(len(rooms.openings(s.room, inlets(s))) for s in world.specs)),
+            "O": world.openings.count,
             "R": max(len(rooms.parts(s.room)) for s in world.specs),
         }
 
@@ -149,6 +149,7 @@ class Blaze(Hazard):
 
     def _smoke(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> radiation.Fires:
         """Advance the smoke by `step` seconds of fire; returns the fires as far as they have oxygen."""
+        state.vents.copy_(leaves.vents(world, leaves.fallen(state, world)))
         burns = smoke.advance(state, world, fires, state.yields, self.room_temperature, step)
         state.heat_release.copy_(burns.sum(1))
         here = smoke.zone_of(state, world.agent_position[:, None])
@@ -206,6 +207,11 @@ class Blaze(Hazard):
         place = world.agent_position.clone()
         place[:, 2] += CHEST
         return place[:, None]
+
+    @torch.inference_mode()
+    def strain(self, state: BlazeState, world: World) -> Strain:
+        heat = self._exposure(state, world, self._fires(state, world), leaves.faces(world))
+        return leaves.strain(state, world, *heat, self.room_temperature, self.time_scale)
 
     def damaged(self, state: BlazeState, world: World) -> Tensor:
         return state.status != NORMAL

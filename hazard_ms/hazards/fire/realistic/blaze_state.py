@@ -64,8 +64,9 @@ class BlazeState(FireState):
     lining_conductivity: Tensor = quantity("E", "kW/m K", "conductivity of walls and ceiling", fill=1e-3)
     lining_capacity: Tensor = quantity("E", "kJ/m^3 K", "their heat capacity", fill=1e3)
     lining_thickness: Tensor = quantity("E", "m", "their thickness", fill=0.1)
-    zone_across: Tensor = quantity("E", "", "1 if the rooms stand in a row along y, 0 along x", "int", low=0, high=1)
-    zone_end: Tensor = quantity("E R", "m", "where each room ends along the row", fill=torch.inf)
+    zone_columns: Tensor = quantity("E", "", "number of rooms side by side along x", "int", fill=1, low=1)
+    zone_end_x: Tensor = quantity("E R", "m", "where each column of rooms ends along x", fill=torch.inf)
+    zone_end_y: Tensor = quantity("E R", "m", "where each row of rooms ends along y", fill=torch.inf)
     zone_area: Tensor = quantity("E R", "m^2", "area of the floor; 0 for no room", low=0.0)
     zone_edge: Tensor = quantity("E R", "m", "circumference of the room")
     zone_smoke: Tensor = quantity(

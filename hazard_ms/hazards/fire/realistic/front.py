@@ -9,7 +9,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.base import none_set
-from hazard_ms.hazards.fire import coupling, spread
+from hazard_ms.hazards.fire import coupling, floor, spread
 from hazard_ms.hazards.fire.fire import can_burn, enlisted, light
 from hazard_ms.hazards.fire.realistic import radiation, scorch
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
@@ -50,7 +50,11 @@ def warm(state: BlazeState, world: World, fires: radiation.Fires, room: float, s
 
 def advance(state: BlazeState, world: World) -> None:
     """Light the cells that are hot enough; new flames appear in the next frame."""
-    hot = (state.free & (state.floor_temperature >= state.floor_ignition[:, None, None, None])).flatten(1)
+    hot = state.free & (state.floor_temperature >= state.floor_ignition[:, None, None, None])
+    if world.openings.inner:  # floor under a closed door waits
+        x, y = floor.centres(state.anchor, state.free.shape[-1])
+        hot = hot & ~floor.shut(world, *torch.broadcast_tensors(x[..., None], y[..., None, :]))
+    hot = hot.flatten(1)
     if none_set(hot):
         return
     aim = spread.compact(hot, spread.AT_ONCE)

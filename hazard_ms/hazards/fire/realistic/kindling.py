@@ -10,8 +10,8 @@ from torch import Tensor
 from hazard_ms.hazards.fire.realistic import burning, fuels
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.radiation import AIR, KELVIN
-from hazard_ms.hazards.fire.realistic.twozone import lining, rooms
-from hazard_ms.hazards.openings import inlets
+from hazard_ms.hazards.fire.realistic.twozone import leaves, lining, rooms
+from hazard_ms.simulation.openings import all_openings
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.catalogue import CATEGORIES
 
@@ -29,14 +29,16 @@ def describe_rooms(state: BlazeState, world: World, rows: Tensor, room: float) -
     state.smoke_height[rows] = state.height[rows]
     state.zone_height[rows] = state.height[rows, None]
     state.roofed[rows] = torch.tensor([float(not s.room.open_air) for s in specs], device=world.device)
-    state.zone_across[rows] = torch.tensor([int(rooms.across(s.room)) for s in specs], device=world.device)
-    _fill(state, rows, ("zone_end", "zone_area", "zone_edge"), [rooms.parts(s.room) for s in specs])
+    state.zone_columns[rows] = torch.tensor([len(rooms.ends(s.room, 0)) for s in specs], device=world.device)
+    for axis, name in enumerate(("zone_end_x", "zone_end_y")):
+        _fill(state, rows, (name,), [[(end,) for end in rooms.ends(s.room, axis)] for s in specs])
+    _fill(state, rows, ("zone_area", "zone_edge"), [rooms.parts(s.room) for s in specs])
     state.zone_wall[rows] = state.zone_area[rows]
     fill_with_air(state, rows, room)
-    flooded = "water" in world.fields
-    gaps = [rooms.openings(s.room, inlets(s) if flooded else ()) for s in specs]
-    state.vents[rows] = _padded([[g[:4] for g in row] for row in gaps], (0.0,) * 4, state.vents)
-    _fill(state, rows, ("vent_from", "vent_to"), [[(g.room, g.other) for g in row] for row in gaps])
+    if "water" in world.fields:
+        world.openings.let_in(rows)
+    state.vents[rows] = leaves.vents(world)[rows]
+    _fill(state, rows, ("vent_from", "vent_to"), [rooms.joined(s.room, all_openings(s)) for s in specs])
     linings = [lining.LININGS.get(s.room.wall, lining.GYPSUM) for s in specs]
     for name in ("conductivity", "capacity", "thickness"):
         made = torch.tensor([getattr(x, name) for x in linings], device=world.device)
@@ -48,12 +50,6 @@ def fill_with_air(state: BlazeState, rows: Tensor, room: float) -> None:
     for name in ("temperature", "low_temperature", "upper", "lower"):
         getattr(state, f"zone_{name}")[rows] = room
     state.zone_air[rows, :, 0] = state.zone_area[rows] * state.height[rows, None] * (AIR / (room + KELVIN))
-
-
-def _padded(table: Sequence[Sequence[Sequence[float]]], empty: Sequence[float], like: Tensor) -> Tensor:
-    """The rows of `table` at the length that `like` has along its second axis, with `empty` after their ends."""
-    length = like.shape[1]
-    return torch.tensor([[*row, *[empty] * (length - len(row))] for row in table]).to(like)
 
 
 def _fill(state: BlazeState, rows: Tensor, names: Sequence[str], table: Sequence[Sequence[Sequence[float]]]) -> None:

@@ -16,7 +16,7 @@ from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.fire.realistic import fuels
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.radiation import AIR, GRAVITY, KELVIN, Fires, alight, in_blocks
-from hazard_ms.hazards.fire.realistic.twozone import balance, zones
+from hazard_ms.hazards.fire.realistic.twozone import balance, network, zones
 from hazard_ms.simulation.walls import Walls, blocked
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import rounding
@@ -50,13 +50,14 @@ def advance(state: BlazeState, world: World, fires: Fires, yields: Tensor, room:
     temperature outside [C].
     """
     work = state.zone_area[..., None].expand(-1, -1, balance.WORK)
-    burns, work, upper, lower = world.launches.results(
-        zones.advance, fires.power, work, state.zone_smoke, state.zone_air
+    matrix = state.zone_area[..., None].expand(-1, -1, state.zone_area.shape[1] + network.MORE)
+    burns, work, upper, lower, matrix = world.launches.results(
+        zones.advance, fires.power, work, state.zone_smoke, state.zone_air, matrix
     )
     place, power, radiant, diameter = (v.contiguous() for v in fires)
     source = _Sources(place, power, radiant, diameter, yields, _of_wood(place.device), burns)
     structs = world.launches.struct(zones.Sources, source), world.launches.struct(balance.Rooms, state)
-    world.launches.run(zones.advance, (len(burns),), step, room, *structs, work, upper, lower)
+    world.launches.run(zones.advance, (len(burns),), step, room, *structs, work, upper, lower, matrix)
     return burns
 
 
@@ -68,8 +69,9 @@ def _of_wood(device: torch.device) -> Tensor:
 
 def zone_of(state: BlazeState, points: Tensor) -> Tensor:
     """Number of the room, [E, P], int64, of `points` [m], [E, P, 3], world frame."""
-    along = torch.where(state.zone_across[:, None] > 0, points[..., 1], points[..., 0])
-    return (along[..., None] > state.zone_end[:, None]).sum(-1)
+    ends = (state.zone_end_x, state.zone_end_y)
+    i, j = ((points[..., k, None] > end[:, None]).sum(-1) for k, end in enumerate(ends))
+    return i + state.zone_columns[:, None] * j
 
 
 def plume_rise(power: Tensor, radiant: Tensor | float, diameter: Tensor, height: Tensor, room: float) -> Tensor:

@@ -2,8 +2,8 @@
 
 Cells are CELL wide; X along x, Y along y, with a ring of closed cells around them: cell (i, j) has the number
 (i + 1) (Y + 2) + j + 1. Furniture that stands on the floor is ground as high as its parts; what has legs is not, and
-water flows under it. An opening lets water through up to its height. Doorways are open; doors between rooms are closed,
-but for a gap at the floor. Water comes in through the doors in the outer walls. A scene without any has an opening as
+water flows under it. An opening lets water through up to its height; in place of what is closed of a door there is a
+gap at the floor (.openings). Water comes in through the doors in the outer walls. A scene without any has an opening as
 wide as a door in the middle of its `flood_side`; one that names a `second_flood_side` has openings in two walls.
 """
 
@@ -17,16 +17,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.hazards.openings import SIDES, inlets
 from hazard_ms.scenes.boxes import yaw_of
+from hazard_ms.scenes.inlets import SIDES, inlets
 from hazard_ms.scenes.solids import parts_of
+from hazard_ms.simulation.openings import all_openings
 from hazard_ms.spec import Room, SceneSpec, Vec2
 
 CELL = 0.1  # side of a cell [m]
 SHEET = 0.05  # height below which what lies on the floor (rugs) does not count [m] [ours]
 GAP = 0.05  # height above the ground below which a part stands on it [m] [ours]
 NARROW = 0.08  # width below which water flows round a part (legs) as if it were not there [m] [ours]
-LEAK = 0.02  # height of the gap under a closed door between rooms [m] [docs/physics.md L-27]
 BESIDE = 5  # cells of floor from the jamb of a door to where the level of the room is read [ours]
 BEYOND = 100.0  # height of what is not floor [m]
 
@@ -52,6 +52,21 @@ class FloorPlan(NamedTuple):
     inlet_beside: list[int]
     inlet_width: list[float]
     inlet_height: list[float]
+    inlet_opening: list[int]  # number of its opening along O
+    inlet_along: list[float]
+    leaf: list[int]  # cells whose side towards the west or the south is in an inner door
+    leaf_side: list[int]  # 0: towards the west, 1: towards the south
+    leaf_opening: list[int]
+    leaf_along: list[float]
+
+
+class Crossing(NamedTuple):
+    """Sides of cells in one opening, L of them."""
+
+    cells: list[int]
+    side: int
+    opening: int  # number along O
+    along: list[float]  # middles of the sides along the wall [m]
 
 
 def size_of(rooms: Sequence[Room]) -> tuple[int, int]:
@@ -81,7 +96,7 @@ def plan_of(spec: SceneSpec, size: tuple[int, int], edges: Mapping[str, Sequence
         along = middles[1 - across]
         height = np.zeros(len(along))
         for o in doors:
-            height[np.abs(along - o.centre) < o.width / 2] = o.height if o.kind == "doorway" else LEAK
+            height[np.abs(along - o.centre) < o.width / 2] = o.height
         beyond = int(np.searchsorted(middles[across], partition.at))  # the first cells behind it
         if across == 0:
             open_x[beyond] = np.minimum(open_x[beyond], height)
@@ -91,9 +106,35 @@ def plan_of(spec: SceneSpec, size: tuple[int, int], edges: Mapping[str, Sequence
         np.pad(grid, 1, constant_values=edge).astype(np.float32).ravel()
         for grid, edge in ((ground, BEYOND), (open_x, 0.0), (open_y, 0.0))
     )
-    inlet, side, width, high = _inlets(spec, size)
+    inlet, side, width, high, number, places = _inlets(spec, size)
+    sides = leaf_sides(spec, size)
+    crossing = [(c, d.side, d.opening, at) for d in sides for c, at in zip(d.cells, d.along, strict=True)]
+    leaf = [list(column) for column in zip(*crossing, strict=True)] if crossing else [[]] * 4
     near = [_beside(c, k, set(inlet), size[1] + 2, bed, (west, south)) for c, k in zip(inlet, side, strict=True)]
-    return FloorPlan(bed, west, south, inlet, side, near, width, high)
+    return FloorPlan(bed, west, south, inlet, side, near, width, high, number, places, *leaf)
+
+
+def leaf_sides(spec: SceneSpec, size: tuple[int, int]) -> list[Crossing]:
+    """The sides of cells in the inner doors of a scene on a grid of `size` (X, Y) cells."""
+    found = []
+    for partition in spec.room.partitions:
+        across = 0 if partition.axis == "y" else 1
+        middles = [CELL * (np.arange(n) + 0.5) for n in size]
+        beyond = int(np.searchsorted(middles[across], partition.at))
+        along = middles[1 - across]
+        for number, o in enumerate(spec.room.openings):
+            if o.wall == partition.name and o.kind == "door":
+                places = np.nonzero(np.abs(along - o.centre) < o.width / 2)[0].tolist()
+                cells = [(beyond, k) if across == 0 else (k, beyond) for k in places]
+                numbers = [(i + 1) * (size[1] + 2) + j + 1 for i, j in cells]
+                found.append(Crossing(numbers, across, number, along[places].tolist()))
+    return found
+
+
+def most_sides(specs: Sequence[SceneSpec]) -> int:
+    """The largest number of sides of cells in inner doors of `specs`."""
+    size = size_of([spec.room for spec in specs])
+    return max(sum(len(found.cells) for found in leaf_sides(spec, size)) for spec in specs)
 
 
 def most_inlets(specs: Sequence[SceneSpec]) -> int:
@@ -102,13 +143,21 @@ def most_inlets(specs: Sequence[SceneSpec]) -> int:
     return max(len(_inlets(spec, size)[0]) for spec in specs)
 
 
-def _inlets(spec: SceneSpec, size: tuple[int, int]) -> tuple[list[int], list[int], list[float], list[float]]:
-    """Cells, sides, widths and heights [m] of the inlets of a scene on a grid of `size` (X, Y) cells."""
+def _inlets(
+    spec: SceneSpec, size: tuple[int, int]
+) -> tuple[list[int], list[int], list[float], list[float], list[int], list[float]]:
+    """Cells, sides, widths, heights [m], openings and places along the wall [m] of the inlets of a scene.
+
+    The grid has `size` (X, Y) cells.
+    """
     middles = [CELL * (np.arange(n) + 0.5) for n in size]
     cells: list[int] = []
     sides: list[int] = []
     widths: list[float] = []
     heights: list[float] = []
+    numbers: list[int] = []
+    places: list[float] = []
+    known = all_openings(spec)
     for opening in inlets(spec):
         side = SIDES.index(opening.wall)
         across = side // 2  # the axis that water comes in along
@@ -121,7 +170,9 @@ def _inlets(spec: SceneSpec, size: tuple[int, int]) -> tuple[list[int], list[int
             sides.append(side)
             widths.append(opening.width / len(along))
             heights.append(opening.height)
-    return cells, sides, widths, heights
+            numbers.append(known.index(opening))
+            places.append(float(middles[1 - across][k]))
+    return cells, sides, widths, heights, numbers, places
 
 
 def _beside(cell: int, side: int, inlets: set[int], pitch: int, bed: Grid, open_to: tuple[Grid, Grid]) -> int:

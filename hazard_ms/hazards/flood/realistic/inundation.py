@@ -5,9 +5,9 @@
              velocity of the water where they are (.basin, .currents)
 
 What stands on the floor is ground for the water, so nothing is pushed through a wall, and things float into eddies
-behind sofas. Inside furniture that is not full of water, it stands as high as around it. Doors between rooms are closed
-but for the gap under them. Limits: depth-averaged, so nothing is drawn under; things do not act on the water; furniture
-does not float; doors and windows do not break.
+behind sofas. Inside furniture that is not full of water, it stands as high as around it. Doors hold it back as far as
+they are closed, but for the gap under them, until it breaks them (.openings). Limits: depth-averaged, so nothing is
+drawn under; things do not act on the water; furniture does not float; no water comes in through windows.
 """
 
 from __future__ import annotations
@@ -22,13 +22,19 @@ from hazard_ms.hazards.base import Push, State
 from hazard_ms.hazards.flood import kernels, wading
 from hazard_ms.hazards.flood.floating import Liquid
 from hazard_ms.hazards.flood.flood import Flood
-from hazard_ms.hazards.flood.realistic import currents, floor_plan, floors, shallow_water
+from hazard_ms.hazards.flood.realistic import currents, floor_plan, floors, openings, shallow_water
 from hazard_ms.hazards.flood.realistic.basin import Basin
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.launch import of_environments
+from hazard_ms.simulation.openings import Strain
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.severity import SEVERITIES, USUAL
+
+LISTED = (  # quantities of the plan of a floor that are lists
+    *("inlet", "inlet_side", "inlet_beside", "inlet_width", "inlet_height", "inlet_opening", "inlet_along"),
+    *("leaf", "leaf_side", "leaf_opening", "leaf_along"),
+)
 
 
 @dataclass(frozen=True)
@@ -50,25 +56,28 @@ class Inundation(Flood):
     def sizes(self, world: World) -> dict[str, int]:
         rows, columns = _cells(world)
         inlets = max(1, floor_plan.most_inlets(world.specs))
-        return {**super().sizes(world), "N": (rows + 2) * (columns + 2), "I": inlets}
+        sides = max(1, floor_plan.most_sides(world.specs))
+        return {**super().sizes(world), "N": (rows + 2) * (columns + 2), "I": inlets, "L": sides}
 
     def reset(self, state: InundationState, world: World, rows: Tensor) -> None:  # type: ignore[override]
-        size, inlets = _cells(world), state.inlet.shape[1]
+        size = _cells(world)
         for row in rows.tolist():
             edges = dict(zip(world.names[row], world.extent[row].tolist(), strict=False))
             state.friction[row] = floors.friction_of(world.specs[row], self.roughness)
             plan = floor_plan.plan_of(world.specs[row], size, edges)
             for name in ("bed", "open_x", "open_y"):
                 getattr(state, name)[row] = torch.from_numpy(getattr(plan, name))
-            for name in ("inlet", "inlet_side", "inlet_beside", "inlet_width", "inlet_height"):
+            for name in LISTED:
                 given, held = getattr(plan, name), getattr(state, name)
-                held[row, : min(len(given), inlets)] = torch.tensor(given).to(held)
+                held[row, : len(given)] = torch.tensor(given).to(held)[: held.shape[1]]
+        world.openings.let_in(rows)
         state.signal[rows] = shallow_water.wave(self.outside)
         self._reset_materials(state, world, rows)
 
     @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
     def advance(self, state: InundationState, world: World, dt: float) -> None:  # type: ignore[override]
         state.time.add_(dt)
+        openings.set_heights(state, world)
         launches, (rows, columns) = world.launches, _cells(world)
         basin = launches.struct(Basin, state)
         new = launches.results(shallow_water.flow, state.velocity_x, state.velocity_y)
@@ -90,6 +99,12 @@ class Inundation(Flood):
         launches.run(currents.push, tuple(world.exists.shape), dt, *_cells(world), *structs, *made)
         force, torque = made
         return Push(force.clone(), torque.clone())
+
+    @torch.inference_mode()
+    def strain(self, state: InundationState, world: World) -> Strain:
+        beside = world.openings.plan.beside
+        level = self._surface(state, world, beside.flatten(1, 2))[0].clamp(min=0.0).view(beside.shape[:3])
+        return openings.press(level, self.outside, world, self.water.density * self.water.gravity)
 
     def _surface(self, state: InundationState, world: World, points: Tensor) -> tuple[Tensor, Tensor]:  # type: ignore[override]
         """Level [m], [E, P], and velocity [m/s], [E, P, 2], of the water at `points` [m], [E, P, 3], world frame.

@@ -14,6 +14,8 @@ from hazard_ms.hazards.flood.flood_state import FloodState
 class InundationState(FloodState):
     """State of a flood on a grid of N cells (`hazard_ms.hazards.flood.realistic.floor_plan`), with I cells at inlets.
 
+    L sides of cells are in doors between rooms.
+
     A cell's `x` quantities are those of its western side, its `y` quantities those of its southern side. `level` is the
     mean height of the surface where there is water, `surface_slope` 0; what tells the path of the water is not used.
     """
@@ -34,7 +36,15 @@ class InundationState(FloodState):
     inlet_side: Tensor = quantity("E I", "", "from where: 0 west, 1 east, 2 south, 3 north", dtype="int", low=0, high=3)
     inlet_beside: Tensor = quantity("E I", "", "cells whose level the inflow meets", dtype="int", low=0, high="depth")
     inlet_width: Tensor = quantity("E I", "m", "width of the opening before the cell", low=0.0)
-    inlet_height: Tensor = quantity("E I", "m", "height of the opening before the cell", low=0.0)
+    inlet_height: Tensor = quantity("E I", "m", "height that is open before the cell", low=0.0)
+    inlet_opening: Tensor = quantity("E I", "", "number of the opening before the cell", dtype="int", low=0)
+    inlet_along: Tensor = quantity("E I", "m", "place of the cell along the wall", low=0.0)
+    leaf: Tensor = quantity(
+        "E L", "", "cells with a side in a door between rooms; -1: none", dtype="int", fill=-1, low=-1, high="depth"
+    )
+    leaf_side: Tensor = quantity("E L", "", "that side: 0 west, 1 south", dtype="int", low=0, high=1)
+    leaf_opening: Tensor = quantity("E L", "", "number of the door", dtype="int", low=0)
+    leaf_along: Tensor = quantity("E L", "m", "place of the side along the wall", low=0.0)
     friction: Tensor = quantity("E", "m^(1/3)", "friction of the floor: g n^2 of Manning's n", low=0.0)
     inflow: Tensor = quantity("E", "m^3", "water that has come in, less what has left")
     inflow_rest: Tensor = quantity("E", "m^3", "what rounding has left out of it")

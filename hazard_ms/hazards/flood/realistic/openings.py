@@ -1,9 +1,11 @@
-"""Water through openings between places of known depth: gaps of closed doors, broken doors, windows.
+"""Water through openings: their laws, which of them stand open now, and how it presses on those that are closed.
 
     weir      0.4 b sqrt(2 g) H^1.5, less by Villemonte's factor once the water behind stands above the sill, too
     orifice   0.611 b a sqrt(2 g dH) at most, where the water stands above the opening
 
-The law is that of the inlets (hazard_ms.hazards.flood.realistic.inlets), L-26 to L-28 and L-39 of docs/physics.md.
+What is closed of a door has a gap under it, openings.GAP high over its width. The force on a leaf is that of water at
+rest, rho g w / 2 (h_1^2 - h_2^2), heights above its lower edge and not above its upper one. The law is that of the
+inlets (hazard_ms.hazards.flood.realistic.inlets), L-26 to L-28 and L-39 of docs/physics.md.
 """
 
 from __future__ import annotations
@@ -12,7 +14,10 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.flood.realistic import inlets
+from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.kernels.launch import Launches
+from hazard_ms.simulation.openings import GAP, Strain
+from hazard_ms.simulation.world import World
 
 
 def discharge(
@@ -38,3 +43,40 @@ def discharge(
     known = Launches() if launches is None else launches
     known.run(inlets.leak, tuple(before.shape), *(of.contiguous() for of in given), made)
     return made
+
+
+def set_heights(state: InundationState, world: World) -> None:
+    """Write the heights that are open at inlets and in doors between rooms [m]: all of it, or the gap under a leaf."""
+    height = _heights(world, state.inlet_opening, state.inlet_along)
+    state.inlet_height.copy_(torch.where(state.inlet >= 0, height, 0.0))
+    if not world.openings.inner:
+        return
+    height = _heights(world, state.leaf_opening, state.leaf_along)
+    for side, sides in enumerate((state.open_x, state.open_y)):
+        mine = (state.leaf >= 0) & (state.leaf_side == side)
+        cell = torch.where(mine, state.leaf, 0)  # the first cell is one of the ring: closed
+        sides.scatter_(1, cell, torch.where(mine, height, sides[:, :1]))
+
+
+def _heights(world: World, opening: Tensor, along: Tensor) -> Tensor:
+    """Height that is open [m], [E, L], at places `along` the wall [m], [E, L], in the openings `opening`, [E, L]."""
+    plan, share = world.openings.plan, world.openings.share.gather(1, opening)
+    width, high, sill, top = (of.gather(1, opening) for of in (plan.width, plan.high, plan.sill, plan.top))
+    free = (share >= 1.0) | ((share > 0.0) & (along > high - share * width))
+    leak = torch.where(plan.door.gather(1, opening), GAP, 0.0)
+    return torch.where(free, top - sill, torch.minimum(leak, top - sill))
+
+
+def press(level: Tensor, outside: float, world: World, weight: float) -> Strain:
+    """Force [N] of water on openings, [E, O], between its levels [m], [E, O, 2], on both sides; `weight` is [N/m^3].
+
+    Outdoors it stands `outside` [m] deep.
+    """
+    plan = world.openings.plan
+    level = torch.stack([level[..., 0], torch.where(plan.outside, outside, level[..., 1])], -1)
+    low, top = plan.sill[..., None], plan.top[..., None]
+    high = level - low
+    over = (level - top).clamp(min=0.0)
+    under = 0.5 * (high.clamp(min=0.0).square() - over.square())  # of the pressure over the height
+    force = weight * plan.width * (under[..., 0] - under[..., 1])
+    return Strain(force, torch.zeros_like(force), torch.zeros_like(force, dtype=torch.bool))

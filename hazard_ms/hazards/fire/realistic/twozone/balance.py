@@ -38,8 +38,9 @@ class Rooms:
     vents: wp.array2d(dtype=wp.vec4)
     vent_from: wp.array2d(dtype=wp.int64)
     vent_to: wp.array2d(dtype=wp.int64)
-    zone_across: wp.array(dtype=wp.int64)
-    zone_end: wp.array2d(dtype=float)
+    zone_columns: wp.array(dtype=wp.int64)
+    zone_end_x: wp.array2d(dtype=float)
+    zone_end_y: wp.array2d(dtype=float)
     zone_area: wp.array2d(dtype=float)
     zone_edge: wp.array2d(dtype=float)
     zone_smoke: wp.array2d(dtype=Gas)
@@ -95,14 +96,28 @@ def lost(e: int, r: int, other: int, p: float, q: float, air: float, rooms: Room
 
 
 @wp.func
-def surplus(e: int, pressure: float, air: float, rooms: Rooms, work: wp.array3d(dtype=float)) -> float:
-    """Volume [m^3/s] that finds no way out if the first room is at `pressure` [Pa]; writes the other pressures.
+def joined(e: int, r: int, other: int, rooms: Rooms) -> bool:
+    """Whether an opening that is not under water lies between room `r` and room `other`."""
+    for o in range(rooms.vents.shape[1]):
+        vent = rooms.vents[e, o]
+        if vent[0] > 0.0 and vent[2] > vent[1]:
+            a, b = int(rooms.vent_from[e, o]), int(rooms.vent_to[e, o])
+            if (a == r and b == other) or (a == other and b == r):
+                return True
+    return False
 
-    What a room makes and does not lose to the outside goes on to the next one.
+
+@wp.func
+def surplus(
+    e: int, start: int, end: int, pressure: float, air: float, rooms: Rooms, work: wp.array3d(dtype=float)
+) -> float:
+    """Volume [m^3/s] of the rooms from `start` to before `end` that finds no way out; writes the others' pressures.
+
+    The first of them is at `pressure` [Pa]. What a room makes and does not lose to the outside goes on to the next one.
     """
-    rooms.zone_pressure[e, 0] = pressure
-    carried = work[e, 0, NEED] - lost(e, 0, OUTSIDE, pressure, 0.0, air, rooms)
-    for r in range(1, rooms.zone_area.shape[1]):
+    rooms.zone_pressure[e, start] = pressure
+    carried = work[e, start, NEED] - lost(e, start, OUTSIDE, pressure, 0.0, air, rooms)
+    for r in range(start + 1, end):
         if rooms.zone_area[e, r] > 0.0:
             before = rooms.zone_pressure[e, r - 1]
             low = float(-vents.APART)
@@ -121,12 +136,27 @@ def surplus(e: int, pressure: float, air: float, rooms: Rooms, work: wp.array3d(
 
 @wp.func
 def balance(e: int, air: float, rooms: Rooms, work: wp.array3d(dtype=float)):
-    """Find the pressures of all rooms."""
-    low = float(-vents.HIGHEST)
-    high = float(vents.HIGHEST)
-    for _ in range(vents.HALVINGS):
-        middle = 0.5 * (low + high)
-        if surplus(e, middle * wp.abs(middle), air, rooms, work) < 0.0:
-            high = middle
-        else:
-            low = middle
+    """Find the pressures of rooms in a row, of those together that openings join; 0 without one to the outside."""
+    count = rooms.zone_area.shape[1]
+    start = int(0)
+    vented = joined(e, 0, OUTSIDE, rooms)
+    for r in range(1, count + 1):
+        ends = r == count
+        if r < count:
+            ends = not joined(e, r - 1, r, rooms)
+        if ends:
+            low = float(-vents.HIGHEST)
+            high = float(vents.HIGHEST)
+            if vented:
+                for _ in range(vents.HALVINGS):
+                    middle = 0.5 * (low + high)
+                    if surplus(e, start, r, middle * wp.abs(middle), air, rooms, work) < 0.0:
+                        high = middle
+                    else:
+                        low = middle
+            else:
+                surplus(e, start, r, 0.0, air, rooms, work)
+            start = r
+            vented = False
+        if r < count:
+            vented = vented or joined(e, r, OUTSIDE, rooms)

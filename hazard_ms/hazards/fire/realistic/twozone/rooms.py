@@ -1,7 +1,7 @@
 """The rooms of a scene, and the openings between them and to the outside, as the smoke of a realistic fire sees them.
 
-Partitions cut a scene into rooms that stand in a row along x or y. Limit: partitions across the first one's direction
-are left out.
+Partitions cut a scene into a grid of rooms, numbered along x and then along y. Rooms without an opening between them
+share nothing.
 """
 
 from __future__ import annotations
@@ -10,72 +10,55 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from hazard_ms.spec import Opening, Room
+from hazard_ms.scenes.walls import runs_along_x
+from hazard_ms.spec import Opening, Partition, Room
 
-GAP = 0.02  # width of the gaps of a closed door or window [m] [docs/physics.md 4.4]
 OUTSIDE = -1  # in place of a room's number
+SIDES = {"south": (1, 0), "west": (0, 0), "north": (1, -1), "east": (0, -1)}  # outer walls: axis and place along it
 
 
 class Part(NamedTuple):
-    """One of the rooms in a row."""
+    """One of the rooms."""
 
-    end: float  # where it ends along the row [m]
-    area: float  # area of its floor [m^2]
+    area: float  # of its floor [m^2]
     edge: float  # circumference [m]
 
 
-class Gap(NamedTuple):
-    """An opening between two rooms, or between a room and the outside."""
-
-    width: float  # [m]
-    sill: float  # height of its lower end [m]
-    top: float  # height of its upper end [m]
-    widest: float  # width without panes [m]
-    room: int  # number of a room
-    other: int  # number of the room behind it, or OUTSIDE
+def _cuts(room: Room, axis: int) -> list[Partition]:
+    """The partitions that lie one behind the other along an axis: 0 x, 1 y."""
+    return sorted((p for p in room.partitions if (p.axis == "x") == (axis == 1)), key=lambda p: p.at)
 
 
-def across(room: Room) -> bool:
-    """Whether the rooms stand in a row along y; else along x."""
-    return bool(room.partitions) and room.partitions[0].axis == "x"
+def ends(room: Room, axis: int) -> list[float]:
+    """Coordinates at which rooms end along an axis, 0 x, 1 y [m]; the last ones end nowhere."""
+    return [*(p.at for p in _cuts(room, axis)), math.inf]
 
 
 def parts(room: Room) -> list[Part]:
-    """The rooms of a scene, in a row from west to east or from south to north."""
-    length, wide = reversed(room.size) if across(room) else room.size
-    walls = sorted((p.at, p.thickness) for p in room.partitions if p.axis == room.partitions[0].axis)
-    starts = [0.0, *(at + thick / 2 for at, thick in walls)]
-    stops = [*(at - thick / 2 for at, thick in walls), length]
-    ends = [*(at for at, _ in walls), math.inf]
-    sizes = [max(stop - start, 0.1) for start, stop in zip(starts, stops, strict=True)]
-    return [Part(end, size * wide, 2.0 * (size + wide)) for end, size in zip(ends, sizes, strict=True)]
+    """The rooms of a scene by their numbers."""
+    sizes = []
+    for axis in (0, 1):
+        walls = _cuts(room, axis)
+        faces = [0.0, *(p.at + side * p.thickness / 2 for p in walls for side in (-1, 1)), room.size[axis]]
+        sizes.append([max(stop - start, 0.1) for start, stop in zip(faces[::2], faces[1::2], strict=True)])
+    return [Part(x * y, 2.0 * (x + y)) for y in sizes[1] for x in sizes[0]]
 
 
-def openings(room: Room, standing_open: Sequence[Opening] = ()) -> list[Gap]:
-    """Doors and windows, which are closed but for gaps, open doorways, and gaps in partitions that have none.
-
-    Doors that are `standing_open` are as wide as they are; those that the room does not have count, too.
-    """
-    row = parts(room)
-    inner = sorted((p for p in room.partitions if p.axis == room.partitions[0].axis), key=lambda p: p.at)
-    names = {p.name: k for k, p in enumerate(inner)}
+def joined(room: Room, openings: Sequence[Opening]) -> list[tuple[int, int]]:
+    """The rooms on both sides of each of the `openings`, the second OUTSIDE in outer walls."""
+    counts = [len(ends(room, axis)) for axis in (0, 1)]
     found = []
-    for o in (*room.openings, *(o for o in standing_open if o not in room.openings)):
-        top = o.sill + o.height
-        if o.wall in names:
-            found.append(Gap(o.width, o.sill, top, o.width, names[o.wall], names[o.wall] + 1))
-        elif o.kind != "doorway":
-            width = o.width if o in standing_open else GAP
-            widest = o.width if o.kind == "window" else width
-            found.append(Gap(width, o.sill, top, widest, _part_at(room, row, o), OUTSIDE))
-    joined = {g.room for g in found if g.other != OUTSIDE}
-    found += [Gap(GAP, 0.0, room.height, GAP, k, k + 1) for k in range(len(row) - 1) if k not in joined]
+    for o in openings:
+        along = 0 if runs_along_x(room, o.wall) else 1  # the axis of its wall
+        place = [0, 0]
+        place[along] = next(k for k, end in enumerate(ends(room, along)) if o.centre <= end)
+        if o.wall in SIDES:
+            across, at = SIDES[o.wall]
+            place[across] = at % counts[across]
+            found.append((place[0] + counts[0] * place[1], OUTSIDE))
+        else:
+            across = 1 - along
+            place[across] = [p.name for p in _cuts(room, across)].index(o.wall)
+            first = place[0] + counts[0] * place[1]
+            found.append((first, first + (1, counts[0])[across]))
     return found
-
-
-def _part_at(room: Room, row: list[Part], opening: Opening) -> int:
-    """Number of the room at an opening of an outer wall."""
-    ends = {"south": 0, "north": -1} if across(room) else {"west": 0, "east": -1}
-    if opening.wall in ends:
-        return ends[opening.wall] % len(row)
-    return next(k for k, part in enumerate(row) if opening.centre <= part.end)

@@ -5,10 +5,10 @@
     the same of soot, of lack of oxygen, of carbon monoxide and of hydrogen cyanide
 
 What a layer consists of: `.gas`; what fires burn and make: `.combustion`; air that they draw in: `.plumes`; heat:
-`.heat`, `.lining`; openings: `.vents`, `.balance`, `.exchange`. Panes fall out at PANE. Scheme: order 1, in parts of at
-most LONGEST; what leaves a layer, and gas and its walls, implicit, so stable for any step. All masses and heats are
-kept exactly; a volume that the room has not is pressed out in the next parts. Limits: the air takes up no radiation,
-and what cannot burn for lack of oxygen is gone.
+`.heat`, `.lining`; openings: `.vents`, `.exchange`; pressures: `.balance`, `.network`. Panes fall out at PANE. Scheme:
+order 1, in parts of at most LONGEST; what leaves a layer, and gas and its walls, implicit, so stable for any step. All
+masses and heats are kept exactly; a volume that the room has not is pressed out in the next parts. Limits: the air
+takes up no radiation, and what cannot burn for lack of oxygen is gone.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.hazards.fire.realistic import radiation
-from hazard_ms.hazards.fire.realistic.twozone import balance, combustion, exchange, gas, heat, lining, plumes
+from hazard_ms.hazards.fire.realistic.twozone import balance, combustion, exchange, gas, heat, lining, network, plumes
 from hazard_ms.hazards.fire.realistic.twozone.balance import Rooms
 from hazard_ms.hazards.fire.realistic.twozone.gas import Gas
 from hazard_ms.kernels.launch import OPTIONS
@@ -30,6 +30,7 @@ BEAM = 3.6  # mean length of rays through a gas per volume and surface [-] [M: I
 PANE = 300.0  # temperature of the layer at which panes fall out of windows [C] [M: Roytman]
 SIGHT = 8700.0  # extinction area of smoke, K_m [m^2/kg] [docs/physics.md 3.1]
 AIR, KELVIN = wp.constant(radiation.AIR), wp.constant(radiation.KELVIN)
+UNBOUNDED = wp.constant(1e6)  # where rooms do not end [m]
 
 YIELDS = 5  # per heat [kg/kJ]: soot, carbon monoxide, hydrogen cyanide with enough air and without, and fuel
 Yields = wp.types.vector(length=YIELDS, dtype=float)
@@ -54,13 +55,13 @@ class Sources:
 @wp.func
 def zone_at(e: int, x: float, y: float, rooms: Rooms) -> int:
     """Number of the room at a point [m] of the floor."""
-    along = x
-    if rooms.zone_across[e] > wp.int64(0):
-        along = y
-    r = int(0)
-    while r < rooms.zone_area.shape[1] - 1 and along > rooms.zone_end[e, r]:
-        r = r + 1
-    return r
+    i, j = int(0), int(0)
+    for k in range(rooms.zone_area.shape[1]):
+        if x > rooms.zone_end_x[e, k]:
+            i = i + 1
+        if y > rooms.zone_end_y[e, k]:
+            j = j + 1
+    return i + int(rooms.zone_columns[e]) * j
 
 
 @wp.func
@@ -161,6 +162,7 @@ def advance(
     work: wp.array3d(dtype=float),
     smoke: wp.array2d(dtype=Gas),
     air: wp.array2d(dtype=Gas),
+    matrix: wp.array3d(dtype=float),
 ):
     """Carry all rooms of a scene over `step` [s]; `room` is the temperature [C] outside."""
     e = wp.tid()
@@ -181,7 +183,10 @@ def advance(
                     heat.warm(e, r, slab, room, dt, rooms, work)
                 smoke[e, r] = Gas()
                 air[e, r] = Gas()
-            balance.balance(e, outside, rooms, work)
+            if rooms.zone_end_x[e, 0] < UNBOUNDED and rooms.zone_end_y[e, 0] < UNBOUNDED:
+                network.settle_pressures(e, outside, rooms, work, matrix)
+            else:
+                balance.balance(e, outside, rooms, work)
             exchange.exchange(e, outside, dt, rooms, work, smoke, air)
             shatter(e, rooms)
             for r in range(count):

@@ -1,7 +1,4 @@
-"""The openings in the outer walls of a scene through which water comes: they stand open, for smoke and air as well.
-
-All other doors and windows are closed but for their gaps, and doorways in partitions are open.
-"""
+"""The openings in the outer walls of a scene through which water comes: a flood begins with them open."""
 
 from __future__ import annotations
 

@@ -28,6 +28,7 @@ from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.launch import of_environments
 from hazard_ms.simulation.world import World
+from hazard_ms.spec import Quantity
 from hazard_ms.spec.severity import SEVERITIES, USUAL
 
 
@@ -36,6 +37,9 @@ class Inundation(Flood):
     """A flood that flows, with these parameters; of Flood's, those of level and current mean nothing."""
 
     state_type: ClassVar[type[State]] = InundationState
+    tells: ClassVar[dict[str, Quantity]] = Flood.tells | {
+        "agent_fallen": Quantity("the agent lies on the ground", "", 0, 1)
+    }
 
     outside: float = SEVERITIES[USUAL].flood_outside  # depth of the water outside the doors [m]
     roughness: float | None = None  # Manning's n of every floor [s/m^(1/3)]; None: that of its material (.floors)
@@ -76,6 +80,17 @@ class Inundation(Flood):
         flooded, bodies = launches.struct(kernels.Flooded, state), launches.struct(Bodies, world)
         size = tuple(world.exists.shape)
         launches.run(currents.immerse, size, dt, self.damage_fraction, rows, columns, flooded, basin, bodies)
+        if world.agent_build is not None:
+            self._topple(state, world, dt)
+
+    def _topple(self, state: InundationState, world: World, dt: float) -> None:
+        """Let agents fall, lie and stand up during `dt` [s]."""
+        depth, flow, _ = self.at_agent(state, world)
+        falls = wading.topples(depth, flow.norm(dim=-1), world.robot, self.water.density, self.water.gravity)
+        lain = state.lain + dt
+        lies = state.lies & (lain < world.robot.rising)
+        state.lain.copy_(torch.where(lies, lain, 0.0))
+        state.lies.copy_(lies | falls)
 
     @torch.inference_mode()
     def force(self, state: InundationState, world: World, dt: float) -> Push | None:  # type: ignore[override]
@@ -108,8 +123,27 @@ class Inundation(Flood):
         level, velocity = self._surface(state, world, place)
         depth = (level - place[..., 2]).clamp(min=0)
         flow = torch.where(depth > 0, velocity[:, 0], 0.0)
-        grip = wading.grip(depth, flow.norm(dim=-1, keepdim=True), world.robot, self.water.density, self.water.gravity)
-        return depth[:, 0], flow, grip[:, 0].clamp(min=self.least_grip)
+        holds, speed = (
+            wading.sliding_speed(depth, world.robot, self.water.density, self.water.gravity),
+            flow.norm(dim=-1),
+        )
+        grip = torch.where(speed > holds[:, 0], holds[:, 0] / speed, 1.0)
+        return depth[:, 0], flow, grip.clamp(min=self.least_grip)
+
+    def slow(self, state: InundationState, world: World) -> Tensor:  # type: ignore[override]
+        """Motion that is left to the agent, [E, 3]: the share of its own velocity, and a velocity x, y [m/s] to add.
+
+        Wheels or soles hold up to the speed of the water at which they slide, then carry the robot off at what the
+        water is faster than that; its own motion counts less the faster it is carried. One that lies only slides.
+        """
+        left = super().slow(state, world)
+        return torch.where(state.lies[:, None] & left.new_tensor([True, False, False]).bool(), 0.0, left)
+
+    def fallen(self, state: InundationState, world: World) -> Tensor | None:
+        return state.lies
+
+    def agent_info(self, state: InundationState, world: World) -> dict[str, Tensor]:  # type: ignore[override]
+        return super().agent_info(state, world) | {"agent_fallen": state.lies.clone()}
 
 
 def _cells(world: World) -> tuple[int, int]:

@@ -40,3 +40,5 @@ class InundationState(FloodState):
     inflow_rest: Tensor = quantity("E", "m^3", "what rounding has left out of it")
     signal: Tensor = quantity("E", "m/s", "speed of the fastest wave", low=0.0)
     ahead: Tensor = quantity("E", "s", "time by which the water is ahead: less than a step of its own", low=0.0)
+    lies: Tensor = quantity("E", "", "the agent lies in the water", dtype="bool")
+    lain: Tensor = quantity("E", "s", "time since the agent fell, 0 where it stands", low=0.0)

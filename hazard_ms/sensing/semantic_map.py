@@ -64,6 +64,7 @@ class SemanticMap:
         self.cell = cell
         self.origin = np.round(np.asarray(centre, dtype=np.float64) / cell).astype(np.int64) * cell - cells // 2 * cell
         self.loose = np.asarray(loose, dtype=bool)
+        self._stood = ~self.loose  # at the start: a copy, since furniture may float off
         shape = (cells, cells)
         self._firm = np.zeros(shape, np.float32)  # height of things that stay [m]
         self._light = np.zeros(shape, np.float32)  # height of things that can be moved [m]
@@ -237,6 +238,7 @@ class SemanticMap:
     def _wipe(self, index: int) -> None:
         trace = self.object_id == index
         self._light[trace] = 0.0
+        self._firm[trace & self._stood[index]] = 0.0
         self.object_id[trace] = -1
 
 

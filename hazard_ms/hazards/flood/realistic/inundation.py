@@ -6,8 +6,14 @@
 
 What stands on the floor is ground for the water, so nothing is pushed through a wall, and things float into eddies
 behind sofas. Inside furniture that is not full of water, it stands as high as around it. Doors between rooms are closed
-but for the gap under them. Limits: depth-averaged, so nothing is drawn under; things do not act on the water; furniture
-does not float; doors and windows do not break.
+but for the gap under them. Limits: depth-averaged, so nothing is drawn under; things do not act on the water; doors
+and windows do not break.
+
+Furniture that would float in the water outside the doors (.buoyant) stands like a wall until it does. Then the
+simulator moves it as a rigid body under the same lift, drag and torque as all things, with contacts with walls, robots
+and other things: what stands on it goes with it or falls. PhysX on the CPU repeats exactly and is honest in three
+dimensions, and what stands costs nothing. PhysX on a GPU cannot set a body free at run time: there it stays. What it
+does to the water: .dams.
 """
 
 from __future__ import annotations
@@ -18,18 +24,20 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.base import Push, State
+from hazard_ms.hazards.base import Push, State, none_set
 from hazard_ms.hazards.flood import kernels, wading
 from hazard_ms.hazards.flood.floating import Liquid
 from hazard_ms.hazards.flood.flood import Flood
-from hazard_ms.hazards.flood.realistic import currents, floor_plan, floors, shallow_water
+from hazard_ms.hazards.flood.realistic import buoyant, currents, dams, floor_plan, floors, shallow_water
 from hazard_ms.hazards.flood.realistic.basin import Basin
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.launch import of_environments
 from hazard_ms.simulation.world import World
-from hazard_ms.spec import Quantity
+from hazard_ms.spec import Quantity, SceneSpec
 from hazard_ms.spec.severity import SEVERITIES, USUAL
+
+_LISTS = ("inlet", "inlet_side", "inlet_beside", "inlet_width", "inlet_height", "door", "door_side", "door_height")
 
 
 @dataclass(frozen=True)
@@ -51,24 +59,40 @@ class Inundation(Flood):
         if self.roughness is not None and not self.roughness >= 0:
             raise ValueError(f"roughness must be None, 0 or a positive number, got {self.roughness}")
 
+    def loosens(self, spec: SceneSpec) -> frozenset[str]:
+        return buoyant.afloat_in(spec, self.outside)
+
+    def loose(self, state: InundationState, world: World) -> Tensor | None:
+        return state.afloat
+
     def sizes(self, world: World) -> dict[str, int]:
         rows, columns = _cells(world)
-        inlets = max(1, floor_plan.most_inlets(world.specs))
-        return {**super().sizes(world), "N": (rows + 2) * (columns + 2), "I": inlets}
+        inlets, doors = (max(1, most(world.specs)) for most in (floor_plan.most_inlets, floor_plan.most_doors))
+        sizes = super().sizes(world)
+        return sizes | {"N": (rows + 2) * (columns + 2), "I": inlets, "DOORS": doors}
 
     def reset(self, state: InundationState, world: World, rows: Tensor) -> None:  # type: ignore[override]
-        size, inlets = _cells(world), state.inlet.shape[1]
+        size = _cells(world)
         for row in rows.tolist():
             edges = dict(zip(world.names[row], world.extent[row].tolist(), strict=False))
             state.friction[row] = floors.friction_of(world.specs[row], self.roughness)
             plan = floor_plan.plan_of(world.specs[row], size, edges)
-            for name in ("bed", "open_x", "open_y"):
+            for name in ("bed", "open_x", "open_y", "ground_of"):
                 getattr(state, name)[row] = torch.from_numpy(getattr(plan, name))
-            for name in ("inlet", "inlet_side", "inlet_beside", "inlet_width", "inlet_height"):
+            for name in _LISTS:
                 given, held = getattr(plan, name), getattr(state, name)
-                held[row, : min(len(given), inlets)] = torch.tensor(given).to(held)
+                n = min(len(given), held.shape[1])
+                held[row, :n] = torch.tensor(given[:n]).to(held)
+        state.door_width[rows] = floor_plan.CELL
         state.signal[rows] = shallow_water.wave(self.outside)
         self._reset_materials(state, world, rows)
+        self._reset_furniture(state, world, rows)
+
+    def _reset_furniture(self, state: InundationState, world: World, rows: Tensor) -> None:
+        for row, b in (world.floats[rows].nonzero()).tolist():
+            e = int(rows[row])
+            spec = world.specs[e]
+            state.float_depth[e, b], state.volume[e, b] = buoyant.floating(spec.fixtures[b - len(spec.bodies)])
 
     @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
     def advance(self, state: InundationState, world: World, dt: float) -> None:  # type: ignore[override]
@@ -80,8 +104,25 @@ class Inundation(Flood):
         flooded, bodies = launches.struct(kernels.Flooded, state), launches.struct(Bodies, world)
         size = tuple(world.exists.shape)
         launches.run(currents.immerse, size, dt, self.damage_fraction, rows, columns, flooded, basin, bodies)
+        if not none_set(world.floats):
+            self._float(state, world)
         if world.agent_build is not None:
             self._topple(state, world, dt)
+
+    def _float(self, state: InundationState, world: World) -> None:
+        """Let furniture leave the floor, and dam the openings that it lies in."""
+        launches, (rows, columns) = world.launches, _cells(world)
+        basin, bodies = launches.struct(Basin, state), launches.struct(Bodies, world)
+        of = state.float_depth, state.ground_of, state.displaced, state.afloat
+        launches.run(dams.lift_off, (world.num_envs,), rows, columns, basin, bodies, *of)
+        if none_set(state.afloat):
+            return
+        gaps = (
+            (state.inlet, state.inlet_side, state.inlet_width, state.inlet_height, state.dammed),
+            (state.door, state.door_side, state.door_width, state.door_height, state.door_dammed),
+        )
+        for gap in gaps:
+            launches.run(dams.dam, tuple(gap[0].shape), columns, self.outside, bodies, state.afloat, *gap)
 
     def _topple(self, state: InundationState, world: World, dt: float) -> None:
         """Let agents fall, lie and stand up during `dt` [s]."""

@@ -13,7 +13,6 @@ import torch
 from torch import Tensor
 
 from hazard_ms.episode.episode import Episode
-from hazard_ms.hazards.base import none_set
 from hazard_ms.robots.robot import Robot
 
 WORD = 1 << 16  # number of values of a 16-bit word
@@ -59,12 +58,10 @@ def put_back(
     """
     world = episode.world
     restore(episode, state["hazard_ms"], rows)
-    if not none_set(world.floats):
-        world.loosen(world.floats)  # only what is free takes a velocity
+    episode.loosen()
     plain({k: v for k, v in state.items() if k not in ("hazard_ms", "controller")})
     if "controller" in state:
         agent.set_controller_state(state["controller"])  # type: ignore[attr-defined]  # ManiSkill's agents have it
-    episode.loosen()
     world.read()
     episode.see(agent)
     episode.freeze(agent.gripper_pose())

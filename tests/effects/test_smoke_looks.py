@@ -46,3 +46,18 @@ def test_a_spectator_sees_through_smoke_and_the_robot_does_not() -> None:
         shown.append(place.camera.get_picture("Color")[..., :3][solid].astype(float))
     assert shown[1].std() > 0.3 * shown[0].std() and shown[1].mean() < shown[0].mean()  # more smoke is darker still
     np.testing.assert_array_equal(place.picture(10)["rgb"], seen[12.0]["rgb"])  # and the robot's eyes come after
+
+
+@pytest.mark.render
+@pytest.mark.parametrize("mode", ["full", "fast"])
+def test_air_below_the_layer_dims_like_smoke_as_dense(mode: str) -> None:
+    """Beer and Lambert: exp(-K d) of a way d, whichever layer it lies in; of half of each, that of the mean."""
+    place = Place(fire("realistic"), INSIDE, mode)
+    state, seen = place.state, {}
+    cases = {"clear": (9.0, 0.0, 0.0), "above": (0.0, 0.4, 0.0), "below": (9.0, 0.0, 0.4), "both": (1.4, 0.4, 0.4)}
+    for name, (height, dense, low) in (cases | {"thicker": (9.0, 0.0, 0.8)}).items():
+        state.smoke_height[:], state.smoke_density[:], state.smoke_low_density[:] = height, dense, low
+        seen[name] = place.picture(10)["rgb"].astype(float)
+    assert seen["clear"].mean() > seen["below"].mean() + 10.0 > seen["thicker"].mean() + 15.0
+    for name in ("above", "both"):
+        assert np.abs(seen[name] - seen["below"]).max() <= 1.0

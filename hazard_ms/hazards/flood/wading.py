@@ -4,13 +4,8 @@ Hazard classes H1 to H6: the worst of three rules on depth times speed, speed an
 2019, AIDR guideline 7-3). The robot is an upright watertight box, of the mass, width and friction that its build tells;
 grip = 1 - drag / (friction x (weight - lift)), between 0 and 1.
 
-`realistic` has friction hold or slide, and lets robots fall over:
-
-    slides    u = sqrt(2 mu N / (rho Cd w d))     N: weight less lift, w: width, d: depth
-    topples   F d / 2 = N b / 2                   F: the drag, at most mu N; b: width of the stance
-
-The drag acts at half the depth, and the lift in the middle of the stance. One that slides at a steady speed is dragged
-by mu N, so it falls where the water is deeper than b / mu. Afloat, N = 0, it keels over: robots are top-heavy [ours].
+`realistic` has friction hold a robot until the water slides it, at u = sqrt(2 mu N / (rho Cd w d)), with N the weight
+less the lift, w the width and d the depth. Where it falls over: hazard_ms.hazards.flood.realistic.footing.
 """
 
 from __future__ import annotations
@@ -65,15 +60,3 @@ def sliding_speed(depth: Tensor, robot: Build, density: float, gravity: float) -
     """
     held = robot.friction * robot.mass * gravity * traction(depth, robot, density)
     return (2.0 * held / (density * DRAG_COEFFICIENT * robot.width * depth.clamp(min=0))).sqrt()
-
-
-def topples(depth: Tensor, speed: Tensor, robot: Build, density: float, gravity: float) -> Tensor:
-    """Whether water `depth` [m], [...], deep throws over a standing robot past which it flows at `speed` [m/s], [...].
-
-    The result is bool, [...]. A robot that declares no stance never falls.
-    """
-    wet = depth.clamp(min=0)
-    weight = robot.mass * gravity * traction(depth, robot, density)
-    dragged = 0.5 * density * DRAG_COEFFICIENT * robot.width * wet * speed * speed
-    moment = 0.5 * wet * torch.minimum(dragged, robot.friction * weight)
-    return moment >= robot.upright_moment(1.0) * weight

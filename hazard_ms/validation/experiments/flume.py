@@ -5,12 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import torch
 
+from hazard_ms.assets.index import asset
+from hazard_ms.hazards.flood.realistic import buoyant, footing
 from hazard_ms.hazards.flood.realistic.floor_plan import CELL
-from hazard_ms.spec import Opening, Partition
+from hazard_ms.robots.g1 import HazardG1
+from hazard_ms.spec import Build, Fixture, Opening, Partition
 from hazard_ms.validation.experiments.basin import SMOOTH, Basin
 
 WIDE = 0.9  # width of the doors [m]
+PERSON = replace(HazardG1.build, mass=70.0, width=0.2, stance=0.25)  # legs displace 0.2 m square, feet 0.25 m long
 
 
 def steady(outside: float) -> float:
@@ -47,3 +52,34 @@ def doorway(deep: float = 0.5) -> float:
         depth[:60] = deep
         basin.put("depth", depth)
     return (behind[-1][0] - behind[60][0]) / (behind[-1][1] - behind[60][1])
+
+
+def dammed(share: float, outside: float = 1.0) -> float:
+    """Discharge [m^3/s] through an open door of which furniture covers a `share`, into a large dry room."""
+    basin = Basin(
+        (14.0, 12.0), law=replace(SMOOTH, outside=outside), openings=(Opening("door", "south", 7.0, WIDE, 2.0),)
+    )
+    basin.state.dammed[:] = share
+    basin.run(1.0)
+    before, begun = basin.volume, basin.now
+    basin.run(1.0)
+    return (basin.volume - before) / (basin.now - begun)
+
+
+def topples_at(depth: float, build: Build = HazardG1.build) -> float:
+    """Least speed [m/s] of water `depth` [m] deep that throws a robot over, to 1 mm/s; infinite if none does."""
+    speeds = torch.arange(0.0, 6.0, 0.001)
+    fell = footing.topples(torch.tensor([depth]), speeds, build, 1000.0, 9.81)
+    return float(speeds[fell][0]) if bool(fell.any()) else float("inf")
+
+
+def keels_over(build: Build) -> float:
+    """Least depth [m] of still water in which a robot falls over, to 1 mm."""
+    depths = torch.arange(0.0, 3.0, 0.001)
+    fell = footing.topples(depths, torch.zeros(1), build, 1000.0, 9.81)
+    return float(depths[fell][0])
+
+
+def floats_at(name: str) -> float:
+    """Depth of the water [m] in which the furniture called `name` leaves the floor."""
+    return buoyant.floating(Fixture(name, asset(name).category, name, (0.0, 0.0, 0.0))).depth

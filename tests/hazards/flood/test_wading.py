@@ -9,7 +9,7 @@ import pytest
 import torch
 
 from hazard_ms.episode.episode import Episode
-from hazard_ms.hazards.flood import wading
+from hazard_ms.hazards.flood.realistic import footing
 from hazard_ms.hazards.presets import flood, wind
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.robots.g1 import HazardG1
@@ -58,7 +58,7 @@ def test_what_slides_before_it_topples_does_not_fall_where_friction_is_too_littl
     """A G1 in water shallower than its stance over its friction, 0.317 m, slides, however fast the water is."""
     assert G1[2] / 0.6 == pytest.approx(0.317, abs=1e-3)
     for depth, fell in ((0.30, False), (0.33, True)):
-        found = wading.topples(torch.tensor(depth), torch.tensor(9.0), HazardG1.build, WATER, GRAVITY)
+        found = footing.topples(torch.tensor([depth]), torch.tensor([9.0]), HazardG1.build, WATER, GRAVITY)
         assert bool(found) == fell
 
 
@@ -106,7 +106,7 @@ def test_a_person_falls_where_people_did_in_flumes() -> None:
     person = dataclasses.replace(HazardG1.build, mass=70.0, width=0.2, stance=0.25)
     speeds = torch.arange(0.0, 5.0, 0.01)
     for depth in (0.5, 0.7, 0.9, 1.1):
-        fell = wading.topples(torch.tensor(depth), speeds, person, WATER, GRAVITY)
+        fell = footing.topples(torch.tensor([depth]), speeds, person, WATER, GRAVITY)
         assert 0.70 <= depth * float(speeds[fell][0]) <= 2.12
 
 

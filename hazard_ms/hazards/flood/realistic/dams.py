@@ -22,6 +22,16 @@ wp.set_module_options(OPTIONS)
 NEAR = wp.constant(0.1)  # distance from the plane of an opening within which a piece lies in it [m] [ours]
 
 
+@wp.struct
+class Furniture:
+    """The fields of InundationState with the same names."""
+
+    float_depth: wp.array2d(dtype=float)
+    afloat: wp.array2d(dtype=bool)
+    ground_of: wp.array2d(dtype=wp.int64)
+    displaced: wp.array(dtype=float)
+
+
 @wp.func
 def around(e: int, place: wp.vec3, axes: wp.mat33, edges: wp.vec3, rows: int, columns: int, basin: Basin) -> float:
     """Depth of the water [m] above the base of an upright piece, the mean of its four sides.
@@ -41,35 +51,23 @@ def around(e: int, place: wp.vec3, axes: wp.mat33, edges: wp.vec3, rows: int, co
     return depth
 
 
-@wp.kernel
-def lift_off(
-    rows: int,
-    columns: int,
-    basin: Basin,
-    bodies: Bodies,
-    float_depth: wp.array2d(dtype=float),
-    ground_of: wp.array2d(dtype=wp.int64),
-    displaced: wp.array(dtype=float),
-    afloat: wp.array2d(dtype=bool),
-):
-    """Set what floats now `afloat`, and make its ground floor; add the water that takes its place to `displaced` [m^3].
-
-    `ground_of`: which thing is the ground of each cell, -1 for none; `float_depth` [m]: infinite for all that stays.
-    """
-    e = wp.tid()
+@wp.func
+def lift_off(e: int, rows: int, columns: int, basin: Basin, furniture: Furniture, bodies: Bodies):
+    """Set afloat what floats now, and make its ground floor; note the water that takes its place."""
     fresh = bool(False)
-    for b in range(float_depth.shape[1]):
-        if float_depth[e, b] < FENCE and not afloat[e, b]:
+    for b in range(furniture.float_depth.shape[1]):
+        deep = furniture.float_depth[e, b]
+        if deep < FENCE and not furniture.afloat[e, b]:
             axes, edges = axes_of(bodies.rotation[e, b]), bodies.extent[e, b]
-            if around(e, bodies.position[e, b], axes, edges, rows, columns, basin) >= float_depth[e, b]:
-                afloat[e, b] = True
+            if around(e, bodies.position[e, b], axes, edges, rows, columns, basin) >= deep:
+                furniture.afloat[e, b] = True
                 fresh = True
     if fresh:
         gained = float(0.0)
-        for c in range(ground_of.shape[1]):
-            k = int(ground_of[e, c])
+        for c in range(furniture.ground_of.shape[1]):
+            k = int(furniture.ground_of[e, c])
             if k >= 0 and basin.bed[e, c] > 0.0:
-                if afloat[e, k]:
+                if furniture.afloat[e, k]:
                     before = basin.depth[e, c]
                     after = wp.max(basin.surface[e, c], 0.0)
                     if before > 0.0:
@@ -78,7 +76,7 @@ def lift_off(
                     basin.depth[e, c] = after
                     basin.surface[e, c] = after
                     gained += (after - before) * SIDE * SIDE
-        displaced[e] = displaced[e] + gained
+        furniture.displaced[e] = furniture.displaced[e] + gained
 
 
 @wp.func
@@ -87,43 +85,52 @@ def overlap(middle: float, half: float, low: float, high: float) -> float:
     return wp.max(wp.min(middle + half, high) - wp.max(middle - half, low), 0.0)
 
 
-@wp.kernel
-def dam(
+@wp.func
+def covered(
+    e: int,
     columns: int,
-    outside: float,
+    cell: wp.int64,
+    side: wp.int64,
+    width: float,
+    wet: float,
+    furniture: Furniture,
     bodies: Bodies,
-    afloat: wp.array2d(dtype=bool),
-    cell: wp.array2d(dtype=wp.int64),
-    side: wp.array2d(dtype=wp.int64),
-    width: wp.array2d(dtype=float),
-    height: wp.array2d(dtype=float),
-    dammed: wp.array2d(dtype=float),
-):
-    """Write the share of each opening's wetted area, up to the depth `outside` [m], that floating furniture covers.
+) -> float:
+    """Share of an opening that floating furniture covers.
 
-    An opening of `width` [m] and `height` [m] is in the middle of a `side` of a `cell`, -1 for none.
+    It is `width` [m] wide, `wet` [m] deep under water, and in the middle of a `side` of a `cell`, -1 for none.
     """
-    e, k = wp.tid()
-    covered = float(0.0)
-    c = int(cell[e, k])
-    wet = wp.min(height[e, k], outside)
-    if c >= 0 and wet > 0.0:
-        pitch = columns + 2
-        i, j = float(c // pitch - 1), float(c % pitch - 1)
-        at = int(side[e, k])
-        plane, middle, across = i * SIDE, (j + 0.5) * SIDE, 0
-        if at == 1:
-            plane += SIDE
-        if at >= 2:
-            plane, middle, across = j * SIDE, (i + 0.5) * SIDE, 1
-        if at == 3:
-            plane += SIDE
-        half = 0.5 * width[e, k]
-        for b in range(afloat.shape[1]):
-            if afloat[e, b]:
-                place = bodies.position[e, b]
-                box = 0.5 * spans(axes_of(bodies.rotation[e, b]), bodies.extent[e, b])
-                if overlap(place[across], box[across], plane - NEAR, plane + NEAR) > 0.0:
-                    wide = overlap(place[1 - across], box[1 - across], middle - half, middle + half)
-                    covered += wide * overlap(place[2], box[2], 0.0, wet) / (2.0 * half * wet)
-    dammed[e, k] = wp.min(covered, 1.0)
+    if cell < wp.int64(0) or wet <= 0.0:
+        return 0.0
+    c, pitch, found = int(cell), columns + 2, float(0.0)
+    plane, middle, across = float(c // pitch - 1) * SIDE, (float(c % pitch) - 0.5) * SIDE, 0
+    if side >= wp.int64(2):
+        plane, middle, across = float(c % pitch - 1) * SIDE, (float(c // pitch) - 0.5) * SIDE, 1
+    if side == wp.int64(1) or side == wp.int64(3):
+        plane += SIDE
+    half = 0.5 * width
+    for b in range(furniture.afloat.shape[1]):
+        if furniture.afloat[e, b]:
+            place = bodies.position[e, b]
+            box = 0.5 * spans(axes_of(bodies.rotation[e, b]), bodies.extent[e, b])
+            if overlap(place[across], box[across], plane - NEAR, plane + NEAR) > 0.0:
+                wide = overlap(place[1 - across], box[1 - across], middle - half, middle + half)
+                found += wide * overlap(place[2], box[2], 0.0, wet) / (width * wet)
+    return wp.min(found, 1.0)
+
+
+@wp.kernel
+def drift(outside: float, rows: int, columns: int, basin: Basin, furniture: Furniture, bodies: Bodies):
+    """Let furniture leave the floor, and dam the openings it lies in, up to the depth `outside` [m]."""
+    e = wp.tid()
+    lift_off(e, rows, columns, basin, furniture, bodies)
+    for k in range(basin.inlet.shape[1]):
+        wet = wp.min(basin.inlet_height[e, k], outside)
+        basin.dammed[e, k] = covered(
+            e, columns, basin.inlet[e, k], basin.inlet_side[e, k], basin.inlet_width[e, k], wet, furniture, bodies
+        )
+    for k in range(basin.door.shape[1]):
+        wet = wp.min(basin.door_height[e, k], outside)
+        basin.door_dammed[e, k] = covered(
+            e, columns, basin.door[e, k], basin.door_side[e, k], SIDE, wet, furniture, bodies
+        )

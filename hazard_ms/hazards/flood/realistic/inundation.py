@@ -28,7 +28,7 @@ from hazard_ms.hazards.base import Push, State, none_set
 from hazard_ms.hazards.flood import kernels, wading
 from hazard_ms.hazards.flood.floating import Liquid
 from hazard_ms.hazards.flood.flood import Flood
-from hazard_ms.hazards.flood.realistic import buoyant, currents, dams, floor_plan, floors, shallow_water
+from hazard_ms.hazards.flood.realistic import buoyant, currents, dams, floor_plan, floors, footing, shallow_water
 from hazard_ms.hazards.flood.realistic.basin import Basin
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.kernels.bodies import Bodies
@@ -83,7 +83,6 @@ class Inundation(Flood):
                 given, held = getattr(plan, name), getattr(state, name)
                 n = min(len(given), held.shape[1])
                 held[row, :n] = torch.tensor(given[:n]).to(held)
-        state.door_width[rows] = floor_plan.CELL
         state.signal[rows] = shallow_water.wave(self.outside)
         self._reset_materials(state, world, rows)
         self._reset_furniture(state, world, rows)
@@ -112,26 +111,15 @@ class Inundation(Flood):
     def _float(self, state: InundationState, world: World) -> None:
         """Let furniture leave the floor, and dam the openings that it lies in."""
         launches, (rows, columns) = world.launches, _cells(world)
-        basin, bodies = launches.struct(Basin, state), launches.struct(Bodies, world)
-        of = state.float_depth, state.ground_of, state.displaced, state.afloat
-        launches.run(dams.lift_off, (world.num_envs,), rows, columns, basin, bodies, *of)
-        if none_set(state.afloat):
-            return
-        gaps = (
-            (state.inlet, state.inlet_side, state.inlet_width, state.inlet_height, state.dammed),
-            (state.door, state.door_side, state.door_width, state.door_height, state.door_dammed),
-        )
-        for gap in gaps:
-            launches.run(dams.dam, tuple(gap[0].shape), columns, self.outside, bodies, state.afloat, *gap)
+        structs = launches.struct(Basin, state), launches.struct(dams.Furniture, state), launches.struct(Bodies, world)
+        launches.run(dams.drift, (world.num_envs,), self.outside, rows, columns, *structs)
 
     def _topple(self, state: InundationState, world: World, dt: float) -> None:
         """Let agents fall, lie and stand up during `dt` [s]."""
-        depth, flow, _ = self.at_agent(state, world)
-        falls = wading.topples(depth, flow.norm(dim=-1), world.robot, self.water.density, self.water.gravity)
-        lain = state.lain + dt
-        lies = state.lies & (lain < world.robot.rising)
-        state.lain.copy_(torch.where(lies, lain, 0.0))
-        state.lies.copy_(lies | falls)
+        launches, water = world.launches, self.water
+        build = footing.footing(world.robot, water.density, water.gravity)
+        agent = world.agent_position, state.lies, state.lain
+        launches.run(footing.stand, (world.num_envs,), dt, *_cells(world), build, launches.struct(Basin, state), *agent)
 
     @torch.inference_mode()
     def force(self, state: InundationState, world: World, dt: float) -> Push | None:  # type: ignore[override]

@@ -46,7 +46,6 @@ class InundationState(FloodState):
         "E DOORS", "", "cells with an inner doorway on a side; -1: none", dtype="int", fill=-1, low=-1, high="depth"
     )
     door_side: Tensor = quantity("E DOORS", "", "which side: 0 west, 2 south", dtype="int", low=0, high=3)
-    door_width: Tensor = quantity("E DOORS", "m", "width of the opening there", low=0.0)
     door_height: Tensor = quantity("E DOORS", "m", "height of the opening there", low=0.0)
     door_dammed: Tensor = quantity("E DOORS", "", "share of it that floating furniture covers", low=0.0, high=1.0)
     ground_of: Tensor = quantity(

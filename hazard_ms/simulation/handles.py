@@ -1,20 +1,17 @@
-"""What a simulator must be able to do with the bodies of a World."""
+"""The contract of a simulator: reading, pushing and keeping the bodies of a World."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import Any, Protocol
 
 from torch import Tensor
-
-if TYPE_CHECKING:
-    from hazard_ms.simulation.world import World
 
 
 class Handles(Protocol):
     """The moving bodies of a simulator, M per scene; `hazard_ms.simulation.physx` has a class for CPU and for GPU."""
 
-    def read(self, world: World) -> None:
-        """Write position, rotation, velocity and angular velocity of the moving bodies into `world`."""
+    def read(self, world: Any) -> None:
+        """Write position, rotation, velocity and angular velocity of the moving bodies into `world`, a World."""
 
     def push(self, force: Tensor, torque: Tensor | None) -> None:
         """Apply force [N] and torque [N m], [E, B, 3], world frame, at the centres of mass, for one physics step."""

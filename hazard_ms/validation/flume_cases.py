@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hazard_ms.hazards.case import Case, table
-from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.validation.experiments import channel, flume
 
 FLOWS = {(0.01, 0.01): 0.3868, (0.1, 0.005): 1.2695, (1.0, 0.002): 3.7268}  # h^(2/3) sqrt(S) / n
@@ -82,9 +81,7 @@ def of_what_stands_in_it() -> Iterator[Case]:
     """Robots and people that fall over, furniture that floats off and dams doors."""
     speeds = {0.5: 1.662, 0.8: 0.935}  # sqrt(2 b (m - rho w^2 d) g / (rho Cd w)) / d
     yield from table("L-60", "G1 in water {} m deep topples at", speeds, 0.01, flume.topples_at, unit="m/s")
-    yield Case(
-        "L-61", "Fetch floats and keels over at", 0.4421, 0.005, lambda: flume.keels_over(HazardFetch.build), "m"
-    )
+    yield Case("L-61", "Fetch floats and keels over at", 0.4421, 0.005, lambda: flume.keels_over(flume.FETCH), "m")
 
     def product(depth: float) -> float:
         return depth * flume.topples_at(depth, flume.PERSON)

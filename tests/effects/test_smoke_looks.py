@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from hazard_ms.hazards.presets import fire
+from tests.hazards.fire.test_blaze import REAL, begin, run, with_room
+from tests.worlds.fire_worlds import room_world
 from tests.worlds.looking import INSIDE, Place
 
 
@@ -61,3 +63,12 @@ def test_air_below_the_layer_dims_like_smoke_as_dense(mode: str) -> None:
     assert seen["clear"].mean() > seen["below"].mean() + 10.0 > seen["thicker"].mean() + 15.0
     for name in ("above", "both"):
         assert np.abs(seen[name] - seen["below"]).max() <= 1.0
+
+
+def test_the_air_below_that_pictures_show_is_that_of_the_agents_room() -> None:
+    world = with_room(room_world([], [(2.0, 2.0)], size=(4.0, 4.0), agent=(3.0, 3.0)), floor="tile")
+    state = begin(REAL, world)
+    run(REAL, state, world, 1.0)
+    state.zone_air[..., 2] += 0.01  # soot in the air below [kg]
+    run(REAL, state, world, 1.0)
+    assert float(state.smoke_low_density) == float(state.zone_low_density[0, 0]) > 0.1

@@ -7,15 +7,29 @@ from dataclasses import replace
 import numpy as np
 import torch
 
-from hazard_ms.assets.index import asset
 from hazard_ms.hazards.flood.realistic import buoyant, footing
 from hazard_ms.hazards.flood.realistic.floor_plan import CELL
-from hazard_ms.robots.g1 import HazardG1
 from hazard_ms.spec import Build, Fixture, Opening, Partition
 from hazard_ms.validation.experiments.basin import SMOOTH, Basin
 
 WIDE = 0.9  # width of the doors [m]
-PERSON = replace(HazardG1.build, mass=70.0, width=0.2, stance=0.25)  # legs displace 0.2 m square, feet 0.25 m long
+PERSON = Build(  # legs displace 0.2 m square, feet are 0.25 m long; what does not matter in water is 1
+    mass=70.0,
+    width=0.2,
+    stance=0.25,
+    friction=0.6,
+    drag_area=0.7,
+    forward_step=1.0,
+    turn_step=1.0,
+    arm_step=1.0,
+    radius=1.0,
+    shoulder=(0.0, 1.0),
+    reach=1.0,
+    elbow_room=1.0,
+    nearest=1.0,
+)
+G1 = replace(PERSON, mass=35.0, width=0.13, stance=0.19)  # as their makers give them, and as hazard_ms.robots has it
+FETCH = replace(PERSON, mass=115.0, width=0.51, stance=0.51)
 
 
 def steady(outside: float) -> float:
@@ -66,7 +80,7 @@ def dammed(share: float, outside: float = 1.0) -> float:
     return (basin.volume - before) / (basin.now - begun)
 
 
-def topples_at(depth: float, build: Build = HazardG1.build) -> float:
+def topples_at(depth: float, build: Build = G1) -> float:
     """Least speed [m/s] of water `depth` [m] deep that throws a robot over, to 1 mm/s; infinite if none does."""
     speeds = torch.arange(0.0, 6.0, 0.001)
     fell = footing.topples(torch.tensor([depth]), speeds, build, 1000.0, 9.81)
@@ -82,4 +96,4 @@ def keels_over(build: Build) -> float:
 
 def floats_at(name: str) -> float:
     """Depth of the water [m] in which the furniture called `name` leaves the floor."""
-    return buoyant.floating(Fixture(name, asset(name).category, name, (0.0, 0.0, 0.0))).depth
+    return buoyant.floating(Fixture(name, name.rsplit("_", 1)[0], name, (0.0, 0.0, 0.0))).depth

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from typing import Any, cast
 
 import pytest
 import torch
 
 from hazard_ms.episode.episode import Episode
+from hazard_ms.episode.rewards import evaluate
+from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.flood.realistic import footing
 from hazard_ms.hazards.presets import flood, wind
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.robots.g1 import HazardG1
-from hazard_ms.spec import Build
+from hazard_ms.spec import Build, Goal
 from hazard_ms.validation.experiments.basin import Basin
 
 LAW = dataclasses.replace(flood("realistic"), outside=0.0, roughness=0.0)
@@ -110,12 +113,16 @@ def test_a_person_falls_where_people_did_in_flumes() -> None:
         assert 0.70 <= depth * float(speeds[fell][0]) <= 2.12
 
 
-def test_water_and_wind_both_tell_that_the_agent_lies() -> None:
+def test_an_episode_tells_of_falls_in_water_and_wind() -> None:
+    """Whichever threw it over; water comes before wind, which does not undo what it told."""
     basin = stream(HazardG1.build, 0.5, 2.5)
+    basin.world.chance.restart(torch.tensor([0]), torch.tensor([0]))
     episode = Episode(basin.world, (flood("realistic"), wind("realistic")))
-    for law, lies in (("flood", True), ("wind", False)):
-        episode.states[law].lies[:] = lies
-    assert episode.lying().tolist() == [True]
+    goal = Goal(lambda s: torch.zeros(1, dtype=torch.bool), lambda s: torch.zeros(1), lambda s: torch.zeros(1), 1.0)
+    for water, air in ((True, False), (False, True), (False, False)):
+        episode.states["flood"].lies[:], episode.states["wind"].lies[:] = water, air
+        told = evaluate(goal, Situation(episode, cast(Any, None), affects_agent=True))
+        assert told["agent_fallen"].tolist() == [water or air]
 
 
 @pytest.mark.parametrize("preset", ["paper", "shipped"])

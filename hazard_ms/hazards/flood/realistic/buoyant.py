@@ -16,8 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hazard_ms.assets.index import asset
-from hazard_ms.scenes.solids import parts_of
+from hazard_ms.scenes.solids import half_size, mass_of, parts_of
 from hazard_ms.spec import Fixture, SceneSpec
 
 WATER = 1000.0  # density [kg/m^3]
@@ -33,16 +32,15 @@ SOLID = {  # density of what keeps water out, by category [kg/m^3]
 
 
 class Float(NamedTuple):
-    """How a piece of furniture floats."""
+    """The depth in which a piece of furniture floats, and the box that stands for it in water."""
 
     depth: float  # depth of the water at which it leaves the floor [m]; infinite if it never does
     volume: float  # volume of water that it would displace wholly immersed, as a box that floats as deep [m^3]
 
 
 def floating(thing: Fixture) -> Float:
-    """How a piece floats: in an infinite depth what sinks, is fixed, or does not stand on the floor."""
-    kind = asset(thing.asset)
-    mass, solid = kind.mass * float(np.prod(thing.scale)), SOLID.get(thing.category)
+    """The float of a piece; the depth is infinite for what sinks, is fixed, or does not stand on the floor."""
+    mass, solid = mass_of(thing), SOLID.get(thing.category)
     if solid is None or thing.position[2] > GAP or mass <= 0.0:
         return Float(math.inf, 0.0)
     parts = parts_of(thing)
@@ -55,7 +53,7 @@ def floating(thing: Fixture) -> Float:
     if held[-1] <= mass:
         return Float(math.inf, 0.0)
     depth = float(np.interp(mass, held, depths))
-    return Float(depth, mass / WATER * kind.extent[2] * thing.scale[2] / depth)
+    return Float(depth, mass / WATER * 2.0 * float(half_size(thing)[2]) / depth)
 
 
 def afloat_in(spec: SceneSpec, depth: float) -> frozenset[str]:

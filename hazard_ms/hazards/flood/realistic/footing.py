@@ -90,9 +90,9 @@ def footing(robot: Build, density: float, gravity: float) -> Footing:
 
 
 def topples(depth: Tensor, speed: Tensor, robot: Build, density: float, gravity: float) -> Tensor:
-    """Whether water `depth` [m], [N], deep throws over a standing robot past which it flows at `speed` [m/s], [N].
+    """Whether water of each `depth` [m], [P], and `speed` [m/s], [P], throws over a standing robot.
 
-    The result is bool, [N].
+    The result is bool, [P]. A robot that declares no stance never falls.
     """
     deep, fast = torch.broadcast_tensors(depth.float(), speed.float())
     found = torch.zeros(deep.shape, dtype=torch.bool, device=deep.device)

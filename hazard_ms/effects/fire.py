@@ -188,12 +188,12 @@ class FireEffects(SceneEffects):
     def _fill(self, fire: State) -> None:
         """The layer of smoke under the ceiling, of fires that have one: those of the preset `realistic`."""
         # absent from FireState
-        density, height = (getattr(fire, name, None) for name in ("smoke_density", "smoke_height"))
-        if density is None or height is None:
+        told = [getattr(fire, name, None) for name in ("smoke_height", "smoke_density", "smoke_low_density")]
+        if any(of is None for of in told):
             return
-        for scene, low, thick in zip(self._scenes, height.cpu().tolist(), density.cpu().tolist(), strict=True):
+        for scene, low, *thick in zip(self._scenes, *(of.cpu().tolist() for of in told if of is not None), strict=True):
             if scene.around is not None:
-                scene.around.smoke(low, scene.thinned(thick) if self.spectator else thick)
+                scene.around.smoke(low, *(scene.thinned(k) if self.spectator else k for k in thick))
 
 
 def _lamp(scene: sapien.Scene) -> RenderPointLightComponent:

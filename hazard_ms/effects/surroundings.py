@@ -8,6 +8,7 @@ tracing reads; there its red, 0, says: none. Row 0 holds facts, the other rows a
     fact 2   1 if there is water, density of haze [1/m], how far the wind has blown x [m]
     fact 3   height of the smoke's lower side [m], its density [1/m], how far the wind has blown y [m]
     fact 4   colour of haze, linear
+    fact 5   density of the smoke below that side [1/m], 0, 0
     map      level of the water [m], light on the ceiling, 0
 
 Hazards write what is theirs; `show` sends it to the renderer in one go. So any of them can meet in one scene.
@@ -25,7 +26,7 @@ from hazard_ms.effects.entities import solid_materials
 from hazard_ms.simulation.building import lamp_places
 from hazard_ms.spec import Room, SceneSpec
 
-FACTS = 5  # texels of the texture's first row
+FACTS = 6  # texels of the texture's first row
 MAP_CELL, FINE_CELL = 0.5, 0.06  # of the map; the finer one in rooms with partitions, less than their thickness [m]
 DRY = -10.0  # level where there is no water, or further below [m]: linear filtering must not meet huge numbers
 LAMP_WIDTH = 0.5  # of the bright spot on the ceiling above a lamp [m] [ours]
@@ -70,9 +71,10 @@ class Surroundings:
         self._data[0, 2, 2] = density
         self._data[0, 2:4, 3] = drift
 
-    def smoke(self, height: float, density: float) -> None:
-        """Set the density of the smoke [1/m] above `height` [m]."""
+    def smoke(self, height: float, density: float, below: float = 0.0) -> None:
+        """Set the density of the smoke [1/m] above `height` [m], and `below` it."""
         self._data[0, 3, 1:3] = height, density
+        self._data[0, 5, 1] = below
 
     def light(self, air: tuple[float, float, float]) -> None:
         """Set the light that falls on haze, water and things in the water: linear red, green, blue, 1 by day."""

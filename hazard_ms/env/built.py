@@ -69,9 +69,14 @@ class BuiltEnv(BaseEnv):
 
     def _load_scene(self, options: dict[str, Any]) -> None:
         self.lights: Lighting | None = None  # where nothing renders, nothing shines
-        self.actors = building.build_scenes(self.scene, self.specs)
+        loose = (
+            ()
+            if self.gpu_sim_enabled
+            else tuple(frozenset().union(*(h.loosens(spec) for h in self.task.hazards)) for spec in self.specs)
+        )
+        self.actors = building.build_scenes(self.scene, self.specs, loose)
         self.bags = building.build_bags(self.scene, self.num_envs)
-        self.world = building.make_world(self.specs, self.device)
+        self.world = building.make_world(self.specs, self.device, loose)
         self.world.agent_build = self.agent.build
         self.episode = Episode(self.world, self.task.hazards, self.task.safe_place)
         self.leaves = Leaves(self.scene, self.world)

@@ -74,6 +74,7 @@ class Episode:
         world.velocity[rows] = world.angular_velocity[rows] = 0.0
         self.thaw(rows)
         self.recorder.states.clear()
+        self.loosen()
         world.place(rows)
 
     def begin_hazards(self, rows: Tensor) -> None:
@@ -120,12 +121,22 @@ class Episode:
         self.world.chance.tick()
         for hazard in self.hazards:
             hazard.advance(self.states[hazard.name], self.world, dt)
+        self.loosen()
         for hazard in self.hazards:
             self.damage.add(hazard.damaged(self.states[hazard.name], self.world), self.world)
         due = self.world.chance.due(EVERY) if self._strainers else None
         if due is not None:
             given = (h.strain(self.states[h.name], self.world) for h in self._strainers)
             self.world.openings.bear([s for s in given if s is not None], due, EVERY * dt)
+
+    def loosen(self) -> None:
+        """Set furniture free that a hazard has loosened; all other stands."""
+        if none_set(self.world.floats):
+            return
+        known = [h.loose(self.states[h.name], self.world) for h in self.hazards]
+        loose = torch.stack([mask for mask in known if mask is not None]).any(0)
+        if not torch.equal(loose & self.world.floats, self.world.movable & self.world.floats):
+            self.world.loosen(loose)
 
     def use_hand(self, gripper: tuple[Tensor, Tensor], closed: Tensor, bag: Callable[[], Tensor]) -> None:
         """Let the hands take, carry and let go, and record rescues.

@@ -106,4 +106,7 @@ def evaluate(goal: Goal, situation: Situation) -> dict[str, Tensor]:
     info["sim_error"] = episode.sim_error.clone()
     for hazard in episode.hazards if situation.affects_agent else ():
         info.update(hazard.agent_info(episode.states[hazard.name], world))
+    lies = episode.lying()
+    if "agent_fallen" in info and lies is not None:
+        info["agent_fallen"] = lies.clone()  # water or wind may have thrown it over
     return info

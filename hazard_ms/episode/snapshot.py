@@ -60,6 +60,7 @@ def put_back(
     """
     world = episode.world
     restore(episode, state["hazard_ms"], rows)
+    episode.loosen()
     plain({k: v for k, v in state.items() if k not in ("hazard_ms", "controller")})
     if "controller" in state:
         agent.set_controller_state(state["controller"])  # type: ignore[attr-defined]  # ManiSkill's agents have it

@@ -14,7 +14,7 @@ from torch import Tensor
 
 from hazard_ms.simulation.openings import Strain
 from hazard_ms.simulation.state import DTYPES, State, quantity
-from hazard_ms.spec import Level, Quantity
+from hazard_ms.spec import Level, Quantity, SceneSpec
 
 if TYPE_CHECKING:
     from hazard_ms.simulation.world import World
@@ -69,6 +69,14 @@ class Hazard(abc.ABC):
     @abc.abstractmethod
     def reset(self, state: Any, world: World, rows: Tensor) -> None:
         """Start an episode in the environments `rows`, indices [R], which have their fill values; touch no others."""
+
+    def loosens(self, spec: SceneSpec) -> frozenset[str]:
+        """Names of the furniture of a scene that it can set free in an episode. By default none."""
+        return frozenset()
+
+    def loose(self, state: Any, world: World) -> Tensor | None:
+        """Furniture that it has set free by now, [E, B], bool; None: it never does."""
+        return None
 
     def force(self, state: Any, world: World, dt: float) -> Push | None:
         """The push on the bodies over the coming physics step of `dt` seconds; None: never any.

@@ -12,14 +12,16 @@ wp.set_module_options(OPTIONS)
 
 
 @wp.kernel
-def unpack(packed: wp.array2d(dtype=float), row: wp.array(dtype=wp.int64), bodies: Bodies):
+def unpack(
+    packed: wp.array2d(dtype=float), row: wp.array(dtype=wp.int64), which: wp.array(dtype=wp.int64), bodies: Bodies
+):
     """Write the pose and the velocities of every body of the first environment.
 
-    `packed` has 13 numbers in the `row` of each body: rotation w x y z, middle of the base [m], velocity [m/s] and
-    angular velocity [rad/s], world frame.
+    `packed` has 13 numbers in the `row` of each body, whose index along B is `which`: rotation w x y z, middle of the
+    base [m], velocity [m/s] and angular velocity [rad/s], world frame.
     """
-    b = wp.tid()
-    k = int(row[b])
+    n = wp.tid()
+    k, b = int(row[n]), int(which[n])
     rotation = wp.vec4(packed[k, 0], packed[k, 1], packed[k, 2], packed[k, 3])
     base = wp.vec3(packed[k, 4], packed[k, 5], packed[k, 6])
     bodies.rotation[0, b] = rotation

@@ -25,6 +25,11 @@ def half_size(thing: Body | Fixture) -> NDArray[np.float64]:
     return np.asarray(np.array(asset(thing.asset).extent) * thing.scale / 2)
 
 
+def mass_of(thing: Body | Fixture) -> float:
+    """The mass of a thing's model [kg], scaled with its volume."""
+    return asset(thing.asset).mass * float(np.prod(thing.scale))
+
+
 def parts_of(thing: Body | Fixture) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
     """The boxes that a thing's model is made of, turned like it: middles in the world and half sizes [m], [3] each.
 

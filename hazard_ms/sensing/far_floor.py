@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,3 +32,11 @@ def floor_between(view: View, every: int, cell: float) -> NDArray[np.float64]:
     down, across = (part.ravel() for part in np.meshgrid(share, share, indexing="ij"))
     weights = np.stack([(1 - down) * (1 - across), (1 - down) * across, down * (1 - across), down * across])
     return np.einsum("kqd,ks->qsd", corners[:, wanted], weights).reshape(-1, 2)
+
+
+@lru_cache(maxsize=4)
+def pixels(height: int, width: int, grid: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Rows and columns of the pixels of a picture that mark cells, [P] each; `grid`: columns, and rows up to twice."""
+    rows = np.r_[0 : height // 2 : max(1, height // grid), height // 2 : height]
+    columns = np.arange(0, width, max(1, width // grid))
+    return np.repeat(rows, len(columns)), np.tile(columns, len(rows))

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Collection, Mapping
-from functools import lru_cache
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hazard_ms.sensing.camera import AGENT, NOTHING
-from hazard_ms.sensing.far_floor import floor_between
+from hazard_ms.sensing.far_floor import floor_between, pixels
 from hazard_ms.sensing.sighting import Sighting, merged, sightings
 from hazard_ms.sensing.view import View
 
@@ -28,6 +27,7 @@ CEILING = 2.5  # points at this height or higher are dropped [m] (HAZARD utils/m
 # a flat angle, so all rows of the lower half are used, where the floor is, and GRID / 2 of the upper half.
 GRID = 128
 EYESHOT = 4.0  # distance around a scene's area up to which things are remembered [m] [ours]
+FRESH = 30  # frames for which the traces of furniture that floats are kept [ours]
 OWN_RADIUS = 0.45  # radius of the robot with its arm tucked: without labels, points within it are dropped [m]
 
 
@@ -64,11 +64,13 @@ class SemanticMap:
         self.cell = cell
         self.origin = np.round(np.asarray(centre, dtype=np.float64) / cell).astype(np.int64) * cell - cells // 2 * cell
         self.loose = np.asarray(loose, dtype=bool)
+        self._stood = ~self.loose  # at the start: a copy, since furniture may float off
         shape = (cells, cells)
         self._firm = np.zeros(shape, np.float32)  # height of things that stay [m]
         self._light = np.zeros(shape, np.float32)  # height of things that can be moved [m]
         self.explored = np.zeros(shape, bool)
         self.object_id = np.full(shape, -1, np.int32)
+        self._seen_at = np.full(shape, -1, np.int32)  # frame in which it was seen there
         self.levels = np.full((hazards, *shape), np.nan, np.float32)
         self.objects: Mapping[int, Sighting] = {}
         self.frame = -1  # frame of the last update
@@ -141,7 +143,7 @@ class SemanticMap:
         self.frame = frame
         if view.labels is not None:
             self._see_objects(view, frozenset(ignore), damaged)
-        self._mark(view, *_pixels(*view.depth.shape), agent, ignore)
+        self._mark(view, *pixels(*view.depth.shape, GRID), agent, ignore)
         self._see_floor(view)
 
     def _see_floor(self, view: View) -> None:
@@ -201,6 +203,7 @@ class SemanticMap:
         top = (label >= 0) & (z >= self.height[y, x] - 0.02)  # [m]; lower points belong to things underneath
         order = np.flatnonzero(top)[np.argsort(z[top], kind="stable")]  # the highest of a cell comes last and stays
         self.object_id[y[order], x[order]] = label[order]
+        self._seen_at[y[order], x[order]] = self.frame
 
     def _mark_levels(self, cell: NDArray[np.int64], levels: NDArray[np.float32]) -> None:
         """Replace the levels of each cell by the means of its points' `levels` [K, P]."""
@@ -236,13 +239,8 @@ class SemanticMap:
 
     def _wipe(self, index: int) -> None:
         trace = self.object_id == index
+        if self._stood[index]:  # of furniture, views show parts: what they showed just now stays
+            trace &= self._seen_at < self.frame - FRESH
+            self._firm[trace] = 0.0
         self._light[trace] = 0.0
         self.object_id[trace] = -1
-
-
-@lru_cache(maxsize=4)
-def _pixels(height: int, width: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Rows and columns of the pixels that mark cells, [P] each."""
-    rows = np.r_[0 : height // 2 : max(1, height // GRID), height // 2 : height]
-    columns = np.arange(0, width, max(1, width // GRID))
-    return np.repeat(rows, len(columns)), np.tile(columns, len(rows))

@@ -6,7 +6,7 @@ Scenes are built once per reconfiguration.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ import sapien
 import torch
 from mani_skill.utils.structs import Actor
 from mani_skill.utils.structs.pose import Pose
+from sapien.physx import PhysxRigidDynamicComponent as Dynamic
 
 from hazard_ms.assets.index import asset, asset_path
 from hazard_ms.assets.primitives import colour
@@ -53,16 +54,19 @@ def mass_of(thing: Body | Fixture) -> float:
     return asset(thing.asset).mass * float(np.prod(thing.scale))
 
 
-def make_world(specs: tuple[SceneSpec, ...], device: torch.device) -> World:
-    """The world of `specs`, not yet connected to a simulator."""
+def make_world(specs: tuple[SceneSpec, ...], device: torch.device, loose: Sequence[frozenset[str]] = ()) -> World:
+    """The world of `specs`, not yet connected to a simulator; `loose`: furniture of each that can be set free."""
     things = [s.things for s in specs]
-    return World.of(
+    world = World.of(
         specs, [[extent_of(t) for t in row] for row in things], [[mass_of(t) for t in row] for row in things], device
     )
+    for e, names in enumerate(loose):
+        world.floats[e, [world.index(e, name) for name in sorted(names)]] = True
+    return world
 
 
-def build_scenes(scene: Any, specs: tuple[SceneSpec, ...]) -> list[list[Actor]]:
-    """Build every scene of `specs` into the sub-scene of the same number.
+def build_scenes(scene: Any, specs: tuple[SceneSpec, ...], loose: Sequence[frozenset[str]] = ()) -> list[list[Actor]]:
+    """Build every scene of `specs` into the sub-scene of the same number; `loose`: furniture that can be set free.
 
     Returns for each scene the actors of its bodies, then those of its fixtures. Raises ValueError for scenes of one
     batch with different numbers of bodies.
@@ -70,7 +74,8 @@ def build_scenes(scene: Any, specs: tuple[SceneSpec, ...]) -> list[list[Actor]]:
     rows: list[list[Actor]] = []
     for e, spec in enumerate(specs):
         build_shell(scene, spec, e)
-        rows.append([build_thing(scene, t, e) for t in spec.things])
+        names = loose[e] if loose else frozenset()
+        rows.append([build_thing(scene, t, e, t.name in names) for t in spec.things])
     if len(specs) > 1:
         _merge_bodies(scene, specs, rows)
     return rows
@@ -123,8 +128,8 @@ def wall_pieces(room: Room) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
             yield box.name.rpartition("_")[0], np.array(box.centre), np.array(box.size)
 
 
-def build_thing(scene: Any, thing: Body | Fixture, env: int) -> Actor:
-    """Build one body or fixture at its place in the scene."""
+def build_thing(scene: Any, thing: Body | Fixture, env: int, loose: bool = False) -> Actor:
+    """Build one body or fixture at its place in the scene; one that is `loose` stands until it is set free."""
     builder = scene.create_actor_builder()
     builder.set_scene_idxs([env])
     kind = asset(thing.asset)
@@ -135,7 +140,7 @@ def build_thing(scene: Any, thing: Body | Fixture, env: int) -> Actor:
         _add_plain_visual(builder, kind, thing)
     builder.initial_pose = sapien.Pose(list(thing.position), list(thing.rotation))
     name = actor_name(env, thing.name)
-    if isinstance(thing, Fixture):
+    if isinstance(thing, Fixture) and not loose:
         fixture = builder.build_static(name=name)
         if thing.position[2] + extent_of(thing)[2] < GLIDE_HEIGHT:
             for bit in GLIDE_BITS:
@@ -143,6 +148,9 @@ def build_thing(scene: Any, thing: Body | Fixture, env: int) -> Actor:
         return fixture
     actor = builder.build(name=name)
     _set_inertia(actor, mass_of(thing), extent_of(thing))
+    if loose:
+        for body in actor._bodies:
+            body.kinematic = True
     return actor
 
 
@@ -186,7 +194,9 @@ def connect(
     entities = [[actor._objs[0] for actor in row[: len(spec.bodies)]] for row, spec in zip(rows, specs, strict=True)]
     if scene.gpu_sim_enabled:
         return GpuHandles(scene.px, entities, scene.scene_offsets, device)
-    return CpuHandles(entities[0])
+    still = [a._objs[0] for a in rows[0][len(specs[0].bodies) :]]
+    moving = {b: e for b, e in enumerate(still, len(specs[0].bodies)) if e.find_component_by_type(Dynamic)}
+    return CpuHandles(entities[0], moving)
 
 
 def _set_inertia(actor: Actor, mass: float, extent: tuple[float, float, float]) -> None:

@@ -9,6 +9,8 @@ tests marked `gpu` on such a machine.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,16 +25,21 @@ from hazard_ms.kernels.reading import unpack
 if TYPE_CHECKING:
     from hazard_ms.simulation.world import World
 
+_NONE: Mapping[int, sapien.Entity] = MappingProxyType({})
 PACKED_NUMBERS = 13  # numbers that SAPIEN packs for each body: position, rotation, velocity, angular velocity
 
 
 class CpuHandles:
     """Bodies of one scene in PhysX on the CPU, in the order of World's B. See `hazard_ms.simulation.world.Handles`."""
 
-    def __init__(self, entities: list[sapien.Entity]) -> None:
+    def __init__(self, entities: list[sapien.Entity], furniture: Mapping[int, sapien.Entity] = _NONE) -> None:
+        """Take the bodies `entities`, and the `furniture` that can be set free, by its index along B."""
         self.bodies = [e.find_component_by_type(PhysxRigidDynamicComponent) for e in entities]
+        self.furniture = {b: e.find_component_by_type(PhysxRigidDynamicComponent) for b, e in furniture.items()}
         self._groups = [[s.get_collision_groups() for s in b.collision_shapes] for b in self.bodies]
-        self._add = [b.add_force_torque for b in self.bodies]
+        every = dict(enumerate(self.bodies)) | self.furniture
+        self._add = {b: body.add_force_torque for b, body in every.items()}
+        self._which = torch.tensor(list(every))
         self._frozen = [False] * len(self.bodies)
         self._px: Any = entities[0].scene.physx_system if entities else None
         self._length = -1  # size of what SAPIEN packed last [bytes]
@@ -46,13 +53,13 @@ class CpuHandles:
             self._find(len(packed))
         self._numbers[:] = np.frombuffer(packed, np.float32, len(self._numbers))
         bodies = world.launches.struct(Bodies, world)
-        world.launches.run(unpack, (len(self.bodies),), self._packed, self._rows, bodies)
+        world.launches.run(unpack, (len(self._which),), self._packed, self._rows, self._which, bodies)
 
     def _find(self, length: int) -> None:
         """Find the rows of the bodies in what SAPIEN packs; needed again when bodies come or go."""
         every = self._px.rigid_dynamic_components
         self._length = length
-        self._rows = torch.tensor([every.index(b) for b in self.bodies])
+        self._rows = torch.tensor([every.index(b) for b in (*self.bodies, *self.furniture.values())])
         self._packed = torch.zeros(len(every), PACKED_NUMBERS)
         self._numbers = self._packed.view(-1).numpy()  # the same memory
 
@@ -72,7 +79,7 @@ class CpuHandles:
         torques = np.zeros_like(forces) if torque is None else torque[0].numpy()
         rows = (forces.any(1) | torques.any(1)).nonzero()[0]
         for b, one, turn in zip(rows.tolist(), forces[rows], torques[rows], strict=True):
-            if not self._frozen[b]:
+            if b >= len(self._frozen) or not self._frozen[b]:
                 self._add[b](one, turn)
 
     def place(self, rows: Tensor, base: Tensor, rotation: Tensor) -> None:
@@ -83,6 +90,18 @@ class CpuHandles:
             body.entity.set_pose(sapien.Pose(base[0, b].numpy(), rotation[0, b].numpy()))
             if not self._frozen[b]:
                 body.linear_velocity = body.angular_velocity = np.zeros(3)
+        for b, body in self.furniture.items():
+            body.entity.set_pose(sapien.Pose(base[0, b].numpy(), rotation[0, b].numpy()))
+
+    def loosen(self, loose: Tensor) -> None:
+        """Let the furniture of the mask `loose` [1, B] move; all other furniture stands where it is, kinematic."""
+        wanted = loose[0].tolist()
+        for b, body in self.furniture.items():
+            if body.kinematic == wanted[b]:
+                body.kinematic = not wanted[b]
+                if wanted[b]:
+                    body.linear_velocity = body.angular_velocity = np.zeros(3)
+                self._wake()
 
     def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
         """Keep the bodies of the mask `frozen` [1, B] at `base` [m], [1, B, 3], and `rotation` [1, B, 4].
@@ -104,7 +123,9 @@ class CpuHandles:
         body.kinematic = frozen
         if not frozen:
             body.linear_velocity = body.angular_velocity = np.zeros(3)
-        # bodies that rested on it must fall: contacts alone do not wake them
+        self._wake()  # bodies that rested on it must fall: contacts alone do not wake them
+
+    def _wake(self) -> None:
         for other, still in zip(self.bodies, self._frozen, strict=True):
             if not still:
                 other.wake_up()
@@ -164,6 +185,9 @@ class GpuHandles:
         moved = torch.zeros_like(self.present)
         moved[rows] = True
         self._write(moved, base, rotation)
+
+    def loosen(self, loose: Tensor) -> None:
+        """Do nothing with the mask `loose` [E, B]: on a GPU a body cannot stop being kinematic, so furniture stays."""
 
     def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
         """Keep the bodies of the mask `frozen` [E, B] at `base` [m], [E, B, 3], and `rotation` [E, B, 4].

@@ -10,42 +10,17 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import torch
 from torch import Tensor
 
 from hazard_ms.kernels.launch import Launches
 from hazard_ms.simulation.chance import Chance
+from hazard_ms.simulation.handles import Handles
 from hazard_ms.simulation.openings import Openings
 from hazard_ms.simulation.walls import Walls
 from hazard_ms.spec import Body, Build, SceneSpec
 from hazard_ms.spec.catalogue import CATEGORIES
-
-
-class Handles(Protocol):
-    """The moving bodies of a simulator, M per scene; `hazard_ms.simulation.physx` has a class for CPU and for GPU."""
-
-    def read(self, world: World) -> None:
-        """Write position, rotation, velocity and angular velocity of the moving bodies into `world`."""
-
-    def push(self, force: Tensor, torque: Tensor | None) -> None:
-        """Apply force [N] and torque [N m], [E, B, 3], world frame, at the centres of mass, for one physics step."""
-
-    def asleep(self) -> Tensor:
-        """Whether the simulator has put each body to rest, bool [E, M]."""
-
-    def put_to_sleep(self, asleep: Tensor) -> None:
-        """Let the bodies of the mask `asleep` [E, M] rest exactly where they are."""
-
-    def place(self, rows: Tensor, base: Tensor, rotation: Tensor) -> None:
-        """Put all bodies of the environments `rows` at rest at `base` [m], [E, B, 3], and `rotation`, [E, B, 4]."""
-
-    def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
-        """Keep the bodies of the mask `frozen`, [E, B], at `base` [m], [E, B, 3], and `rotation`, [E, B, 4].
-
-        They neither fall nor collide. All other bodies are free.
-        """
 
 
 @dataclass
@@ -59,7 +34,8 @@ class World:
     extent            [E, B, 3]  edge lengths of the box along the body's own axes [m]
     mass              [E, B]     [kg]
     exists            [E, B]     bool; False where the scene has fewer things than B
-    movable           [E, B]     bool; True for bodies, False for fixtures
+    movable           [E, B]     bool; True for bodies and for fixtures that a hazard has set free
+    floats            [E, B]     bool; fixtures that the simulator can set free
     category          [E, B]     index into the catalogue; -1 where nothing exists
     target            [E, B]     bool; must be rescued
     value             [E, B]     value of a rescue, 1 or 5
@@ -85,6 +61,7 @@ class World:
     mass: Tensor
     exists: Tensor
     movable: Tensor
+    floats: Tensor
     category: Tensor
     target: Tensor
     value: Tensor
@@ -126,6 +103,7 @@ class World:
             mass=zeros(),
             exists=zeros(dtype=torch.bool),
             movable=zeros(dtype=torch.bool),
+            floats=zeros(dtype=torch.bool),
             category=zeros(dtype=torch.int64) - 1,
             target=zeros(dtype=torch.bool),
             value=zeros(),
@@ -230,6 +208,12 @@ class World:
         """Keep the bodies of the mask `frozen`, [E, B], at `base` [m], [E, B, 3], and `rotation`; free all others."""
         if self.handles is not None:
             self.handles.freeze(frozen, base, rotation)
+
+    def loosen(self, loose: Tensor) -> None:
+        """Set the furniture of the mask `loose`, [E, B], free, as far as the simulator can; all other stands."""
+        self.movable.copy_(torch.where(self.floats, loose, self.movable))
+        if self.handles is not None:
+            self.handles.loosen(loose & self.floats)
 
     def push(self, force: Tensor, torque: Tensor | None = None) -> None:
         """Send the summed force [N] and torque [N m] of all hazards, [E, B, 3], once per physics step."""

@@ -1,4 +1,4 @@
-"""Cases of `realistic` water against publications: L-36 to L-52 of docs/physics.md 2.2.
+"""Cases of `realistic` water against publications: L-36 to L-66 of docs/physics.md 2.2.
 
 L-36 to L-39 are of the laws of friction and inflow. The numbers of L-41 to L-52 were written down before the first run,
 and nothing is tuned to them. Two such cases miss: docs/physics.md 2.2 says by how much.
@@ -84,8 +84,26 @@ def of_doors() -> Iterator[Case]:
     yield Case("O-2", "water that breaks a closed door", 0.8, 0.2, flume.breaking_depth, "m", absolute=True)
 
 
+def of_what_stands_in_it() -> Iterator[Case]:
+    """Robots and people that fall over, furniture that floats off and dams doors."""
+    speeds = {0.5: 1.662, 0.8: 0.935}  # sqrt(2 b (m - rho w^2 d) g / (rho Cd w)) / d
+    yield from table("L-60", "G1 in water {} m deep topples at", speeds, 0.01, flume.topples_at, unit="m/s")
+    yield Case("L-61", "Fetch floats and keels over at", 0.4421, 0.005, lambda: flume.keels_over(flume.FETCH), "m")
+
+    def product(depth: float) -> float:
+        return depth * flume.topples_at(depth, flume.PERSON)
+
+    people = dict.fromkeys((0.5, 0.7, 0.9, 1.1), 1.41)  # 0.70 to 2.12 m2/s [Abt et al. 1989]
+    yield from table("L-62", "a person in {} m: depth x speed", people, 0.71, product, unit="m2/s", absolute=True)
+    depths = {"fridge_1": 0.2062, "cabinet_8": 0.5850}  # 0.12 of 1.719 m, 0.65 of 0.9 m
+    yield from table("L-63", "{} leaves the floor at", depths, 0.01, flume.floats_at, unit="m")
+    rates = {0.4: 0.9567, 0.8: 0.3189}  # (1 - share) 0.4 b sqrt(2 g) H^1.5
+    yield from table("L-66", "door, 1 m outside, {} of it dammed", rates, 0.05, flume.dammed, unit="m^3/s")
+
+
 def cases() -> Iterator[Case]:
     """All cases of this module."""
+    yield from of_what_stands_in_it()
     yield from of_laws()
     yield from of_channels()
     yield from of_steady_flows()

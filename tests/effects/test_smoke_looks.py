@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from hazard_ms.hazards.presets import fire
+from tests.hazards.fire.test_blaze import REAL, begin, run, with_room
+from tests.worlds.fire_worlds import room_world
 from tests.worlds.looking import INSIDE, Place
 
 
@@ -46,3 +48,27 @@ def test_a_spectator_sees_through_smoke_and_the_robot_does_not() -> None:
         shown.append(place.camera.get_picture("Color")[..., :3][solid].astype(float))
     assert shown[1].std() > 0.3 * shown[0].std() and shown[1].mean() < shown[0].mean()  # more smoke is darker still
     np.testing.assert_array_equal(place.picture(10)["rgb"], seen[12.0]["rgb"])  # and the robot's eyes come after
+
+
+@pytest.mark.render
+@pytest.mark.parametrize("mode", ["full", "fast"])
+def test_air_below_the_layer_dims_like_smoke_as_dense(mode: str) -> None:
+    """Beer and Lambert: exp(-K d) of a way d, whichever layer it lies in; of half of each, that of the mean."""
+    place = Place(fire("realistic"), INSIDE, mode)
+    state, seen = place.state, {}
+    cases = {"clear": (9.0, 0.0, 0.0), "above": (0.0, 0.4, 0.0), "below": (9.0, 0.0, 0.4), "both": (1.4, 0.4, 0.4)}
+    for name, (height, dense, low) in (cases | {"thicker": (9.0, 0.0, 0.8)}).items():
+        state.smoke_height[:], state.smoke_density[:], state.smoke_low_density[:] = height, dense, low
+        seen[name] = place.picture(10)["rgb"].astype(float)
+    assert seen["clear"].mean() > seen["below"].mean() + 10.0 > seen["thicker"].mean() + 15.0
+    for name in ("above", "both"):
+        assert np.abs(seen[name] - seen["below"]).max() <= 1.0
+
+
+def test_the_air_below_that_pictures_show_is_that_of_the_agents_room() -> None:
+    world = with_room(room_world([], [(2.0, 2.0)], size=(4.0, 4.0), agent=(3.0, 3.0)), floor="tile")
+    state = begin(REAL, world)
+    run(REAL, state, world, 1.0)
+    state.zone_air[..., 2] += 0.01  # soot in the air below [kg]
+    run(REAL, state, world, 1.0)
+    assert float(state.smoke_low_density) == float(state.zone_low_density[0, 0]) > 0.1

@@ -40,11 +40,15 @@ def kept_in_wind(preset: str, build: Build, speed: float) -> float:
 
 
 def drifts_at(preset: str, build: Build) -> float:
-    """Least wind [m/s] in which a robot keeps nothing of its own motion, by bisection."""
+    """Least wind [m/s] in which a robot is carried along, by bisection.
+
+    In `paper` and `shipped` it keeps nothing of its own motion then; in `realistic` it begins to slide.
+    """
     low, high = 0.0, 100.0
     while high - low > 1e-4:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if kept_in_wind(preset, build, middle) == 0.0 else (middle, high)
+        kept = kept_in_wind(preset, build, middle)
+        low, high = (low, middle) if (kept < 1.0 if preset == "realistic" else kept == 0.0) else (middle, high)
     return high
 
 
@@ -65,6 +69,21 @@ def test_g1_is_swept_at_a_lower_wind_than_fetch(preset: str) -> None:
 def test_fetch_drifts_at_the_documented_wind(preset: str, speed: float) -> None:
     """docs/physics.md 1.4 gives the speeds for Fetch."""
     assert drifts_at(preset, HazardFetch.build) == pytest.approx(speed, rel=1e-3)
+
+
+@pytest.mark.parametrize("build", [HazardFetch.build, HazardG1.build])
+def test_friction_holds_a_standing_robot_below_the_wind_that_slides_it(build: Build) -> None:
+    """Coulomb: nothing moves before the drag outdoes the friction, then at what the wind is faster than that."""
+    law, holds = wind("realistic"), sweeping_speed(build)
+    world = wind_worlds.street([wind_worlds.Thing()], (5.0, 0.0))
+    world.agent_build = build
+    state = wind_worlds.begin(law, world)
+    state.gust[:] = 0.0
+    for share in (0.3, 0.9, 0.99, 1.2):
+        state.speed[:] *= share * holds / float(law.image(state, world, law._chest(world)))
+        kept, *drift = law.slow(state, world)[0].tolist()
+        assert math.hypot(*drift) == pytest.approx(max(share - 1.0, 0.0) * holds, abs=1e-3)
+        assert kept == pytest.approx(min(1.0, 1.0 / share), abs=1e-4)
 
 
 def test_a_robot_slides_where_drag_equals_friction() -> None:

@@ -98,6 +98,18 @@ def test_what_moved_leaves_no_trace() -> None:
     assert seen.objects[2].position[:2] == pytest.approx([2.05, 3.05], abs=0.07)
 
 
+def test_furniture_that_floated_off_leaves_no_trace() -> None:
+    """It stands at first; then it is loose, and the old place is free once it is seen elsewhere."""
+    loose = LOOSE.copy()
+    seen = SemanticMap(EYE[:2], loose)
+    around(seen, (TABLE,))
+    old, new = (3.5, 2.0), (3.5, 4.0)
+    assert seen.height[seen.cell_of(old)] > 0.7 and seen.height[seen.cell_of(new)] < 0.1
+    loose[0] = True
+    around(seen, (Block((3.0, 3.3, 0.0), (4.0, 4.7, 0.75), 0),), 60)
+    assert seen.height[seen.cell_of(old)] < 0.1 and seen.height[seen.cell_of(new)] > 0.7
+
+
 def test_furniture_seen_from_elsewhere_keeps_its_height() -> None:
     """Only what can be moved is wiped: floor seen below a table's edge does not erase the table."""
     seen = fresh()

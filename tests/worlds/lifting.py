@@ -69,6 +69,8 @@ class Simulator:
     def place(self, rows: Tensor, base: Tensor, rotation: Tensor) -> None:
         self.told.append(("place", base.clone()))
 
+    def loosen(self, loose: Tensor) -> None: ...
+
     def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
         self.told.append(("freeze", (frozen.clone(), base.clone())))
 

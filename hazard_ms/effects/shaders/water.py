@@ -106,12 +106,14 @@ void hazardVeil(inout vec3 albedo, inout vec3 emission, inout float specular, ve
 void hazardImmerse(inout vec3 albedo, inout vec3 emission, inout float specular, inout float roughness, vec3 place, \
 vec3 eye, float up) {
   vec4 air = hazardFact(2), smoke = hazardFact(3);
+  float below = hazardFact(5).y;
   float far = distance(place, eye);
   if (air.y > 0.0) hazardDrown(albedo, emission, specular, roughness, place, eye, up);
-  if (smoke.z > 0.0) {
+  if (smoke.z > 0.0 || below > 0.0) {  // Beer and Lambert: what lies in the layer of smoke and below it
     float low = min(place.z, eye.z), high = max(place.z, eye.z);
     float share = clamp((high - smoke.y) / max(high - low, 1e-3), 0.0, 1.0);
-    hazardVeil(albedo, emission, specular, vec3(0.045, 0.042, 0.040), exp(-smoke.z * far * share));
+    hazardVeil(albedo, emission, specular, vec3(0.045, 0.042, 0.040), exp(-(smoke.z * share + below * (1.0 - share)) * \
+far));
   }
   if (air.z > 0.0) hazardVeil(albedo, emission, specular, hazardFact(4).yzw, exp(-air.z * (far + hazardDust(place, \
 eye, far))));

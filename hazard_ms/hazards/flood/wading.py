@@ -3,6 +3,9 @@
 Hazard classes H1 to H6: the worst of three rules on depth times speed, speed and depth (Australian Rainfall and Runoff
 2019, AIDR guideline 7-3). The robot is an upright watertight box, of the mass, width and friction that its build tells;
 grip = 1 - drag / (friction x (weight - lift)), between 0 and 1.
+
+`realistic` has friction hold a robot until the water slides it, at u = sqrt(2 mu N / (rho Cd w d)), with N the weight
+less the lift, w the width and d the depth. Where it falls over: hazard_ms.hazards.flood.realistic.footing.
 """
 
 from __future__ import annotations
@@ -48,3 +51,12 @@ def grip(depth: Tensor, speed: Tensor | float, robot: Build, density: float, gra
     dragged = 0.5 * density * DRAG_COEFFICIENT * wet * speed * speed
     held = robot.friction * robot.mass * gravity * traction(depth, robot, density)
     return (1 - dragged / held.clamp(min=LEAST_HOLD)).clamp(0, 1)
+
+
+def sliding_speed(depth: Tensor, robot: Build, density: float, gravity: float) -> Tensor:
+    """Speed of water `depth` [m], [...], deep that overcomes the friction of a standing robot [m/s], [...].
+
+    Infinite on dry ground, 0 afloat.
+    """
+    held = robot.friction * robot.mass * gravity * traction(depth, robot, density)
+    return (2.0 * held / (density * DRAG_COEFFICIENT * robot.width * depth.clamp(min=0))).sqrt()

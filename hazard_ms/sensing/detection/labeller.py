@@ -35,7 +35,8 @@ class Labeller:
         self._world, self._table = world, TargetTable(world)
         self.names: tuple[str, ...] = world.names[0]  # by the agent's index
         self.containers: tuple[str, ...] = tuple(containers)  # names of those that are known to exist, or believed to
-        self.loose: NDArray[np.bool_] = world.movable[0].cpu().numpy()  # by the agent's index: whether it can move
+        # by the agent's index: whether it can move; in the world's own memory, so furniture that floats off is, too
+        self.loose: NDArray[np.bool_] = world.movable[0].cpu().numpy()
 
     def view(self, rgb: NDArray[np.uint8] | None, true: View, frame: int) -> View:
         """The view that the agent gets of the picture `rgb`, [H, W, 3], of `frame`, whose labels are the `true` ones.

@@ -164,7 +164,8 @@ class OwnLabeller(DetectingLabeller):
         place = self._by_index[index].sighting.position
         world = self._world
         cart = self._is_cart(index)
-        there = self._carts if cart else np.flatnonzero((world.movable & world.exists & ~world.away)[0].cpu().numpy())
+        free = world.movable & world.exists & ~world.away & ~world.floats
+        there = self._carts if cart else np.flatnonzero(free[0].cpu().numpy())
         if not len(there):
             return -1
         axes = 2 if cart else 3

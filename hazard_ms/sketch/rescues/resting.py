@@ -44,6 +44,9 @@ class Resting:
     def place(self, rows: Tensor, base: Tensor, rotation: Tensor) -> None:
         """All is where it was, as positions [m], [E, B, 3], and rotations, [E, B, 4], say."""
 
+    def loosen(self, loose: Tensor) -> None:
+        """Do nothing with the mask `loose` [E, B]: furniture rests, too."""
+
     def freeze(self, frozen: Tensor, base: Tensor, rotation: Tensor) -> None:
         """Nothing moves, frozen or not, from positions [m], [E, B, 3], and rotations, [E, B, 4]."""
 

@@ -7,11 +7,29 @@ from dataclasses import replace
 import numpy as np
 import torch
 
+from hazard_ms.hazards.flood.realistic import buoyant, footing
 from hazard_ms.hazards.flood.realistic.floor_plan import CELL
-from hazard_ms.spec import Opening, Partition
+from hazard_ms.spec import Build, Fixture, Opening, Partition
 from hazard_ms.validation.experiments.basin import SMOOTH, Basin
 
 WIDE = 0.9  # width of the doors [m]
+PERSON = Build(  # legs displace 0.2 m square, feet are 0.25 m long; what does not matter in water is 1
+    mass=70.0,
+    width=0.2,
+    stance=0.25,
+    friction=0.6,
+    drag_area=0.7,
+    forward_step=1.0,
+    turn_step=1.0,
+    arm_step=1.0,
+    radius=1.0,
+    shoulder=(0.0, 1.0),
+    reach=1.0,
+    elbow_room=1.0,
+    nearest=1.0,
+)
+G1 = replace(PERSON, mass=35.0, width=0.13, stance=0.19)  # as their makers give them, and as hazard_ms.robots has it
+FETCH = replace(PERSON, mass=115.0, width=0.51, stance=0.51)
 
 
 def steady(outside: float) -> float:
@@ -74,3 +92,34 @@ def breaking_depth() -> float:
         openings.bear([basin.law.strain(basin.state, basin.world)], torch.ones(1, dtype=torch.bool), 0.1)
         low, high = (low, middle) if bool(openings.state.broken[0, 0]) else (middle, high)
     return middle
+
+
+def dammed(share: float, outside: float = 1.0) -> float:
+    """Discharge [m^3/s] through an open door of which furniture covers a `share`, into a large dry room."""
+    basin = Basin(
+        (14.0, 12.0), law=replace(SMOOTH, outside=outside), openings=(Opening("door", "south", 7.0, WIDE, 2.0),)
+    )
+    basin.state.dammed[:] = share
+    basin.run(1.0)
+    before, begun = basin.volume, basin.now
+    basin.run(1.0)
+    return (basin.volume - before) / (basin.now - begun)
+
+
+def topples_at(depth: float, build: Build = G1) -> float:
+    """Least speed [m/s] of water `depth` [m] deep that throws a robot over, to 1 mm/s; infinite if none does."""
+    speeds = torch.arange(0.0, 6.0, 0.001)
+    fell = footing.topples(torch.tensor([depth]), speeds, build, 1000.0, 9.81)
+    return float(speeds[fell][0]) if bool(fell.any()) else float("inf")
+
+
+def keels_over(build: Build) -> float:
+    """Least depth [m] of still water in which a robot falls over, to 1 mm."""
+    depths = torch.arange(0.0, 3.0, 0.001)
+    fell = footing.topples(depths, torch.zeros(1), build, 1000.0, 9.81)
+    return float(depths[fell][0])
+
+
+def floats_at(name: str) -> float:
+    """Depth of the water [m] in which the furniture called `name` leaves the floor."""
+    return buoyant.floating(Fixture(name, name.rsplit("_", 1)[0], name, (0.0, 0.0, 0.0))).depth

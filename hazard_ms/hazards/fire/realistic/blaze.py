@@ -153,7 +153,7 @@ class Blaze(Hazard):
         burns = smoke.advance(state, world, fires, state.yields, self.room_temperature, step)
         state.heat_release.copy_(burns.sum(1))
         here = smoke.zone_of(state, world.agent_position[:, None])
-        for name in ("height", "temperature", "density"):
+        for name in ("height", "temperature", "density", "low_density"):
             getattr(state, f"smoke_{name}").copy_(getattr(state, f"zone_{name}").gather(1, here)[:, 0])
         return fires._replace(power=burns)
 

@@ -17,7 +17,16 @@ from hazard_ms.hazards.fire.realistic.twozone.zones import YIELDS
 
 HEATED = (  # names of the quantities that an update of heat changes
     *("temperature", "status", "burn_age", "burn_updates", "agent_temperature", "agent_dose", "heat_release"),
-    *("smoke_height", "smoke_temperature", "smoke_density", "vents", "zone_smoke", "zone_air", "zone_wall"),
+    *(
+        "smoke_height",
+        "smoke_temperature",
+        "smoke_density",
+        "smoke_low_density",
+        "vents",
+        "zone_smoke",
+        "zone_air",
+        "zone_wall",
+    ),
     *("zone_upper", "zone_lower", "zone_pressure", "zone_height", "zone_temperature", "zone_low_temperature"),
     *("zone_density", "zone_low_density", "zone_emissivity", "zone_share", "zone_draught"),
     *("floor_temperature", "agent_toxic_dose", "wet"),
@@ -89,6 +98,7 @@ class BlazeState(FireState):
     smoke_height: Tensor = quantity("E", "m", "lower face of the layer in the agent's room", fill=2.6, low=0.0)
     smoke_temperature: Tensor = quantity("E", "C", "temperature of that layer", fill=20.0)
     smoke_density: Tensor = quantity("E", "1/m", "extinction of light in it: one sees about 3 / it", low=0.0)
+    smoke_low_density: Tensor = quantity("E", "1/m", "extinction of light in the air below it", low=0.0)
     agent_dose: Tensor = quantity("E", "", "heat that the agent has borne; 1 is too much for people")
     agent_toxic_dose: Tensor = quantity("E", "", "poison that it has breathed; 1 makes people helpless", low=0.0)
 

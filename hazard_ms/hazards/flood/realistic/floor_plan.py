@@ -47,6 +47,10 @@ class FloorPlan(NamedTuple):
     bed: Grid  # [N]
     open_x: Grid  # [N]
     open_y: Grid  # [N]
+    ground_of: NDArray[np.int64]  # [N]
+    door: list[int]
+    door_side: list[int]
+    door_height: list[float]
     inlet: list[int]
     inlet_side: list[int]
     inlet_beside: list[int]
@@ -87,9 +91,14 @@ def plan_of(spec: SceneSpec, size: tuple[int, int], edges: Mapping[str, Sequence
     x, y = np.meshgrid(*middles, indexing="ij")
     room = spec.room
     floor = (x < room.size[0]) & (y < room.size[1])
-    ground = np.where(floor, _ground(spec, edges, x, y), BEYOND)
+    stands, things = _ground(spec, edges, x, y)
+    ground = np.where(floor, stands, BEYOND)
     open_x, open_y = np.zeros((2, *size))
     open_x[1:], open_y[:, 1:] = BEYOND * (floor[1:] & floor[:-1]), BEYOND * (floor[:, 1:] & floor[:, :-1])
+    index = np.arange((size[0] + 2) * (size[1] + 2)).reshape(size[0] + 2, size[1] + 2)[1:-1, 1:-1]
+    door: list[int] = []
+    door_sides: list[int] = []
+    heights: list[float] = []
     for partition in room.partitions:
         doors = [o for o in room.openings if o.kind in ("doorway", "door") and o.wall == partition.name]
         across = 0 if partition.axis == "y" else 1
@@ -102,6 +111,10 @@ def plan_of(spec: SceneSpec, size: tuple[int, int], edges: Mapping[str, Sequence
             open_x[beyond] = np.minimum(open_x[beyond], height)
         else:
             open_y[:, beyond] = np.minimum(open_y[:, beyond], height)
+        beside = index[beyond] if across == 0 else index[:, beyond]
+        door += beside[height > 0].tolist()
+        door_sides += [2 * across] * int((height > 0).sum())
+        heights += height[height > 0].tolist()
     bed, west, south = (
         np.pad(grid, 1, constant_values=edge).astype(np.float32).ravel()
         for grid, edge in ((ground, BEYOND), (open_x, 0.0), (open_y, 0.0))
@@ -111,7 +124,9 @@ def plan_of(spec: SceneSpec, size: tuple[int, int], edges: Mapping[str, Sequence
     crossing = [(c, d.side, d.opening, at) for d in sides for c, at in zip(d.cells, d.along, strict=True)]
     leaf = [list(column) for column in zip(*crossing, strict=True)] if crossing else [[]] * 4
     near = [_beside(c, k, set(inlet), size[1] + 2, bed, (west, south)) for c, k in zip(inlet, side, strict=True)]
-    return FloorPlan(bed, west, south, inlet, side, near, width, high, number, places, *leaf)
+    of = np.pad(things, 1, constant_values=-1).ravel()
+    held = (of, door, door_sides, heights)
+    return FloorPlan(bed, west, south, *held, inlet, side, near, width, high, number, places, *leaf)
 
 
 def leaf_sides(spec: SceneSpec, size: tuple[int, int]) -> list[Crossing]:
@@ -135,6 +150,19 @@ def most_sides(specs: Sequence[SceneSpec]) -> int:
     """The largest number of sides of cells in inner doors of `specs`."""
     size = size_of([spec.room for spec in specs])
     return max(sum(len(found.cells) for found in leaf_sides(spec, size)) for spec in specs)
+
+
+def most_doors(specs: Sequence[SceneSpec]) -> int:
+    """An upper bound of the number of cells at inner doors of `specs`."""
+    inner = [
+        sum(
+            math.ceil(o.width / CELL) + 1
+            for o in spec.room.openings
+            if o.wall in {p.name for p in spec.room.partitions}
+        )
+        for spec in specs
+    ]
+    return max(inner)
 
 
 def most_inlets(specs: Sequence[SceneSpec]) -> int:
@@ -191,10 +219,10 @@ def _beside(cell: int, side: int, inlets: set[int], pitch: int, bed: Grid, open_
 
 def _ground(
     spec: SceneSpec, edges: Mapping[str, Sequence[float]], x: NDArray[np.float64], y: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Height of the floor, or of the furniture on it, at the places `x`, `y` [m]."""
-    ground = np.zeros_like(x)
-    for thing in spec.fixtures:
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Height of the floor, or of the furniture on it, at the places `x`, `y` [m], and the lowest thing there or -1."""
+    ground, of = np.zeros_like(x), np.full(x.shape, -1)
+    for number, thing in enumerate(spec.fixtures, len(spec.bodies)):
         yaw = yaw_of(thing.rotation)
         c, s = math.cos(yaw), math.sin(yaw)
         try:
@@ -208,5 +236,6 @@ def _ground(
             dx, dy = x - px, y - py
             over = (np.abs(c * dx + s * dy) < hx) & (np.abs(c * dy - s * dx) < hy)
             stands = over & (pz - hz <= ground + GAP)
+            of[stands & (ground == 0.0)] = number
             ground[stands] = np.maximum(ground[stands], pz + hz)
-    return ground
+    return ground, of

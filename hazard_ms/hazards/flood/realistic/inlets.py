@@ -60,6 +60,29 @@ def leak(
 
 
 @wp.func
+def left_open(width: float, dammed: float) -> float:
+    """Width [m] of an opening of `width` [m] that floating furniture leaves; `dammed`: the share that it covers."""
+    return width * (1.0 - dammed)
+
+
+@wp.func
+def hold_back(e: int, pitch: int, basin: Basin):
+    """Let no more through inner doorways than a weir or orifice as wide as furniture in them leaves."""
+    for k in range(basin.door.shape[1]):
+        c = int(basin.door[e, k])
+        if c >= 0 and basin.door_dammed[e, k] > 0.0:
+            before = c - pitch
+            if basin.door_side[e, k] == wp.int64(2):
+                before = c - 1
+            q = through(basin.depth[e, before], basin.depth[e, c], basin.door_height[e, k])
+            most = left_open(wp.abs(q), basin.door_dammed[e, k])
+            if basin.door_side[e, k] == wp.int64(2):
+                basin.discharge_y[e, c] = wp.clamp(basin.discharge_y[e, c], -most, most)
+            else:
+                basin.discharge_x[e, c] = wp.clamp(basin.discharge_x[e, c], -most, most)
+
+
+@wp.func
 def let_in(e: int, dt: float, outside: float, pitch: int, basin: Basin) -> float:
     """Set velocities and discharges at the inlets; returns what comes in, less what leaves, during `dt` [m^3].
 
@@ -73,7 +96,7 @@ def let_in(e: int, dt: float, outside: float, pitch: int, basin: Basin) -> float
         if c >= 0:
             head = wp.max(outside - basin.bed[e, c], 0.0)
             clear = wp.max(basin.inlet_height[e, k] - basin.bed[e, c], 0.0)
-            share = basin.inlet_width[e, k] / SIDE
+            share = left_open(basin.inlet_width[e, k], basin.dammed[e, k]) / SIDE
             side = int(basin.inlet_side[e, k])
             sign, at = float(1.0), c
             if side == 1 or side == 3:

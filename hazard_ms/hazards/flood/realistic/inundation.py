@@ -7,7 +7,13 @@
 What stands on the floor is ground for the water, so nothing is pushed through a wall, and things float into eddies
 behind sofas. Inside furniture that is not full of water, it stands as high as around it. Doors hold it back as far as
 they are closed, but for the gap under them, until it breaks them (.openings). Limits: depth-averaged, so nothing is
-drawn under; things do not act on the water; furniture does not float; no water comes in through windows.
+drawn under; things do not act on the water; no water comes in through windows.
+
+Furniture that would float in the water outside the doors (.buoyant) stands like a wall until it does. Then the
+simulator moves it as a rigid body under the same lift, drag and torque as all things, with contacts with walls, robots
+and other things: what stands on it goes with it or falls. PhysX on the CPU repeats exactly and is honest in three
+dimensions, and what stands costs nothing. PhysX on a GPU cannot set a body free at run time: there it stays. What it
+does to the water: .dams.
 """
 
 from __future__ import annotations
@@ -18,21 +24,32 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.base import Push, State
+from hazard_ms.hazards.base import Push, State, none_set
 from hazard_ms.hazards.flood import kernels, wading
 from hazard_ms.hazards.flood.floating import Liquid
 from hazard_ms.hazards.flood.flood import Flood
-from hazard_ms.hazards.flood.realistic import currents, floor_plan, floors, openings, shallow_water
+from hazard_ms.hazards.flood.realistic import (
+    buoyant,
+    currents,
+    dams,
+    floor_plan,
+    floors,
+    footing,
+    openings,
+    shallow_water,
+)
 from hazard_ms.hazards.flood.realistic.basin import Basin
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.launch import of_environments
 from hazard_ms.simulation.openings import Strain
 from hazard_ms.simulation.world import World
+from hazard_ms.spec import Quantity, SceneSpec
 from hazard_ms.spec.severity import SEVERITIES, USUAL
 
 LISTED = (  # quantities of the plan of a floor that are lists
     *("inlet", "inlet_side", "inlet_beside", "inlet_width", "inlet_height", "inlet_opening", "inlet_along"),
+    *("door", "door_side", "door_height"),
     *("leaf", "leaf_side", "leaf_opening", "leaf_along"),
 )
 
@@ -42,6 +59,9 @@ class Inundation(Flood):
     """A flood that flows, with these parameters; of Flood's, those of level and current mean nothing."""
 
     state_type: ClassVar[type[State]] = InundationState
+    tells: ClassVar[dict[str, Quantity]] = Flood.tells | {
+        "agent_fallen": Quantity("the agent lies on the ground", "", 0, 1)
+    }
 
     outside: float = SEVERITIES[USUAL].flood_outside  # depth of the water outside the doors [m]
     roughness: float | None = None  # Manning's n of every floor [s/m^(1/3)]; None: that of its material (.floors)
@@ -53,11 +73,19 @@ class Inundation(Flood):
         if self.roughness is not None and not self.roughness >= 0:
             raise ValueError(f"roughness must be None, 0 or a positive number, got {self.roughness}")
 
+    def loosens(self, spec: SceneSpec) -> frozenset[str]:
+        return buoyant.afloat_in(spec, self.outside)
+
+    def loose(self, state: InundationState, world: World) -> Tensor | None:
+        return state.afloat
+
     def sizes(self, world: World) -> dict[str, int]:
         rows, columns = _cells(world)
-        inlets = max(1, floor_plan.most_inlets(world.specs))
-        sides = max(1, floor_plan.most_sides(world.specs))
-        return {**super().sizes(world), "N": (rows + 2) * (columns + 2), "I": inlets, "L": sides}
+        inlets, doors, sides = (
+            max(1, most(world.specs)) for most in (floor_plan.most_inlets, floor_plan.most_doors, floor_plan.most_sides)
+        )
+        sizes = super().sizes(world)
+        return sizes | {"N": (rows + 2) * (columns + 2), "I": inlets, "DOORS": doors, "L": sides}
 
     def reset(self, state: InundationState, world: World, rows: Tensor) -> None:  # type: ignore[override]
         size = _cells(world)
@@ -65,7 +93,7 @@ class Inundation(Flood):
             edges = dict(zip(world.names[row], world.extent[row].tolist(), strict=False))
             state.friction[row] = floors.friction_of(world.specs[row], self.roughness)
             plan = floor_plan.plan_of(world.specs[row], size, edges)
-            for name in ("bed", "open_x", "open_y"):
+            for name in ("bed", "open_x", "open_y", "ground_of"):
                 getattr(state, name)[row] = torch.from_numpy(getattr(plan, name))
             for name in LISTED:
                 given, held = getattr(plan, name), getattr(state, name)
@@ -73,6 +101,13 @@ class Inundation(Flood):
         world.openings.let_in(rows)
         state.signal[rows] = shallow_water.wave(self.outside)
         self._reset_materials(state, world, rows)
+        self._reset_furniture(state, world, rows)
+
+    def _reset_furniture(self, state: InundationState, world: World, rows: Tensor) -> None:
+        for row, b in (world.floats[rows].nonzero()).tolist():
+            e = int(rows[row])
+            spec = world.specs[e]
+            state.float_depth[e, b], state.volume[e, b] = buoyant.floating(spec.fixtures[b - len(spec.bodies)])
 
     @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
     def advance(self, state: InundationState, world: World, dt: float) -> None:  # type: ignore[override]
@@ -85,6 +120,23 @@ class Inundation(Flood):
         flooded, bodies = launches.struct(kernels.Flooded, state), launches.struct(Bodies, world)
         size = tuple(world.exists.shape)
         launches.run(currents.immerse, size, dt, self.damage_fraction, rows, columns, flooded, basin, bodies)
+        if not none_set(world.floats):
+            self._float(state, world)
+        if world.agent_build is not None:
+            self._topple(state, world, dt)
+
+    def _float(self, state: InundationState, world: World) -> None:
+        """Let furniture leave the floor, and dam the openings that it lies in."""
+        launches, (rows, columns) = world.launches, _cells(world)
+        structs = launches.struct(Basin, state), launches.struct(dams.Furniture, state), launches.struct(Bodies, world)
+        launches.run(dams.drift, (world.num_envs,), self.outside, rows, columns, *structs)
+
+    def _topple(self, state: InundationState, world: World, dt: float) -> None:
+        """Let agents fall, lie and stand up during `dt` [s]."""
+        launches, water = world.launches, self.water
+        build = footing.footing(world.robot, water.density, water.gravity)
+        agent = world.agent_position, state.lies, state.lain
+        launches.run(footing.stand, (world.num_envs,), dt, *_cells(world), build, launches.struct(Basin, state), *agent)
 
     @torch.inference_mode()
     def force(self, state: InundationState, world: World, dt: float) -> Push | None:  # type: ignore[override]
@@ -123,8 +175,27 @@ class Inundation(Flood):
         level, velocity = self._surface(state, world, place)
         depth = (level - place[..., 2]).clamp(min=0)
         flow = torch.where(depth > 0, velocity[:, 0], 0.0)
-        grip = wading.grip(depth, flow.norm(dim=-1, keepdim=True), world.robot, self.water.density, self.water.gravity)
-        return depth[:, 0], flow, grip[:, 0].clamp(min=self.least_grip)
+        holds, speed = (
+            wading.sliding_speed(depth, world.robot, self.water.density, self.water.gravity),
+            flow.norm(dim=-1),
+        )
+        grip = torch.where(speed > holds[:, 0], holds[:, 0] / speed, 1.0)
+        return depth[:, 0], flow, grip.clamp(min=self.least_grip)
+
+    def slow(self, state: InundationState, world: World) -> Tensor:  # type: ignore[override]
+        """Motion that is left to the agent, [E, 3]: the share of its own velocity, and a velocity x, y [m/s] to add.
+
+        Wheels or soles hold up to the speed of the water at which they slide, then carry the robot off at what the
+        water is faster than that; its own motion counts less the faster it is carried. One that lies only slides.
+        """
+        left = super().slow(state, world)
+        return torch.where(state.lies[:, None] & left.new_tensor([True, False, False]).bool(), 0.0, left)
+
+    def fallen(self, state: InundationState, world: World) -> Tensor | None:
+        return state.lies
+
+    def agent_info(self, state: InundationState, world: World) -> dict[str, Tensor]:  # type: ignore[override]
+        return super().agent_info(state, world) | {"agent_fallen": state.lies.clone()}
 
 
 def _cells(world: World) -> tuple[int, int]:

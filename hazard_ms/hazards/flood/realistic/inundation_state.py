@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import torch
 from torch import Tensor
 
 from hazard_ms.hazards.base import quantity
@@ -50,3 +51,24 @@ class InundationState(FloodState):
     inflow_rest: Tensor = quantity("E", "m^3", "what rounding has left out of it")
     signal: Tensor = quantity("E", "m/s", "speed of the fastest wave", low=0.0)
     ahead: Tensor = quantity("E", "s", "time by which the water is ahead: less than a step of its own", low=0.0)
+    dammed: Tensor = quantity("E I", "", "share of the opening that floating furniture covers", low=0.0, high=1.0)
+    door: Tensor = quantity(
+        "E DOORS", "", "cells with an inner doorway on a side; -1: none", dtype="int", fill=-1, low=-1, high="depth"
+    )
+    door_side: Tensor = quantity("E DOORS", "", "which side: 0 west, 2 south", dtype="int", low=0, high=3)
+    door_height: Tensor = quantity("E DOORS", "m", "height of the opening there", low=0.0)
+    door_dammed: Tensor = quantity("E DOORS", "", "share of it that floating furniture covers", low=0.0, high=1.0)
+    ground_of: Tensor = quantity(
+        "E N", "", "the thing that is the ground of a cell; -1: none", dtype="int", fill=-1, low=-1, high="B"
+    )
+    float_depth: Tensor = quantity(
+        "E B",
+        "m",
+        "depth of water in which furniture leaves the floor; infinite for what stays",
+        fill=torch.inf,
+        low=0.0,
+    )
+    afloat: Tensor = quantity("E B", "", "furniture that has left the floor", dtype="bool")
+    displaced: Tensor = quantity("E", "m^3", "water in the place of furniture that has left the floor", low=0.0)
+    lies: Tensor = quantity("E", "", "the agent lies in the water", dtype="bool")
+    lain: Tensor = quantity("E", "s", "time since the agent fell, 0 where it stands", low=0.0)

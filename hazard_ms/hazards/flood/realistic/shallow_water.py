@@ -21,7 +21,7 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.hazards.flood.realistic.basin import FASTEST, FILM, GRAVITY, SAFE, SIDE, Basin, note, per_cube_root
-from hazard_ms.hazards.flood.realistic.inlets import let_in, orifice
+from hazard_ms.hazards.flood.realistic.inlets import hold_back, let_in, orifice
 from hazard_ms.kernels.launch import OPTIONS
 from hazard_ms.kernels.rows import at, put
 
@@ -222,6 +222,7 @@ def flow(
                 if south != 0.0 or at(basin.velocity_y, e, c) != 0.0:
                     put(basin.velocity_y, e, c, south)
                     put(basin.discharge_y, e, c, taken(e, c, 1, south, basin.bed, basin.depth))
+        hold_back(e, pitch, basin)
         came += wp.float64(let_in(e, step, outside, pitch, basin))
         for i in range(1, rows + 1):
             for j in range(1, columns + 1):

@@ -153,7 +153,7 @@ class _SceneFire:
 class FireEffects(SceneEffects):
     """The effects of a fire in each of E scenes. The mode `fast` leaves out smoke, soot, hot air and firelight."""
 
-    layer: ClassVar[int] = 0
+    layer: ClassVar[int] = 1
 
     @classmethod
     def of_scene(cls, place: Place) -> _SceneFire:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import torch
 
+from hazard_ms.effects.fire import above_water
 from hazard_ms.hazards.presets import fire
+from tests.worlds.fire_worlds import room_world
 from tests.worlds.looking import INSIDE, Place
 
 
@@ -46,3 +49,13 @@ def test_a_spectator_sees_through_smoke_and_the_robot_does_not() -> None:
         shown.append(place.camera.get_picture("Color")[..., :3][solid].astype(float))
     assert shown[1].std() > 0.3 * shown[0].std() and shown[1].mean() < shown[0].mean()  # more smoke is darker still
     np.testing.assert_array_equal(place.picture(10)["rgb"], seen[12.0]["rgb"])  # and the robot's eyes come after
+
+
+def test_flames_on_the_floor_burn_above_the_water() -> None:
+    """What burns at first stands above the water, so its flames do, too; dry places stay as they are."""
+    world = room_world()
+    flames = torch.tensor([[[1.0, 1.0, 0.0], [3.0, 1.0, 0.1]]])
+    assert torch.equal(above_water(world, flames), flames)
+    world.fields = {"water": lambda points: 0.2 * points[..., 0] - 0.3}  # 0.1 m below the floor, 0.3 m above it
+    lifted = above_water(world, flames)
+    assert torch.allclose(lifted, torch.tensor([[[1.0, 1.0, 0.0], [3.0, 1.0, 0.3]]]))

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 from hazard_ms import registry
-from hazard_ms.evaluation.choices import PRESETS, SEVERITIES, flag, offer
+from hazard_ms.evaluation.choices import PRESETS, SEVERITIES, SPLITS, flag, offer
 
 PICTURES_SHARE = 10  # frames for one picture: pictures take that much longer [ours]
 FEWEST_PICTURES = 3  # of which a median is taken [ours]
@@ -130,16 +130,27 @@ def gpu_check(
     return int(report(output, env_id, parts, sizes, budget, seed, lack=lack) > 0)
 
 
-def danger(env_id: Annotated[tuple[str, ...], flag("-e")] = (), scenes: int = 25) -> int:
+def danger(
+    env_id: Annotated[tuple[str, ...], flag("-e")] = (),
+    scenes: int = 25,
+    split: Annotated[str, offer(SPLITS)] = "train",
+    physics: tuple[str, ...] = PRESETS,
+    severity: tuple[str, ...] = SEVERITIES,
+    seed: Annotated[int, flag("-s")] = 0,
+) -> int:
     """Print how many targets the hazards move and damage over time if nobody acts, for every preset and severity.
 
     Args:
-        env_id: Tasks; fire, flood and wind if not given.
-        scenes: Number of training scenes of each.
+        env_id: Tasks; fire, flood, wind and compound if not given.
+        scenes: Number of scenes of each.
+        split: Where they come from.
+        physics: Presets of the hazards: some of paper, shipped, realistic.
+        severity: How strong the hazards of the preset realistic are: some of moderate, severe, extreme.
+        seed: Seed of the first scene; each further one has the next.
     """
     from hazard_ms.sketch.rescues.danger import RESCUES, report
 
-    for line in report(env_id or RESCUES, scenes):
+    for line in report(env_id or RESCUES, scenes, split, physics, severity, seed):
         print(line, flush=True)
     return 0
 

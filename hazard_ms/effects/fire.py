@@ -14,6 +14,7 @@ from typing import ClassVar
 
 import numpy as np
 import sapien
+import torch
 from sapien.render import RenderMaterial, RenderPointLightComponent, RenderShapeTriangleMesh
 from torch import Tensor
 
@@ -153,7 +154,7 @@ class _SceneFire:
 class FireEffects(SceneEffects):
     """The effects of a fire in each of E scenes. The mode `fast` leaves out smoke, soot, hot air and firelight."""
 
-    layer: ClassVar[int] = 0
+    layer: ClassVar[int] = 1
 
     @classmethod
     def of_scene(cls, place: Place) -> _SceneFire:
@@ -164,7 +165,8 @@ class FireEffects(SceneEffects):
         base = world.base_of(world.position, world.rotation, world.extent).cpu().numpy()
         rotation, centre = world.rotation.cpu().numpy(), world.position.cpu().numpy()
         on_things = (body_flames(fire) * (world.exists & ~world.away) / SCALE_LAST).cpu().numpy()
-        place, scale = (t.cpu().numpy() for t in floor_flames(fire, frame))
+        place, scale = floor_flames(fire, frame)
+        place, scale = above_water(world, place).cpu().numpy(), scale.cpu().numpy()
         on_floor = scale / SCALE_LAST
         broad = np.sqrt(world.extent[..., :2].prod(-1).cpu().numpy()) / BROAD_EDGE
         heat = np.concatenate([on_things * np.minimum(broad, 1.0), on_floor * FLOOR_HEAT], -1)
@@ -194,6 +196,14 @@ class FireEffects(SceneEffects):
         for scene, low, *thick in zip(self._scenes, *(of.cpu().tolist() for of in told if of is not None), strict=True):
             if scene.around is not None:
                 scene.around.smoke(low, *(scene.thinned(k) if self.spectator else k for k in thick))
+
+
+def above_water(world: World, place: Tensor) -> Tensor:
+    """`place` [m], [E, F, 3], world frame, lifted to the surface of the water where it is below that."""
+    if "water" not in world.fields:
+        return place
+    level = torch.maximum(place[..., 2], world.fields["water"](place))
+    return torch.cat([place[..., :2], level[..., None]], -1)
 
 
 def _lamp(scene: sapien.Scene) -> RenderPointLightComponent:

@@ -79,7 +79,7 @@ class _SceneFlood:
 class FloodEffects(SceneEffects):
     """The effects of a flood in each of E scenes. The mode `fast` shows no ripples of light on the ground."""
 
-    layer: ClassVar[int] = 2
+    layer: ClassVar[int] = 0  # below all that burns and flies: smoke in front of it would cut holes into it
 
     @classmethod
     def of_scene(cls, place: Place) -> _SceneFlood:

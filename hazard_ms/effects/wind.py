@@ -71,7 +71,7 @@ class _SceneWind:
 class WindEffects(SceneEffects):
     """The effects of a wind in each of E scenes. In the mode `fast` less flies, and nothing sways."""
 
-    layer: ClassVar[int] = 1
+    layer: ClassVar[int] = 2
 
     @classmethod
     def of_scene(cls, place: Place) -> _SceneWind:

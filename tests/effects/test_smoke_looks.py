@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import torch
 
+from hazard_ms.effects.fire import above_water
 from hazard_ms.hazards.presets import fire
 from tests.hazards.fire.test_blaze import REAL, begin, run, with_room
 from tests.worlds.fire_worlds import room_world
@@ -72,3 +74,13 @@ def test_the_air_below_that_pictures_show_is_that_of_the_agents_room() -> None:
     state.zone_air[..., 2] += 0.01  # soot in the air below [kg]
     run(REAL, state, world, 1.0)
     assert float(state.smoke_low_density) == float(state.zone_low_density[0, 0]) > 0.1
+
+
+def test_flames_on_the_floor_burn_above_the_water() -> None:
+    """What burns at first stands above the water, so its flames do, too; dry places stay as they are."""
+    world = room_world()
+    flames = torch.tensor([[[1.0, 1.0, 0.0], [3.0, 1.0, 0.1]]])
+    assert torch.equal(above_water(world, flames), flames)
+    world.fields = {"water": lambda points: 0.2 * points[..., 0] - 0.3}  # 0.1 m below the floor, 0.3 m above it
+    lifted = above_water(world, flames)
+    assert torch.allclose(lifted, torch.tensor([[[1.0, 1.0, 0.0], [3.0, 1.0, 0.3]]]))

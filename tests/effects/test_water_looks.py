@@ -15,13 +15,14 @@ import torch
 from hazard_ms.bench.effects import costs
 from hazard_ms.effects.entities import PREFIX, dry_ior, materials
 from hazard_ms.effects.flood import surface_corners
-from hazard_ms.effects.looks import Looks
+from hazard_ms.effects.looks import Looks, makers
 from hazard_ms.effects.shaders.common import WATER
 from hazard_ms.effects.shaders.water import CUT_IOR
 from hazard_ms.effects.textures import ripples
 from hazard_ms.hazards.flood.flood import Flood
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Partition, Room
+from hazard_ms.tasks.compound import hazard_compound
 from tests.worlds.alone import alone
 from tests.worlds.looking import BOX, INSIDE, OVERHEAD, flooded, picture_hashes
 
@@ -208,3 +209,9 @@ def test_ripples_tile() -> None:
     assert field.shape == (64, 64, 4) and field.min() >= 0.0 and field.max() <= 1.0
     assert np.abs(field[:, 0] - field[:, -1]).max() <= np.abs(np.diff(field, axis=1)).max() + 1e-6
     assert abs(field[..., :2].mean() - 0.5) < 0.01  # still water is level
+
+
+def test_water_is_drawn_before_what_is_in_front_of_it() -> None:
+    """All that an effect draws hides what is drawn later behind it, so smoke drawn first would cut holes into water."""
+    hazards = hazard_compound("realistic", ("wind", "fire", "flood")).hazards
+    assert list(makers(hazards)) == ["flood", "fire", "wind"]

@@ -40,15 +40,11 @@ def kept_in_wind(preset: str, build: Build, speed: float) -> float:
 
 
 def drifts_at(preset: str, build: Build) -> float:
-    """Least wind [m/s] in which a robot is carried along, by bisection.
-
-    In `paper` and `shipped` it keeps nothing of its own motion then; in `realistic` it begins to slide.
-    """
+    """Least wind [m/s] in which a robot keeps nothing of its own motion, by bisection."""
     low, high = 0.0, 100.0
     while high - low > 1e-4:
         middle = 0.5 * (low + high)
-        kept = kept_in_wind(preset, build, middle)
-        low, high = (low, middle) if (kept < 1.0 if preset == "realistic" else kept == 0.0) else (middle, high)
+        low, high = (low, middle) if kept_in_wind(preset, build, middle) == 0.0 else (middle, high)
     return high
 
 
@@ -83,7 +79,7 @@ def test_friction_holds_a_standing_robot_below_the_wind_that_slides_it(build: Bu
         state.speed[:] *= share * holds / float(law.image(state, world, law._chest(world)))
         kept, *drift = law.slow(state, world)[0].tolist()
         assert math.hypot(*drift) == pytest.approx(max(share - 1.0, 0.0) * holds, abs=1e-3)
-        assert kept == pytest.approx(min(1.0, 1.0 / share), abs=1e-4)
+        assert kept == pytest.approx(max(1.0 - share**2, 0.0), abs=1e-4)
 
 
 def test_a_robot_slides_where_drag_equals_friction() -> None:

@@ -69,7 +69,31 @@ def test_a_row_is_over_evenly_spread_scenes_and_names_what_it_is_of(monkeypatch:
 
 
 def test_unknown_tasks_and_too_many_scenes_are_refused() -> None:
-    with pytest.raises(ValueError, match="env_id must be one of HazardFire-v1, HazardFlood-v1, HazardWind-v1"):
+    with pytest.raises(
+        ValueError, match="env_id must be one of HazardFire-v1, HazardFlood-v1, HazardWind-v1, HazardCompound-v1"
+    ):
         next(danger.rows(["HazardWalkTo-v1"], 1))
     with pytest.raises(ValueError, match="scenes must be a whole number from 1 to"):
         danger.row("HazardWind-v1", "paper", "severe", 0)
+    with pytest.raises(ValueError, match="split of outdoor scenes must be one of train, test, hard"):
+        danger.row("HazardWind-v1", "paper", "severe", 1, "large")
+
+
+def test_rows_are_of_the_asked_split_presets_severities_and_seeds(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[tuple[str, str, str, str]] = []
+
+    def recorded(task: Task, physics: str, spec: SceneSpec, seed: int) -> Timeline:
+        seen.append((task.name, physics, spec.name, str(seed)))
+        return line()
+
+    monkeypatch.setattr(danger, "recorded", recorded)
+    monkeypatch.setattr(danger, "fates", lambda *_: np.zeros((2, 4, 3), bool))
+    found = list(danger.rows(["HazardCompound-v1"], 2, "hard", ("paper", "realistic"), ("severe", "extreme"), 7))
+    assert [(row.physics, row.severity) for row in found] == [
+        ("paper", ""),
+        ("realistic", "severe"),
+        ("realistic", "extreme"),
+    ]
+    scenes = [("kitchen_b_hard/00", "7"), ("kitchen_b_hard/12", "8")]
+    assert seen == [("HazardCompound-v1", row.physics, *of) for row in found for of in scenes]
+    assert next(iter(danger.report(["HazardCompound-v1"], 2, "hard", ("paper",)))).startswith("2 scenes of `hard`")

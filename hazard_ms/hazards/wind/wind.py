@@ -223,16 +223,16 @@ class Wind(Hazard):
         """Motion that is left to the agent, [E, 3]: the share of its own velocity, and a velocity x, y [m/s] to add.
 
         Together they are a weighted mean of its own velocity and the air's, so it is carried no faster than the wind.
-        In `realistic` friction holds it until the wind outdoes it; then it slides at what is faster, and so does one
-        that lies on the ground, which has no motion of its own.
+        In `realistic`, friction holds it: it only slides once the wind outdoes that, at what is faster then, and what
+        lies on the ground does not drive.
         """
         speed = self.speed_at(state, world, self._chest(world))
         swept = self.sweeping_share * sweeping_speed(world.robot)
         kept = (1.0 - (speed / swept).square()).clamp(min=0.0)
+        drift = (1.0 - kept) * speed
         if self.topples:
-            kept = torch.where(speed > swept, swept / speed, 1.0)
-        own = torch.where(state.lies[:, None], 0.0, kept)
-        return torch.cat([own, (1.0 - kept) * speed * state.heading], 1)
+            kept, drift = torch.where(state.lies[:, None], 0.0, kept), (speed - swept).clamp(min=0.0)
+        return torch.cat([kept, drift * state.heading], 1)
 
     def fallen(self, state: WindState, world: World) -> Tensor | None:
         return state.lies if self.topples else None

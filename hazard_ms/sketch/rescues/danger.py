@@ -19,7 +19,7 @@ from hazard_ms.spec.checks import one_of, whole
 from hazard_ms.spec.severity import SCALED, SEVERITIES, USUAL
 from hazard_ms.tasks import task_of
 
-RESCUES = ("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1")
+RESCUES = ("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1", "HazardCompound-v1")
 MOVED = 0.25  # distance from its place beyond which a thing counts as moved [m] [ours]
 QUARTERS = 4  # of an episode, at whose ends is counted
 MOST_SCENES = 1000  # more must be a mistake [ours]
@@ -50,26 +50,35 @@ HEADER = (
 )
 
 
-def rows(tasks: Sequence[str], scenes: int) -> Iterator[Row]:
-    """The rows of every preset and severity of `tasks`, over `scenes` of their split `train`, evenly spread.
+def rows(
+    tasks: Sequence[str],
+    scenes: int,
+    split: str = "train",
+    presets: Sequence[str] = tuple(PRESETS),
+    severities: Sequence[str] = tuple(SEVERITIES),
+    seed: int = 0,
+) -> Iterator[Row]:
+    """The rows of `presets` and `severities` of `tasks`, over `scenes` of a `split`, evenly spread.
 
-    Seeds are 0, 1, ... Raises ValueError for unknown tasks, and for more scenes than there are.
+    Presets with one strength have one row whatever `severities` says. Seeds are `seed`, `seed` + 1, ... Raises
+    ValueError for unknown names, for tasks without such a split, and for more scenes than there are.
     """
     for task in tasks:
         one_of(task, RESCUES, "env_id")
-        for physics in PRESETS:
-            for severity in SEVERITIES if physics == SCALED else (USUAL,):
-                yield row(task, physics, severity, scenes)
+        for physics in presets:
+            one_of(physics, PRESETS, "physics")
+            for severity in severities if physics == SCALED else (USUAL,):
+                yield row(task, physics, severity, scenes, split, seed)
 
 
-def row(name: str, physics: str, severity: str, scenes: int) -> Row:
-    """The row of one task, preset and severity over this number of `scenes`."""
+def row(name: str, physics: str, severity: str, scenes: int, split: str = "train", seed: int = 0) -> Row:
+    """The row of one task, preset and severity over this number of `scenes` of a `split`, with seeds from `seed` on."""
     task = task_of(name, physics, None, severity)
-    names = tuple(task.scenes("train"))
+    names = tuple(task.scenes(split))
     count = whole(scenes, 1, min(MOST_SCENES, len(names)), "scenes")
     specs = [task.build(names[k * len(names) // count]) for k in range(count)]
     ends = [task.max_frames * (k + 1) // QUARTERS for k in range(QUARTERS)]
-    found = [fates(recorded(task, physics, spec, seed), spec, ends) for seed, spec in enumerate(specs)]
+    found = [fates(recorded(task, physics, spec, seed + k), spec, ends) for k, spec in enumerate(specs)]
     moved, damaged = np.concatenate(found, axis=-1)
     shares = (tuple(part.mean(-1).tolist()) for part in (moved, damaged, moved | damaged))
     return Row(name, physics, severity if physics == SCALED else "", moved.shape[-1], *shares)
@@ -85,10 +94,17 @@ def fates(line: Timeline, spec: SceneSpec, ends: Sequence[int]) -> np.ndarray:
     return np.stack([moved, (at >= 0) & (at <= np.array(ends)[:, None])])
 
 
-def report(tasks: Sequence[str], scenes: int) -> Iterator[str]:
-    """The lines of the table, each as soon as it is known."""
-    yield f"{scenes} scenes of `train`, evenly spread, in which nobody acts."
+def report(
+    tasks: Sequence[str],
+    scenes: int,
+    split: str = "train",
+    presets: Sequence[str] = tuple(PRESETS),
+    severities: Sequence[str] = tuple(SEVERITIES),
+    seed: int = 0,
+) -> Iterator[str]:
+    """The lines of the table, each as soon as it is known; the parameters are those of `rows`."""
+    yield f"{scenes} scenes of `{split}`, evenly spread, in which nobody acts."
     yield "Shares of the targets after 1/4, 1/2, 3/4 and all of an episode:\n"
     yield HEADER
-    for found in rows(tasks, scenes):
+    for found in rows(tasks, scenes, split, presets, severities, seed):
         yield found.line

@@ -205,14 +205,16 @@ def test_plates_of_the_image_gain_no_heat_in_the_flux_and_gas_that_warm_things()
     world = with_room(room_world([("book", (2.4, 2.0, 0.0)), ("sofa", (3.0, 2.5, 0.0))], [(2.0, 2.0)]), floor="carpet")
     state = begin(REAL, world)
     run(REAL, state, world, 20.0)
-    points = torch.rand(1, 200, 3, generator=torch.Generator().manual_seed(0)) * torch.tensor([4.0, 4.0, 2.3])
-    state.zone_low_temperature[:] = 20.0  # images take the air below the layer for as warm as the room
+    points = torch.rand(1, 400, 3, generator=torch.Generator().manual_seed(0)) * torch.tensor([4.0, 4.0, 2.6])
+    state.zone_temperature[:], state.zone_height[:] = 30.0, 2.5  # so that plumes and jets are told from the layer
+    state.zone_low_temperature[:] = 25.0
     plate = REAL.image(state, world, points).double() + 273.15
     flux, gas = (v.double() for v in REAL._exposure(state, world, REAL._fires(state, world), points))
     gain = 0.9 * (flux + 5.670e-11 * (293.15**4 - plate**4)) + 0.01 * (gas + 273.15 - plate)
     below = plate < 820.0 + 273.0
-    assert int(below.sum()) > 100 and float(flux.max()) > 10.0 and int((state.flame_cell >= 0).sum()) > 3
+    assert int(below.sum()) > 200 and float(flux.max()) > 10.0 and int((state.flame_cell >= 0).sum()) > 3
     assert bool((gain[below].abs() < 0.01 * flux[below].clamp(min=1.0)).all()) and bool((gain[~below] > -0.1).all())
+    assert int((gas[points[..., 2] > 2.34] > 40.0).sum()) > 10  # in the jet
 
 
 def test_an_episode_that_began_later_is_updated_at_its_own_frames() -> None:

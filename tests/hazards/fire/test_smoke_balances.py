@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import pytest
 import torch
@@ -12,9 +13,10 @@ from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.twozone.gas import PARTS
 from hazard_ms.hazards.fire.realistic.twozone.lining import CELLS, RATIO
 from hazard_ms.scenes.splits import scene, scene_names, split_names
-from hazard_ms.spec import Opening, Partition, Room
+from hazard_ms.spec import Opening, Partition, Room, SceneSpec
 from hazard_ms.spec.severity import SEVERITIES
 from hazard_ms.validation.experiments.smoke_room import INSULATED, WOOD, Burner, burn, fire_at, rooms
+from tests.worlds.flood_balance import drawn
 
 MASS, ENERGY, LACK = 0, 1, 3  # parts of a layer
 PER_OXYGEN, OXYGEN = 13100.0, 0.232  # [kJ/kg], [-]
@@ -23,18 +25,14 @@ EPISODE = 50.0 * 4.5  # seconds of fire [s]
 STEP = 0.75  # [s]
 
 
-def kept(state: BlazeState) -> float:
-    """Heat [kJ] in the gas and in the linings of all rooms."""
+def kept(state: BlazeState) -> torch.Tensor:
+    """Heat [kJ] in the gas and in the linings of all rooms, [E]."""
     shares = RATIO ** torch.arange(CELLS, dtype=torch.float64)
-    depth = (float(state.lining_thickness) * shares / shares.sum())[:, None]
-    upper, lower = (v[0].double() - 20.0 for v in (state.zone_upper, state.zone_lower))
-    whole = 2 * state.zone_area + state.zone_edge * state.height[:, None]
-    high = state.zone_wall[0].double()
-    walls = high * (upper @ depth)[:, 0] + (whole[0] - high) * (lower @ depth)[:, 0]
-    there = state.zone_area[0] > 0
-    return float((state.zone_smoke + state.zone_air)[..., ENERGY].sum()) + float(state.lining_capacity) * float(
-        walls[there].sum()
-    )
+    depth = state.lining_thickness[:, None, None] * shares / shares.sum()  # [E, 1, CELLS]
+    upper, lower = (((v.double() - 20.0) * depth).sum(-1) for v in (state.zone_upper, state.zone_lower))
+    whole, high = 2 * state.zone_area + state.zone_edge * state.height[:, None], state.zone_wall.double()
+    walls = torch.where(state.zone_area > 0, high * upper + (whole - high) * lower, 0.0).sum(1)
+    return (state.zone_smoke + state.zone_air)[..., ENERGY].double().sum(1) + state.lining_capacity * walls
 
 
 def reach(state: BlazeState) -> float:
@@ -62,7 +60,7 @@ def check(room: Room, places: list[tuple[float, float]], growth: float, most: fl
         burnt += STEP * burn(state, world, burner, fire._replace(power=power), STEP)
         gas = state.zone_smoke + state.zone_air
         assert bool(gas.isfinite().all()) and float(gas[..., MASS].min()) >= 0.0
-        assert kept(state) <= burnt * 1.002 + 1.0
+        assert float(kept(state)) <= burnt * 1.002 + 1.0
         assert burnt <= PER_OXYGEN * (OXYGEN * 1.204 * volume + limit * step * STEP)
         lack = gas[..., LACK]
         assert bool((lack <= OXYGEN * gas[..., MASS] + 1e-3).all())
@@ -83,23 +81,30 @@ def opened(room: Room) -> Room:
     return Room(room.size, room.height, openings=holes, partitions=room.partitions, wall=room.wall)
 
 
-def drawn(number: int) -> tuple[str, str]:
-    """Scene and severity of a check: all splits and severities come in turn."""
-    splits = split_names()
-    names = scene_names(splits[number % len(splits)])
-    return names[(7 * number) % len(names)], list(SEVERITIES)[(number // len(splits)) % len(SEVERITIES)]
-
-
-@pytest.mark.parametrize(
-    "number", [pytest.param(n, marks=[pytest.mark.long] if n % 5 or n > 30 else []) for n in range(0, 50)]
-)
-def test_oxygen_heat_and_pressure_balance_over_an_episode(number: int) -> None:
+def check_scenes(specs: Sequence[SceneSpec], severity: str) -> None:
     """Scenes' own rooms, closed and with doors open, with the fires of a severity, and three times as much."""
-    name, severity = drawn(number)
-    spec, strength = scene(name), SEVERITIES[severity]
-    places = [(float(x), float(y)) for x, y in spec.fires] or [(1.0, 1.0)]
-    for room, times in ((spec.room, 1.0), (opened(spec.room), 3.0)):
-        check(room, places, strength.fire_growth, times * strength.fire_start)
+    strength = SEVERITIES[severity]
+    for spec in specs:
+        places = [(float(x), float(y)) for x, y in spec.fires] or [(1.0, 1.0)]
+        for room, times in ((spec.room, 1.0), (opened(spec.room), 3.0)):
+            check(room, places, strength.fire_growth, times * strength.fire_start)
+
+
+@pytest.mark.parametrize("severity", SEVERITIES)
+@pytest.mark.parametrize("split", split_names())
+def test_oxygen_heat_and_pressure_balance_over_an_episode(split: str, severity: str) -> None:
+    """One scene of each split, another one for each severity."""
+    check_scenes([scene(scene_names(split)[7 * list(SEVERITIES).index(severity)])], severity)
+
+
+@pytest.mark.parametrize("severity", SEVERITIES)
+@pytest.mark.parametrize("split", split_names())
+@pytest.mark.long
+@pytest.mark.timeout(3600)
+def test_oxygen_heat_and_pressure_balance_in_many_scenes(split: str, severity: str) -> None:
+    """Fifty scenes of each split; those that belong to none make up the number."""
+    for spec in drawn(split, 50):
+        check_scenes([spec], severity)
 
 
 def test_a_room_after_flashover_burns_what_its_door_lets_in() -> None:
@@ -137,4 +142,4 @@ def test_openings_carry_all_of_what_they_take() -> None:
     gas = (state.zone_smoke + state.zone_air).sum(1)[0].double()
     assert len(gas) == PARTS and float(gas[MASS]) == pytest.approx(start + burnt / FUEL, rel=1e-5)
     assert float(gas[LACK]) == pytest.approx(burnt * (1 / PER_OXYGEN + OXYGEN / FUEL), rel=1e-4)
-    assert kept(state) == pytest.approx(burnt, rel=0.01)
+    assert float(kept(state)) == pytest.approx(burnt, rel=0.01)

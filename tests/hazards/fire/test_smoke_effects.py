@@ -120,6 +120,30 @@ def test_what_hangs_under_a_ceiling_feels_the_jet_below_it() -> None:
     assert gas[0].tolist() == pytest.approx([20.0 + want, 20.0], rel=0.01)
 
 
+def test_a_layer_after_flashover_shows_as_hot_as_it_is() -> None:
+    """A black layer of 1,100 C, far above the 820 C of flames: so hot is what hangs in it, but nothing is hotter."""
+    world = with_room(room_world([], [(2.0, 2.0)], size=(4.0, 4.0)), floor="tile")
+    state = begin(REAL, world)
+    state.zone_temperature[:], state.zone_emissivity[:], state.zone_height[:] = 1100.0, 1.0, 1.0
+    state.flame_age[:, 0] = 1e3
+    high, flame = REAL.image(state, world, torch.tensor([[[0.3, 0.3, 2.0], [2.0, 2.0, 1.5]]]))[0].tolist()
+    assert high == pytest.approx(1100.0, abs=15.0) and flame == pytest.approx(1100.0, abs=0.1)
+
+
+def test_in_the_open_no_jet_runs_under_a_ceiling_that_is_not_there() -> None:
+    world = with_room(room_world([], [(2.0, 2.0)]), open_air=True)
+    state = begin(REAL, world)
+    state.flame_age[:, 0] = 1e3
+    fires, points = REAL._fires(state, world), torch.tensor([[[0.2, 0.2, 2.5]]])
+    assert float(REAL._exposure(state, world, fires, points)[1]) == 20.0
+    length = 0.9 * (3.7 * (2100.0 / (1.2 * 293.15 * 9.81**0.5 * 0.9**2.5)) ** 0.4 - 1.02)
+    away = 2 * 1.8**2 + (length / 3 - 2.5) ** 2
+    flux = 0.35 * 2100.0 / (4 * math.pi * away)
+    assert length > 2.6 and float(REAL._exposure(state, world, fires, points)[0]) == pytest.approx(flux, rel=0.01)
+    plate = float(REAL.image(state, world, points)) + 273.15
+    assert 0.9 * (flux + 5.670e-11 * (293.15**4 - plate**4)) == pytest.approx(0.01 * (plate - 293.15), abs=0.05)
+
+
 def test_poison_by_iso_13571() -> None:
     """1,000 ppm of CO for 35 min, 100 ppm of HCN for 22.9 min, 10 % of oxygen for 9.43 min (Purser): helpless."""
     gas = torch.zeros(4, 6)
@@ -149,7 +173,7 @@ def test_fires_without_air_make_more_poison() -> None:
             smoke.advance(state, world, fire, yields, 20.0, 0.75)
         made.append([float(state.zone_smoke[0, 0, k] / state.zone_smoke[0, 0, LACK]) for k in (MONOXIDE, CYANIDE)])
     per_lack = 1.0 / (22300.0 / 13100.0 + 0.232)  # fuel per oxygen that is missing
-    assert made[0] == pytest.approx([0.031 * per_lack, 0.0013 * per_lack], rel=0.3)
+    assert made[0] == pytest.approx([0.010 * per_lack, 0.0013 * per_lack], rel=0.3)
     assert made[1][0] == pytest.approx(0.21 * per_lack, rel=0.2) and made[1][1] == pytest.approx(
         0.015 * per_lack, rel=0.2
     )

@@ -6,17 +6,23 @@ import pytest
 import torch
 
 from hazard_ms.scenes.splits import scene
+from hazard_ms.spec.severity import SEVERITIES
 from tests.worlds.flood_balance import GRAVITY, Flooding, drawn
 
 SPLITS = ("train", "test", "large", "new_objects", "hard")
 
 
-def check(flooding: Flooding, frames: int) -> None:
-    """Flood a scene from outside: no more energy than that of the water outside, no faster than a dam break's tip."""
+def check(flooding: Flooding, frames: int, every: int = 1) -> None:
+    """Flood a scene from outside: no more energy than that of the water outside, no faster than a dam break's tip.
+
+    Looks at it once in `every` so many frames.
+    """
     head, name = flooding.law.outside, flooding.world.specs[0].name
     energy, came = 0.0, 0.0
     for frame in range(frames):
         flooding.step()
+        if frame % every:
+            continue
         speed, gained, more = flooding.speed, flooding.energy - energy, flooding.came - came
         assert speed < 2.0 * (GRAVITY * head) ** 0.5, (name, frame, speed)
         assert gained <= GRAVITY * head * more + 1e-5 * (energy + 1.0), (name, frame)
@@ -25,7 +31,7 @@ def check(flooding: Flooding, frames: int) -> None:
     assert bool(torch.isfinite(flooding.state.surface).all()) and came > 0.0, name
 
 
-def check_closed(flooding: Flooding, frames: int) -> None:
+def check_closed(flooding: Flooding, frames: int, every: int = 1) -> None:
     """Let a metre of water in a third of a scene run into the rest: energy is lost, and nothing else changes."""
     state, name = flooding.state, flooding.world.specs[0].name
     state.inlet[:] = -1
@@ -37,6 +43,8 @@ def check_closed(flooding: Flooding, frames: int) -> None:
     energy = start
     for frame in range(frames):
         flooding.step()
+        if frame % every:
+            continue
         now = flooding.energy
         assert now < energy + 5e-4 * start, (name, frame)  # velocities and depths are known half a step apart
         assert flooding.speed < 2.0 * GRAVITY**0.5, (name, frame)
@@ -57,12 +65,13 @@ def test_films_on_drowned_furniture_run_no_faster_than_the_head_drives_them(name
     check(Flooding.of(scene(name)), frames)
 
 
+@pytest.mark.parametrize("severity", SEVERITIES)
 @pytest.mark.parametrize("split", SPLITS)
-@pytest.mark.parametrize("part", range(2))
 @pytest.mark.long
 @pytest.mark.timeout(3600)
-def test_many_scenes_hold_the_water_that_came_in_and_no_more_energy(split: str, part: int) -> None:
+def test_many_scenes_hold_the_water_that_came_in_and_no_more_energy(split: str, severity: str) -> None:
     """Fifty scenes of each split."""
-    for spec in drawn(split, 50)[part::2]:
-        check(Flooding.of(spec), 900)
-        check_closed(Flooding.of(spec), 300)
+    for spec in drawn(split, 50):
+        check(Flooding.of(spec, severity), 900, 5)
+        if severity == "extreme":  # the others begin alike
+            check_closed(Flooding.of(spec, severity), 300, 5)

@@ -67,7 +67,10 @@ def test_wind_damages_nothing_and_the_image_is_its_speed(preset: str) -> None:
 @EVERY
 @pytest.mark.parametrize("u", [2.5, 5.0])
 def test_the_agent_is_slowed_against_the_flow_and_never_outruns_it(preset: str, u: float) -> None:
-    """With its own velocity v it moves at k v + (1 - k) u: 1 - k grows with the square of the wind."""
+    """With its own velocity v it moves at k v + (1 - k) u: 1 - k grows with the square of the wind.
+
+    In `realistic` its friction, 0.6 x 115 kg x g, holds it up to 39.7 m/s, so nothing is added to k v.
+    """
     law = wind(preset, "moderate" if preset == "realistic" else "severe")
     law = dataclasses.replace(law, by_split=False, gust_intensity=0.0, roughness=0.0)
     world = street([Thing()], (0.6 * u, -0.8 * u), copies=3)
@@ -75,12 +78,14 @@ def test_the_agent_is_slowed_against_the_flow_and_never_outruns_it(preset: str, 
     state = begin(law, world)
     kept, flow = law.slow(state, world)[:, 0], law.slow(state, world)[:, 1:]
     air = u * law.scale
-    assert torch.allclose(flow, ((1 - kept) * air)[:, None] * torch.tensor([0.6, -0.8]), atol=1e-6)
+    added = torch.zeros(3, 1) if preset == "realistic" else ((1 - kept) * air)[:, None]
+    assert torch.allclose(flow, added * torch.tensor([0.6, -0.8]), atol=1e-6)
     assert 0.6 < float(kept[0]) < 1.0
     weak = begin(law, street([Thing()], (0.3 * u, -0.4 * u), copies=3))
     assert float((1 - kept[0]) / (1 - law.slow(weak, world)[0, 0])) == pytest.approx(4.0, rel=1e-3)
     storm = begin(dataclasses.replace(law, scale=60.0), world)
-    assert torch.allclose(law.slow(storm, world), torch.tensor([0.0, 36.0 * u, -48.0 * u]), rtol=1e-5)
+    fast = 60.0 * u - 39.7335 if preset == "realistic" else 60.0 * u
+    assert torch.allclose(law.slow(storm, world), torch.tensor([0.0, 0.6 * fast, -0.8 * fast]), rtol=1e-4)
     assert law.agent_info(state, world)["agent_wind"].tolist() == pytest.approx([air] * 3, rel=1e-5)
 
 

@@ -65,7 +65,8 @@ class Blaze(Hazard):
     uses: ClassVar[tuple[str, ...]] = ("water", "air")
 
     room_temperature: float = 20.0  # [C] [docs/physics.md 4.4]
-    # temperature of burning things, and the highest of all: 800 K above the room [C] [M: McCaffrey, flame region]
+    # temperature of burning things, and the highest of plumes and jets: 800 K above the room [C] [M: McCaffrey, flame
+    # region]; gas of the layers has no limit
     flame_temperature: float = 820.0
     every: int = 5  # frames from one update of heat to the next, as in the paper [HAZARD fire/manager.py:97]
     time_scale: float = 4.5  # seconds of fire per second: 0.15 s in a frame [docs/physics.md 3.1, flame spread]
@@ -165,10 +166,10 @@ class Blaze(Hazard):
         warmth, face = state.zone_temperature.gather(1, here), state.zone_height.gather(1, here)
         room = self.room_temperature + radiation.KELVIN
         layer = state.zone_emissivity.gather(1, here) * radiation.STEFAN * ((warmth + radiation.KELVIN) ** 4 - room**4)
-        flux = radiation.flux(fires, world.walls, points, state.height) + layer
+        flux = radiation.flux(fires, world.walls, points, state.ceiling) + layer
         gas = torch.where(points[..., 2] > face, warmth, state.zone_low_temperature.gather(1, here))
         rise = smoke.above(fires, world.walls, points, self.room_temperature)
-        jet = self.room_temperature + smoke.under_ceiling(fires, world.walls, points, state.height)
+        jet = self.room_temperature + smoke.under_ceiling(fires, world.walls, points, state.ceiling)
         return flux, torch.maximum(gas, torch.maximum(gas + rise, jet).clamp(max=self.flame_temperature))
 
     def _warm(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> None:
@@ -176,7 +177,7 @@ class Blaze(Hazard):
         things = state.status.shape[1]
         points = torch.cat([world.position, self._chest(world)], 1)
         flux, gas = self._exposure(state, world, fires, points)
-        reached = torch.where(touching.touched(fires, world, state.height), touching.TOUCH_FLUX, 0.0)
+        reached = torch.where(touching.touched(fires, world, state.ceiling), touching.TOUCH_FLUX, 0.0)
         taken = torch.maximum(flux[:, :things], reached) + radiation.CONVECTION * (
             gas[:, :things] - self.room_temperature
         )

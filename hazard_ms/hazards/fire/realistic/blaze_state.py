@@ -103,6 +103,11 @@ class BlazeState(FireState):
     agent_toxic_dose: Tensor = quantity("E", "", "poison that it has breathed; 1 makes people helpless", low=0.0)
 
     @property
+    def ceiling(self) -> Tensor:
+        """Height at which flames and plumes meet a ceiling [m], [E]; infinite in the open."""
+        return torch.where(self.roofed > 0, self.height, torch.inf)
+
+    @property
     def course(self) -> burning.Course:
         """Heat release of every thing."""
         return burning.Course(self.growth, self.peak, self.decline, self.burn_end, self.curve)

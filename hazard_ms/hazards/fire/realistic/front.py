@@ -36,7 +36,7 @@ def warm(state: BlazeState, world: World, fires: radiation.Fires, room: float, s
     if none_set((state.floor_inertia > 0) & (fires.power > 0).any(1)):
         return
     fires = radiation.alight(fires)[0]
-    length = torch.minimum(radiation.flame_length(fires.power, fires.diameter), state.height[:, None])
+    length = torch.minimum(radiation.flame_length(fires.power, fires.diameter), state.ceiling[:, None])
     source = fires.place[..., 2] + length / 3.0
     heat = fires.radiant * fires.power / (4.0 * math.pi)
     blown = coupling.drift(world, fires.place)

@@ -51,8 +51,8 @@ MATERIALS: dict[str, Material] = {
     "fabric": Material(412, 18, 0.68, 0, 250, 20000, MEDIUM, 0.075, 0.038, 0.0056, 0.055),
     # curtain 0.3 kg/m^2 [3.1] of 1.3 kJ/kg K: cloth of clothes and bags; else acrylic's ignition and nylon's release
     "cloth": Material(300, 10, 0, 0.39, 250, 20000, FAST, 0.075, 0.038, 0.016, 0.066),
-    # flexible foam 25 mm, 24 g/m^2 s of 22.3 MJ/kg [3.1]; soot of PU [M]
-    "foam": Material(390, 16, 0.32, 0, 535, 22300, FAST, 0.131, 0.031, 0.0013, 0.015),
+    # flexible foam 25 mm, 24 g/m^2 s of 22.3 MJ/kg [3.1]; soot and CO of foam GM21 [M]
+    "foam": Material(390, 16, 0.32, 0, 535, 22300, FAST, 0.131, 0.010, 0.0013, 0.015),
     # PMMA type G 12.7 mm and its heat of combustion [3.1]; 250 kW/m^2 as a usual floor of goods [3.1]; soot of PMMA [M]
     "plastic": Material(378, 15, 1.02, 0, 250, 24200, MEDIUM, 0.022, 0.010),
     # polyethylene's ignition and combustion [3.1], PMMA's inertia and critical flux; soot of PE [M]

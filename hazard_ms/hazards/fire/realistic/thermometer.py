@@ -1,7 +1,8 @@
 """Plate thermometers in a realistic fire, of which images are made (Warp, one thread per point).
 
 A plate takes up the flux of every fire as a point source and that of the layer of smoke over it, in the gas of the
-layer or of the hottest plume around it. The laws are those of `.radiation` and `.smoke`, in single precision.
+layer, or of the hottest plume or ceiling jet around it. The laws are those of `.radiation` and `.smoke`, in single
+precision. A plate gets no hotter than the hottest of what heats it: flames, layer and gas.
 """
 
 from __future__ import annotations
@@ -26,8 +27,12 @@ AIR, GRAVITY, AIR_DENSITY = (wp.constant(v) for v in (radiation.AIR, radiation.G
 FLAME_FLUX, CONVECTION = wp.constant(radiation.FLAME_FLUX), wp.constant(radiation.CONVECTION)
 STEFAN, KELVIN, EMISSIVITY = (wp.constant(v) for v in (radiation.STEFAN, radiation.KELVIN, radiation.EMISSIVITY))
 PLUME_LIMIT, PLUME_WIDTH = wp.constant(smoke.PLUME_LIMIT), wp.constant(smoke.PLUME_WIDTH)
+JET_ABOVE, JET_ASIDE, NEAR, JET_DEPTH = (
+    wp.constant(v) for v in (smoke.JET_ABOVE, smoke.JET_ASIDE, smoke.NEAR, smoke.JET_DEPTH)
+)
 PER_DIAMETER, PER_POWER = (wp.constant(v) for v in smoke.VIRTUAL)
 SPHERE = wp.constant(4.0 * math.pi)
+FAR = wp.constant(1.0e6)  # height of the ceiling in the open [m]
 TINY = wp.constant(1.0e-9)  # least value of a divisor, in its own unit
 STEPS = wp.constant(6)  # of Newton's method, from above the root of a concave function: five digits
 
@@ -61,6 +66,16 @@ def plume_rise(power: float, radiant: float, diameter: float, height: float, roo
 
 
 @wp.func
+def jet_rise(power: float, apart: float, high: float) -> float:
+    """Rise of temperature [K] in the jet under a ceiling `high` [m] above a fire, see `smoke.jet_rise`."""
+    third = wp.pow(power, 2.0 / 3.0)
+    rise = JET_ABOVE * third / wp.pow(high, 5.0 / 3.0)
+    if apart > NEAR * high:
+        rise = JET_ASIDE * third / (wp.pow(apart, 2.0 / 3.0) * high)
+    return wp.min(rise, PLUME_LIMIT)
+
+
+@wp.func
 def adiabatic(flux: float, gas: float, room: float) -> float:
     """Temperature [C] at which a surface under `flux` [kW/m^2] in `gas` [C] gains no more heat."""
     cold = room + KELVIN
@@ -84,13 +99,16 @@ def show(
     walls: Partitions,
     found: wp.array2d(dtype=float),
 ):
-    """Set `found` to what plates at `points` [m] show [C]; `room` is the room's temperature, `hottest` the highest."""
+    """Set `found` to what plates at `points` [m] show [C]; `room` and `hottest`: of room and flames [C]."""
     e, p = wp.tid()
     point = points[e, p]
     r = zone_at(e, point[0], point[1], rooms)
     cold, warm = room + KELVIN, rooms.zone_temperature[e, r] + KELVIN
     flux = rooms.zone_emissivity[e, r] * STEFAN * (warm * warm * warm * warm - cold * cold * cold * cold)
-    rise = float(0.0)
+    rise, jet = float(0.0), float(0.0)
+    ceiling = float(FAR)
+    if rooms.roofed[e] > 0.0:
+        ceiling = rooms.height[e]
     for m in range(fires.power.shape[1]):
         power = fires.power[e, m]
         if power > 0.0:
@@ -98,7 +116,7 @@ def show(
             place = fires.place[e, m]
             apart = point - place
             aside = apart[0] * apart[0] + apart[1] * apart[1]
-            raised = wp.min(flame_length(power, diameter, 20.0), rooms.height[e]) / 3.0
+            raised = wp.min(flame_length(power, diameter, 20.0), ceiling) / 3.0
             below = apart[2] - raised
             given = radiant * power / (SPHERE * wp.max(aside + below * below, TINY))
             if clear(e, place + wp.vec3(0.0, 0.0, raised), point, walls):
@@ -106,10 +124,17 @@ def show(
             wide = diameter / 2.0 + PLUME_WIDTH * apart[2]
             if apart[2] >= 0.0 and aside <= wide * wide and clear(e, place, point, walls):
                 rise = wp.max(rise, plume_rise(power, radiant, diameter, apart[2], room))
+            high = wp.max(ceiling - place[2], 1.0e-3)
+            under = ceiling - point[2]
+            if under >= 0.0 and under < JET_DEPTH * high:
+                if clear(e, wp.vec3(place[0], place[1], ceiling), point, walls):
+                    jet = wp.max(jet, jet_rise(power, wp.sqrt(aside), high))
     gas = rooms.zone_low_temperature[e, r]
     if point[2] > rooms.zone_height[e, r]:
         gas = rooms.zone_temperature[e, r]
-    found[e, p] = wp.min(adiabatic(flux, wp.min(gas + rise, hottest), room), hottest)
+    gas = wp.max(gas, wp.min(wp.max(gas + rise, room + jet), hottest))
+    most = wp.max(wp.max(gas, hottest), rooms.zone_temperature[e, r])
+    found[e, p] = wp.min(adiabatic(flux, gas, room), most)
 
 
 def shown(
@@ -117,7 +142,8 @@ def shown(
 ) -> Tensor:
     """Temperature [C], [E, P], that plate thermometers at `points` [m], [E, P, 3], world frame, would show.
 
-    It comes from radiation, plumes and the layer of smoke. `room` and `hottest` [C]: the room's and the highest.
+    It comes from radiation, plumes, ceiling jets and the layer of smoke. `room` and `hottest` [C]: temperatures of the
+    room and of flames.
     """
     points = of_environments(points, world.num_envs)
     found = torch.empty_like(points[..., 0])

@@ -8,9 +8,8 @@ number in rapidly varied shallow water flows, Int. J. Numer. Meth. Fluids 43, 20
 sides, depths on sides taken from upstream, momentum carried by the mean discharge of neighbouring sides, first
 velocities and then depths. Where the flow speeds up along its way its energy head is carried in place of its momentum,
 as the paper has it for contractions, which keeps fronts on dry ground fast. Water at rest stays at rest over any
-ground. Steps of ground are seen from the higher side, so that water only passes what it stands above. What leaves a
-cell is limited to what it holds. Sums of depth are compensated (Kahan), so that mass is conserved far below single
-precision.
+ground. Steps of ground are seen from the higher side, so water only passes what it stands above. What leaves a cell is
+limited to what it holds. Sums of depth are compensated (Kahan).
 
 A step is as long as the fastest wave allows; what the last one of a frame goes beyond its end, the next frame has
 less to do, so the water is ahead of time by less than a step. Order: 1. Limits: no turbulence, bodies do not act back.
@@ -20,7 +19,17 @@ from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.hazards.flood.realistic.basin import FASTEST, FILM, GRAVITY, SAFE, SIDE, Basin, note, per_cube_root
+from hazard_ms.hazards.flood.realistic.basin import (
+    FASTEST,
+    FENCE,
+    FILM,
+    GRAVITY,
+    SAFE,
+    SIDE,
+    Basin,
+    note,
+    per_cube_root,
+)
 from hazard_ms.hazards.flood.realistic.inlets import hold_back, let_in, orifice
 from hazard_ms.kernels.launch import OPTIONS
 from hazard_ms.kernels.rows import at, put
@@ -140,7 +149,7 @@ def fill(e: int, c: int, pitch: int, ratio: float, basin: Basin):
     """Add what comes into a cell, less what leaves it, to its depth."""
     gain = at(basin.discharge_x, e, c) - at(basin.discharge_x, e, c + pitch)
     gain = ratio * (gain + at(basin.discharge_y, e, c) - at(basin.discharge_y, e, c + 1))
-    if gain != 0.0:
+    if gain != 0.0 and at(basin.bed, e, c) < FENCE:  # not behind an opening of a smaller scene of the batch
         before = at(basin.depth, e, c)
         part = gain + at(basin.depth_rest, e, c)
         after = wp.max(before + part, 0.0)

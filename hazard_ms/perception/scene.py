@@ -240,7 +240,7 @@ def _write(env: Any, folder: Path, number: int, shot: Shot, sensed: Sensed, expo
     return row | ({"thermal_file": f"{place}/{names[THERMAL]}"} if THERMAL in names else {})
 
 
-def _packed(arrays: dict[str, NDArray[np.float32]]) -> bytes:
+def _packed(arrays: dict[str, Any]) -> bytes:
     """The content of a .npz file that holds `arrays`, [...], in their units."""
     made = io.BytesIO()
     np.savez_compressed(made, **arrays)

@@ -80,6 +80,13 @@ def test_yolo_has_the_documented_layout(data: Path, tmp_path: Path) -> None:
             assert len(shares) >= 6 and len(shares) % 2 == 0 and all(0.0 < float(s) < 1.0 for s in shares)
 
 
+def test_rfdetr_takes_it_for_a_dataset_to_train_on(data: Path, tmp_path: Path) -> None:
+    yolo = pytest.importorskip("rfdetr.datasets.yolo")
+    export(data, "yolo", tmp_path / "out")
+    assert yolo.is_valid_yolo_dataset(str(tmp_path / "out"))
+    assert not yolo.is_valid_yolo_dataset(str(data))
+
+
 def test_pycocotools_and_torchvision_read_coco_with_the_same_masks(data: Path, tmp_path: Path) -> None:
     from torchvision.datasets import CocoDetection, wrap_dataset_for_transforms_v2
 

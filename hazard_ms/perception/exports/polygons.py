@@ -74,7 +74,7 @@ def _enclosed(background: NDArray[np.uint8]) -> NDArray[np.uint8]:
 def text(number: int, mask: NDArray[np.uint8]) -> str:
     """The row of a label file for the `mask`, [H, W], of a thing of class `number`: `number x1 y1 x2 y2 ...`.
 
-    Numbers are shares of width and height. Each corner is WITHIN its pixel, so that it stays that pixel whether a reader
+    Numbers are shares of width and height. Each corner is WITHIN its pixel, so it stays that pixel whether a reader
     rounds down or to the nearest number.
     """
     height, width = mask.shape

@@ -3,10 +3,13 @@
 Corners are the outermost pixels of each part, and those around each hole, as OpenCV's `findContours` gives them; filled
 with their border, as readers do, one part without holes gives back its mask exactly. Further parts, and holes, are
 joined to the largest part, nearest first, by a line there and back between the two nearest corners: the common way
-(Ultralytics' `merge_multi_segment`), for holes, too. Such a line has no area, but readers draw it one pixel wide.
+(Ultralytics' `merge_multi_segment`), for holes, too. Such a line has no area, but readers draw it one pixel wide, so a
+part of fewer pixels than its line would have is left out.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -19,31 +22,47 @@ WITHIN = 0.25  # place of a corner in its pixel, from its left and its top [pixe
 LEAST_CORNERS = 3  # of a row in a label file [Ultralytics]
 
 
+class Ring(NamedTuple):
+    """The border of a part of a mask, or of a hole in one."""
+
+    corners: NDArray[np.int64]  # column and row [pixels], [N, 2]
+    pixels: int  # of the part
+    inside: int  # number of the ring of the part that a hole is in; -1 for parts
+
+
 def outline(mask: NDArray[np.uint8]) -> NDArray[np.int64]:
     """The corners, column and row [pixels], [N, 2], of one polygon around a mask, [H, W], that is not empty."""
-    rings = _rings(mask)
-    path = rings.pop(0)
-    while rings:
-        tree = cKDTree(path)
-        near = [tree.query(ring) for ring in rings]
-        k = int(np.argmin([distance.min() for distance, _ in near]))
-        distance, place = near[k]
-        start = int(np.argmin(distance))
-        after = int(place[start])
-        ring = np.roll(rings.pop(k), -start, axis=0)
-        path = np.concatenate([path[: after + 1], ring, ring[:1], path[after:]])
-    return path if len(path) >= LEAST_CORNERS else np.resize(path, (LEAST_CORNERS, 2))
+    rings = dict(enumerate(_rings(mask)))
+    first = max(rings, key=lambda k: (rings[k].inside < 0, rings[k].pixels))
+    path, done = rings.pop(first).corners, {first}
+    while True:
+        tree, best = cKDTree(path), None
+        for k, ring in rings.items():
+            if ring.inside >= 0 and ring.inside not in done:
+                continue
+            distances, places = tree.query(ring.corners)
+            start = int(np.argmin(distances))
+            worth = ring.inside >= 0 or distances[start] < ring.pixels
+            if worth and (best is None or distances[start] < best[0]):
+                best = float(distances[start]), k, start, int(places[start])
+        if best is None:
+            return path if len(path) >= LEAST_CORNERS else np.resize(path, (LEAST_CORNERS, 2))
+        _, k, start, after = best
+        ring_path = np.roll(rings.pop(k).corners, -start, axis=0)
+        path = np.concatenate([path[: after + 1], ring_path, ring_path[:1], path[after:]])
+        done.add(k)
 
 
-def _rings(mask: NDArray[np.uint8]) -> list[NDArray[np.int64]]:
-    """The borders of the parts and holes that are kept, [N, 2] each, the largest part first."""
+def _rings(mask: NDArray[np.uint8]) -> list[Ring]:
+    """The borders of the parts and holes that are kept."""
     kept = _largest(mask, 8)
     inside = _enclosed(1 - kept)
     solid = kept | (inside & (1 - _largest(inside, 4)))
     found, levels = cv2.findContours(solid, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_SIMPLE)
-    outer = [k for k in range(len(found)) if levels[0, k, 3] < 0]
-    first = max(outer, key=lambda k: float(cv2.contourArea(found[k]) + len(found[k])))
-    return [found[k][:, 0].astype(np.int64) for k in [first, *(k for k in range(len(found)) if k != first)]]
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(solid, connectivity=8)
+    corners = [ring[:, 0].astype(np.int64) for ring in found]
+    sizes = [int(stats[labels[c[0, 1], c[0, 0]], cv2.CC_STAT_AREA]) for c in corners]
+    return [Ring(c, size, int(levels[0, k, 3])) for k, (c, size) in enumerate(zip(corners, sizes, strict=True))]
 
 
 def _largest(mask: NDArray[np.uint8], neighbours: int) -> NDArray[np.uint8]:

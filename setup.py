@@ -64,6 +64,7 @@ setup(
         "rl": ["stable-baselines3>=2.9", "sb3-contrib>=2.9"],  # policies over skills, with action masks
         "llm": ["openai>=3.54"],  # language models behind an OpenAI-compatible server
         "perception": ["pycocotools>=2.0.11"],  # COCO labels and average precision
+        "rfdetr": ["rfdetr>=1.11,<2"],  # RF-DETR-Seg as a detector, with weights of the user's
         "demos": ["pyarrow>=25", "av>=15", "minari>=0.5.3"],  # demonstrations as LeRobot and Minari data sets
         "cluster": ["ray>=2.60"],  # episodes on many machines: hazard-ms evaluate --backend ray
         "web": ["starlette>=1.0", "uvicorn>=0.50", "websockets>=16"],  # the page of hazard-ms serve

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import tyro
 
@@ -67,6 +67,22 @@ def score(folder: Folder, results: tyro.conf.Positional[Path], split: str = "tes
     return 0
 
 
+def export(folder: Folder, to: Literal["yolo", "hf", "coco"], output: Annotated[Path, flag("-o")]) -> int:
+    """Write a dataset in the layout of other trainers: YOLO's label files, a Hugging Face folder, or plain COCO.
+
+    The new folder appears whole or not at all.
+
+    Args:
+        folder: A dataset, OUTPUT/TASK, or any folder with COCO files instances_SPLIT.json.
+        to: Layout: yolo (polygons and data.yaml), hf (ImageFolder with metadata and a card), or coco.
+        output: Folder to make; it must not be there yet.
+    """
+    from hazard_ms.perception.exports.export import export as run
+
+    print(f"{output}: {run(folder, to, output)} pictures")
+    return 0
+
+
 def train(options: Annotated[tyro.conf.OmitArgPrefixes[TrainOptions], tyro.conf.arg(name="")]) -> int:
     """Train a detector on captured pictures, and score it on others: Mask R-CNN, or our small one.
 
@@ -83,5 +99,6 @@ PerceptionCommand = (
     | Annotated[int, tyro.conf.subcommand(name="check", constructor=check)]
     | Annotated[int, tyro.conf.subcommand(name="show", constructor=show)]
     | Annotated[int, tyro.conf.subcommand(name="score", constructor=score)]
+    | Annotated[int, tyro.conf.subcommand(name="export", constructor=export)]
     | Annotated[int, tyro.conf.subcommand(name="train", constructor=train)]
 )

@@ -80,6 +80,7 @@ class Looks:
             [m for e in s.entities if e.name.startswith(PREFIX) for m in materials(e)] for s in scenes if draws(s)
         ]
         self._air: list[tuple[float, float, float]] = []
+        self.veiled = True  # whether smoke and haze dim what is behind them; spectators always see them do so
 
     def light(self, air: list[tuple[float, float, float]]) -> None:
         """Set the light on smoke, water, haze and things in the air: linear red, green, blue, 1 by day, per scene."""
@@ -104,7 +105,7 @@ class Looks:
                 part.spectator = spectator
             part.update(world, states[name], frame)
         for around in self._around:
-            around.show()
+            around.show(self.veiled or spectator)
 
 
 @cache

@@ -80,8 +80,10 @@ class Surroundings:
         """Set the light that falls on haze, water and things in the water: linear red, green, blue, 1 by day."""
         self._data[0, 4, 1:] = np.multiply(HAZE_COLOUR, air)
 
-    def show(self) -> None:
-        """Send what has changed to the renderer."""
+    def show(self, veiled: bool = True) -> None:
+        """Send what has changed to the renderer; smoke and haze only if `veiled`."""
+        if not veiled:
+            self._data[0, 2, 2] = self._data[0, 3, 2] = 0.0
         if not np.array_equal(self._sent, self._data):
             self.texture.upload(self._data)
             self._sent[:] = self._data

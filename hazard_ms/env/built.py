@@ -40,6 +40,7 @@ class BuiltEnv(BaseEnv):
     affects_agent: bool
     effects_mode: str
     lighting: str
+    senses: tuple[str, ...]
     specs: tuple[SceneSpec, ...] = ()
     world: World
     episode: Episode
@@ -91,7 +92,7 @@ class BuiltEnv(BaseEnv):
         labels = labels_of(self.scene, self.actors, self.agent.robot, self.bags)
         cameras = (self._sensors, self._human_render_cameras)
         display = Display(self.situation, self.scene, self.bags, self.lights, cameras, self.effects_mode)
-        self.observer = Observer(self.situation, self.task.observations, display, self._sensors, labels)
+        self.observer = Observer(self.situation, self.task.observations, display, self._sensors, labels, self.senses)
 
     def _initialize_episode(self, env_idx: Tensor, options: dict[str, Any]) -> None:
         seeds = torch.as_tensor(np.asarray(self._episode_seed), device=self.device)

@@ -24,7 +24,7 @@ from hazard_ms.registry import TASKS
 from hazard_ms.registry.announce import importable
 from hazard_ms.scenes.choice import SceneChoice, SceneTurns
 from hazard_ms.scenes.files import playing
-from hazard_ms.sensing.modes import finite
+from hazard_ms.sensing.modes import check_senses, finite
 from hazard_ms.sensing.observation_table import ObservationTable
 from hazard_ms.simulation.lighting import LIGHTINGS
 from hazard_ms.spec import checks
@@ -65,6 +65,7 @@ class HazardEnv(BuiltEnv):
         scene_every: int = 1,
         effects: str = "full",
         lighting: str = "day",
+        senses: Sequence[str] = (),
         **maniskill_keywords: Any,
     ) -> None:
         """Every keyword of ManiSkill's BaseEnv works, and these.
@@ -83,6 +84,7 @@ class HazardEnv(BuiltEnv):
                 What they draw follows from the last seed, so that a training run sees the same scenes again.
             effects: How hazards look: full, fast or off. Never changes physics or labels, and nor does lighting.
             lighting: day, evening, night, failing (lamps go out during the episode), random (by the seed).
+            senses: Of the head camera, beyond ManiSkill's: thermal, degraded (colour and depth through smoke and rain).
             **maniskill_keywords: As in ManiSkill, but for these. num_envs: more than one needs a GPU. obs_mode: state
                 modes need no renderer. render_backend: auto (the default) picks a GPU, else the CPU, else none.
                 reconfiguration_freq: by default as `deterministic` and `scene_every` say, which it replaces.
@@ -101,6 +103,7 @@ class HazardEnv(BuiltEnv):
         self.deterministic = checks.flag(deterministic, "deterministic")
         self.effects_mode = checks.one_of(effects, EFFECTS, "effects")
         self.lighting = checks.one_of(lighting, LIGHTINGS, "lighting")
+        self.senses = check_senses(senses, maniskill_keywords.get("obs_mode"))
         often = checks.whole(scene_every, 0, 2**31, "scene_every")
         chosen = self.deterministic or maniskill_keywords.get("reconfiguration_freq") is not None
         self.scene_turns = SceneTurns(0 if chosen else often)
@@ -117,8 +120,6 @@ class HazardEnv(BuiltEnv):
     @spec.setter
     def spec(self, spec: EnvSpec | None) -> None:
         self._spec = spec if spec is None else importable(spec)
-
-    # ------------------------------------------------------------------ episode
 
     def reset(self, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Start an episode.
@@ -168,8 +169,6 @@ class HazardEnv(BuiltEnv):
         self._step_action(inputs.action(self, action))
         self._elapsed_steps += 1
         return self.get_info()
-
-    # ------------------------------------------------------------------ what the user gets
 
     @property
     def observation_table(self) -> ObservationTable:
@@ -225,8 +224,6 @@ class HazardEnv(BuiltEnv):
 
     def compute_sparse_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:
         return self.task.goal.sparse(self.situation)
-
-    # ------------------------------------------------------------------ save and restore
 
     def get_state_dict(self) -> dict[str, Any]:
         """ManiSkill's simulation and controllers, and under "hazard_ms" hazards, damage, rescue, hand and chance."""

@@ -50,6 +50,8 @@ class Hazard(abc.ABC):
     fills: ClassVar[bool] = False  # it shows in the space between things: as water, haze or smoke
     open_air: ClassVar[bool] = False  # it needs a scene in the open
     tells: ClassVar[dict[str, Quantity]] = {}  # what each key of `agent_info` is
+    # what sensors notice of it, "package.module:Class", see hazard_ms.sensing.senses.signals; empty: nothing
+    signals: ClassVar[str] = ""
     # fields of the world that it writes: name -> its method (state, world, points)
     provides: ClassVar[dict[str, str]] = {}
     uses: ClassVar[tuple[str, ...]] = ()  # fields of the world that it reads, where another hazard provides them

@@ -7,12 +7,8 @@ are not taken again.
 
 from __future__ import annotations
 
-import contextlib
-import fcntl
 import json
 import os
-import shutil
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,6 +18,7 @@ from tqdm import tqdm
 from hazard_ms.evaluation.workers import SILENCE, Crew, Job, Outcome, Say, Word, ending
 from hazard_ms.machine.cores import cores
 from hazard_ms.machine.files import flush, make_folder, write, write_together
+from hazard_ms.machine.parts import part_of
 from hazard_ms.perception import coco, layout
 from hazard_ms.perception.card import card, licences
 from hazard_ms.perception.options import CaptureOptions
@@ -89,7 +86,7 @@ def attempt(job: Job, say: Say) -> Outcome:
     options.env.check()  # loads what third parties register
     place = options.dataset / options.env.split / layout.folder_of(scene)
     try:
-        with _part(place) as part:
+        with part_of(place) as part:
             if part is None:
                 return Outcome(None, ELSEWHERE)
             if not place.exists():
@@ -98,31 +95,6 @@ def attempt(job: Job, say: Say) -> Outcome:
         return Outcome(None)
     except Exception as error:
         return Outcome(None, f"{type(error).__name__}: {error}")
-
-
-@contextlib.contextmanager
-def _part(place: Path) -> Iterator[Path | None]:
-    """A new, empty and locked folder for what will be called `place`; None where another process has one."""
-    home = place.parent
-    for left in sorted(home.glob(f".{place.name}.part-*")):
-        opened = os.open(left, os.O_RDONLY)
-        try:
-            fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            shutil.rmtree(left)
-        except BlockingIOError:
-            yield None
-            return
-        finally:
-            os.close(opened)
-    part = home / f".{place.name}.part-{os.getpid()}"
-    part.mkdir()
-    lock = os.open(part, os.O_RDONLY)
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        yield part
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
-        os.close(lock)
 
 
 def _publish(part: Path, place: Path) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import sapien
+import torch
 from numpy.typing import NDArray
 from sapien.render import RenderBodyComponent
 
@@ -14,6 +16,7 @@ from hazard_ms.effects.entities import FRAMES_PER_SECOND
 from hazard_ms.effects.raytracing.still import Image, Photographer, Viewpoint
 from hazard_ms.effects.shaders.pack import LABELS, pack_folder
 from hazard_ms.sensing.camera import NOTHING
+from hazard_ms.sensing.senses.senses import Frame
 
 NEAR_PLANE, FAR_PLANE = 0.05, 60.0  # of what is seen [m]; depth in 16 bits ends at 65.5 m
 DEEPEST = 65535  # [mm]
@@ -29,6 +32,34 @@ class Shot:
     labels: NDArray[np.int64]  # [H, W]
     intrinsic: NDArray[np.float64]  # [3, 3] [pixels]
     cam2world: NDArray[np.float64]  # [4, 4], of a camera that looks along its -z axis with y up
+
+
+@dataclass(frozen=True)
+class Sensed:
+    """A picture as sensors give it: the colours and depth of a shot, or what murk leaves of them, and warmth."""
+
+    rgb: Image  # [H, W, 3]
+    depth: NDArray[np.uint16]  # [H, W] [mm]; 0 where there is nothing
+    thermal: NDArray[np.float32] | None = None  # [H, W] [C]
+    told: Mapping[str, Any] = field(default_factory=dict)  # fields of its row in the COCO file
+
+    @classmethod
+    def of(cls, env: Any, shot: Shot, rgb: Image, name: str, thermal: bool, degraded: bool) -> Sensed:
+        """The picture of `shot`, with colours `rgb`, in the first environment of `env`; noise depends on its `name`."""
+        if not thermal and not degraded:
+            return cls(rgb, shot.depth)
+        given = (shot.depth.astype(np.float32) * 1e-3, shot.labels, shot.intrinsic, shot.cam2world)
+        depth, labels, *camera = (torch.from_numpy(np.ascontiguousarray(a))[None].to(env.device) for a in given)
+        frame = Frame(depth, labels, camera[0].float(), camera[1].float(), name)
+        senses = env.observer.senses
+        warmth = senses.thermal(frame)[0].cpu().numpy() if thermal else None
+        if not degraded:
+            return cls(rgb, shot.depth, warmth)
+        colours = torch.from_numpy(np.ascontiguousarray(rgb))[None].to(env.device)
+        colour, left, kept = senses.degraded(colours, depth, frame)
+        millimetres = np.clip(np.rint(left[0].cpu().numpy() * 1000.0), 0, DEEPEST).astype(np.uint16)
+        told = {"degraded": True, "transmission": round(float(kept.mean()), 4)}
+        return cls(colour[0].cpu().numpy(), millimetres, warmth, told)
 
 
 class Eye:

@@ -3,7 +3,7 @@
 OUT/HazardFire-v1/              a dataset
   instances_train.json          COCO instances of a split
   train/kitchen_a-07/           the pictures of one scene
-    rgb/0000.jpg  depth/0000.png  ids/0000.png  hazard/0000.npz
+    rgb/0000.jpg  depth/0000.png  ids/0000.png  hazard/0000.npz  (thermal/0000.npz)
     pictures.json               its part of the COCO file
     SHA256SUMS                  of its files
   README.md  LICENSES.csv  labels_table.json  SHA256SUMS
@@ -23,6 +23,7 @@ from hazard_ms.spec.foreign.files import printable, read_text, sha256_of
 FORMAT = 1  # goes up when a file or a field changes its meaning
 
 RGB, DEPTH, IDS, HAZARD = "rgb", "depth", "ids", "hazard"  # folders of a scene
+THERMAL, THERMAL_ENDING = "thermal", ".npz"  # one more, where it was asked for
 ENDINGS = {RGB: ".jpg", DEPTH: ".png", IDS: ".png", HAZARD: ".npz"}
 PICTURES, SUMS = "pictures.json", "SHA256SUMS"
 CARD, LICENCES, TABLE = "README.md", "LICENSES.csv", "labels_table.json"

@@ -43,6 +43,10 @@ class CaptureOptions:
     """Look of the hazards; varied takes 80 % full, 10 % fast and 10 % off (raster only)."""
     amodal: bool = False
     """Add the masks of targets as they would be seen with nothing in front of them (slow)."""
+    thermal: bool = False
+    """Add what a thermal camera shows, in degrees C."""
+    degraded: bool = False
+    """Colour and depth through the simulated smoke, through rain in wind, and water; depth is lost beyond sight."""
     seed: Annotated[int, flag("-s")] = 0
     """Seed of all episodes, viewpoints and lights."""
     workers: int = 1
@@ -85,6 +89,7 @@ class CaptureOptions:
         made |= {name: getattr(self, name) for name in names}
         made |= {} if self.fov == FOV else {"fov": self.fov}
         made |= {} if self.last_frame is None else {"last_frame": self.last_frame}
+        made |= {name: True for name in ("thermal", "degraded") if getattr(self, name)}
         return made if self.shader == "default" else {**made, "spp": self.spp}
 
     @property

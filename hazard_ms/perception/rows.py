@@ -51,6 +51,9 @@ class Image:
     lighting: str | None = None
     effects: str | None = None
     hazard_visible: bool | None = None
+    thermal_file: str | None = None
+    degraded: bool | None = None
+    transmission: float | None = None
     camera: Any = None
 
 

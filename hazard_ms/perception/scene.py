@@ -21,8 +21,21 @@ from numpy.typing import NDArray
 
 from hazard_ms.evaluation.choices import EFFECTS
 from hazard_ms.perception import coco
-from hazard_ms.perception.eye import Eye, Shot
-from hazard_ms.perception.layout import DEPTH, ENDINGS, FORMAT, HAZARD, IDS, PICTURES, RGB, folder_of, room_of, text_of
+from hazard_ms.perception.eye import Eye, Sensed, Shot
+from hazard_ms.perception.layout import (
+    DEPTH,
+    ENDINGS,
+    FORMAT,
+    HAZARD,
+    IDS,
+    PICTURES,
+    RGB,
+    THERMAL,
+    THERMAL_ENDING,
+    folder_of,
+    room_of,
+    text_of,
+)
 from hazard_ms.perception.options import VARIED, CaptureOptions
 from hazard_ms.perception.states import Watch, attributes, stirred
 from hazard_ms.perception.viewpoints import viewpoints
@@ -56,7 +69,7 @@ def capture_scene(options: CaptureOptions, scene: str, folder: Path, alive: Call
 
     Raises ValueError for a scene that is not of the split, where nothing draws, and where the simulation breaks.
     """
-    for name in ENDINGS:
+    for name in (*ENDINGS, *([THERMAL] if options.thermal else [])):
         (folder / name).mkdir()
     key = zlib.crc32(f"{options.env.env_id} {options.env.split} {scene}".encode())
     seed = int(np.random.default_rng([key, options.seed]).integers(2**31))
@@ -90,6 +103,8 @@ def _pictures(
 ) -> Iterator[tuple[dict[str, Any], list[dict[str, Any]]]]:
     """Take the pictures of a scene, stop by stop: their rows of `images`, from id `first` on, and of `annotations`."""
     eye, watch = Eye(env, options.size, options.angle), Watch(env)
+    if options.degraded:
+        env.observer.display.clear_air()
     stops = -(-options.per_scene // POSES)
     for stop in range(stops):
         rng = np.random.default_rng([key, options.seed, stop])
@@ -104,7 +119,8 @@ def _pictures(
             if options.shader != "default":
                 rgb = eye.ray_traced(taken.pose, options.shader, options.spp)
             exposure = round(float(rng.uniform(-EXPOSURE, EXPOSURE)), 3)
-            image = _write(env, folder, k, taken.shot, exposed(rgb, exposure)) | {
+            sensed = Sensed.of(env, taken.shot, rgb, str(k), options.thermal, options.degraded)
+            image = _write(env, folder, k, taken.shot, sensed, exposure) | {
                 "id": first + k,
                 "frame": int(env.world.frame[0]),
                 "lighting": lighting,
@@ -112,6 +128,7 @@ def _pictures(
                 "shader": options.shader,
                 "exposure_ev": exposure,
                 "hazard_visible": taken.hazard,
+                **sensed.told,
             }
             rows = coco.annotations_of(taken.shot, first + k, env.specs[0].things, states, positions)
             if options.amodal:
@@ -187,27 +204,31 @@ def exposed(picture: NDArray[np.uint8], stops: float) -> NDArray[np.uint8]:
     return lighter
 
 
-def _write(env: Any, folder: Path, number: int, shot: Shot, rgb: NDArray[np.uint8]) -> dict[str, Any]:
+def _write(env: Any, folder: Path, number: int, shot: Shot, sensed: Sensed, exposure: float) -> dict[str, Any]:
     """Write the files of one picture. Returns their names, below the dataset, with the camera's matrices."""
     names = {kind: f"{kind}/{number:04d}{ending}" for kind, ending in ENDINGS.items()}
+    rgb = exposed(sensed.rgb, exposure)
     settings = [cv2.IMWRITE_JPEG_QUALITY, QUALITY, cv2.IMWRITE_JPEG_OPTIMIZE, 1]
     points, there = _points(env, shot)
     levels = torch.where(there[:, None], env.episode.levels(points), torch.nan)[0].unflatten(-1, (SAMPLES, SAMPLES))
     arrays = {
         h.name: level.cpu().numpy().astype(np.float32) for h, level in zip(env.episode.hazards, levels, strict=True)
     }
-    packed = io.BytesIO()
-    np.savez_compressed(packed, **arrays)
     contents = {
         RGB: cv2.imencode(ENDINGS[RGB], rgb[..., ::-1], settings)[1].tobytes(),
-        DEPTH: cv2.imencode(ENDINGS[DEPTH], shot.depth)[1].tobytes(),
+        DEPTH: cv2.imencode(ENDINGS[DEPTH], sensed.depth)[1].tobytes(),
         IDS: cv2.imencode(ENDINGS[IDS], coco.ids_of(shot.labels))[1].tobytes(),
-        HAZARD: packed.getvalue(),
+        HAZARD: _packed(arrays),
     }
+    if sensed.thermal is not None:
+        names[THERMAL], contents[THERMAL] = (
+            f"{THERMAL}/{number:04d}{THERMAL_ENDING}",
+            _packed({THERMAL: sensed.thermal}),
+        )
     for kind, content in contents.items():
         (folder / names[kind]).write_bytes(content)
     place = f"{env.choice.split}/{folder_of(env.specs[0].name)}"
-    return {
+    row = {
         "file_name": f"{place}/{names[RGB]}",
         "width": rgb.shape[1],
         "height": rgb.shape[0],
@@ -216,3 +237,11 @@ def _write(env: Any, folder: Path, number: int, shot: Shot, rgb: NDArray[np.uint
         "hazard_file": f"{place}/{names[HAZARD]}",
         "camera": {"intrinsic": shot.intrinsic.tolist(), "cam2world": shot.cam2world.tolist()},
     }
+    return row | ({"thermal_file": f"{place}/{names[THERMAL]}"} if THERMAL in names else {})
+
+
+def _packed(arrays: dict[str, Any]) -> bytes:
+    """The content of a .npz file that holds `arrays`, [...], in their units."""
+    made = io.BytesIO()
+    np.savez_compressed(made, **arrays)
+    return made.getvalue()

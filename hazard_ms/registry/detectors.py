@@ -28,5 +28,6 @@ def register_detector(name: str, detector: Any) -> None:
 
 register_detector("noisy", "hazard_ms.sensing.detection.noisy:Noisy")
 register_detector("mask_rcnn", "hazard_ms.perception.detectors.mask_rcnn:MaskRcnn")
+register_detector("rf_detr", "hazard_ms.perception.detectors.rf_detr:RfDetr")
 register_detector("open", "hazard_ms.perception.detectors.open_vocabulary:OpenVocabulary")
 register_detector("small", "hazard_ms.perception.detectors.small:Small")

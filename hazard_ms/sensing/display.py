@@ -38,6 +38,11 @@ class Display:
         for some in cameras:
             take_over(some, lambda: int(world.frame[0]) / FRAMES_PER_SECOND)
 
+    def clear_air(self) -> None:
+        """Draw no more smoke and haze between the cameras and what they see, but for spectators."""
+        if self.effects is not None:
+            self.effects.veiled = False
+
     def show(self, effects: bool = True, spectator: bool = False) -> None:
         """Show everything as it is now; call it before a picture is taken. Without `effects`, only what has labels.
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import torch
 from mani_skill.envs.utils.observations import parse_obs_mode_to_struct
 
+from hazard_ms.sensing.senses.senses import DEGRADED, SENSES, THERMAL
 from hazard_ms.spec.checks import one_of
 
 # names of modes, of which the first three need no renderer, and of textures, which can be joined by "+"
 PLAIN_MODES = ("state", "state_dict", "none", "sensor_data", "pointcloud")
 TEXTURES = ("rgb", "depth", "segmentation", "position", "normal", "albedo", "rgbd", "state")
+
+UNCHANGED = {"sensor_data", "pointcloud", "position", "normal", "albedo"}  # what `degraded` would leave as it truly is
 
 
 def check_obs_mode(mode: str) -> None:
@@ -34,6 +38,20 @@ def check_renderer(mode: str | None, chosen: str | None) -> None:
     """Check that the renderer `chosen` can serve `mode`. Raises ValueError if `mode` needs one and there is none."""
     if chosen in ("none", None) and needs_pictures(mode):
         raise ValueError(f"obs_mode must be one of {', '.join(PLAIN_MODES[:3])} without a renderer, got {mode!r}")
+
+
+def check_senses(senses: Sequence[str], mode: str | None) -> tuple[str, ...]:
+    """`senses`, if observations of `mode` can have them. Raises ValueError for others."""
+    if isinstance(senses, str) or not isinstance(senses, Sequence):
+        raise ValueError(f"senses must be a list of some of {', '.join(SENSES)}, got {senses!r}")
+    for name in senses:
+        one_of(name, SENSES, "senses")
+    shown = mode or PLAIN_MODES[0]
+    if THERMAL in senses and not needs_pictures(mode):
+        raise ValueError(f"obs_mode must be one with pictures for the sense {THERMAL}, got {shown!r}")
+    if DEGRADED in senses and (wrong := UNCHANGED.intersection(shown.split("+"))):
+        raise ValueError(f"obs_mode must have colour and depth alone for the sense {DEGRADED}, got {min(wrong)!r}")
+    return tuple(dict.fromkeys(senses))
 
 
 def finite(obs: Any) -> Any:

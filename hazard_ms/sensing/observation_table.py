@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.sensing.senses.thermal import RANGE
 from hazard_ms.spec import Bound, Level, Term
 
 # goes up whenever a key, its place, shape, type or bounds change: policies that were trained before no longer fit
@@ -72,6 +73,7 @@ IMAGES = {  # of a camera, and of a point cloud; keys of ManiSkill
     "albedo": Meaning("colour of the surface, without light", **_BYTE),  # type: ignore[arg-type]
     "depth": Meaning("distance along the optical axis, 0 where nothing is hit; read it as unsigned", "mm"),
     "segmentation": Meaning("number of the thing, see `label_table`; 0 where nothing is hit", low=0.0),
+    "thermal": Meaning("what a thermal camera shows, with `senses`", "°C", "", *RANGE),
     "position": Meaning("point that is seen", "mm", "camera, looking along -z, y up", entries=("x", "y", "z")),
     "normal": Meaning("normal of the surface; NaN where there is none", "", "camera", entries=("x", "y", "z")),
     "xyzw": Meaning(
@@ -148,11 +150,11 @@ class ObservationTable:
             names, units = tuple(self._levels), ", ".join(level.unit for level in levels)
             low = tuple(level.least for level in levels)
             return Meaning("level at the point that is seen, blurred (16 x 16)", units, "", low, INF, names)
-        if path[:1] == ("extra",):
+        if path[:1] == ("extra",) and path[-1] != "thermal":
             return self._term(self._terms.get(path[-1]))
         if path[:1] == ("sensor_param",):
             return CAMERAS.get(path[-1])
-        return IMAGES.get(path[-1]) if path[:1] in (("sensor_data",), ("pointcloud",)) else None
+        return IMAGES.get(path[-1]) if path[:1] in (("sensor_data",), ("pointcloud",), ("extra",)) else None
 
     def _term(self, term: Term | None) -> Meaning | None:
         if term is None:

@@ -10,11 +10,12 @@ import torch
 from torch import Tensor
 
 from hazard_ms.episode.situation import Situation
-from hazard_ms.sensing.camera import relabel
+from hazard_ms.sensing.camera import NOTHING, metres, relabel
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.hazard_image import enlarge, hazard_images, sample_points
 from hazard_ms.sensing.label_camera import LabelCamera
 from hazard_ms.sensing.labels import label_table
+from hazard_ms.sensing.senses.senses import DEGRADED, THERMAL, Frame, Senses
 from hazard_ms.sensing.target_table import TargetTable
 from hazard_ms.sensing.view import View
 from hazard_ms.spec import Term
@@ -26,11 +27,23 @@ class Observer:
     """The senses of one built environment, made anew with every reconfiguration."""
 
     def __init__(
-        self, situation: Situation, terms: Sequence[Term], display: Display, sensors: dict[str, Any], labels: Tensor
+        self,
+        situation: Situation,
+        terms: Sequence[Term],
+        display: Display,
+        sensors: dict[str, Any],
+        labels: Tensor,
+        senses: Sequence[str] = (),
     ) -> None:
-        """Make the senses for the task's `terms`; `sensors`: cameras by name; `labels` [E, S]: see `labels_of`."""
+        """Make the senses for the task's `terms`; `sensors`: cameras by name; `labels` [E, S]: see `labels_of`.
+
+        `senses`: extra ones, see `hazard_ms.sensing.senses.senses`.
+        """
         self.situation, self.terms, self.display, self.sensors, self.labels = situation, terms, display, sensors, labels
         self.table = TargetTable(situation.world, SLOTS)
+        self.senses = Senses(situation, senses)
+        if DEGRADED in senses:
+            display.clear_air()
         self._constant = {t.name: self._value(t) for t in terms if t.constant}
 
     @property
@@ -93,12 +106,28 @@ class Observer:
         seen = obs["sensor_data"][name] if "sensor_data" in obs else None
         depth = seen["depth"] if seen is not None and "depth" in seen else self._textures(depth=True)["depth"]
         params = obs["sensor_param"][name] if "sensor_param" in obs else self.camera.get_params()
-        image = enlarge(self._levels(depth, params), *depth.shape[1:3])
-        if in_extra or seen is None:
-            obs["extra"]["hazard"] = image
-        else:
-            seen["hazard"] = image
+        place = obs["extra"] if in_extra or seen is None else seen
+        place["hazard"] = enlarge(self._levels(depth, params), *depth.shape[1:3])
+        if self.senses.chosen:
+            self._add_senses(seen or {}, place, self._frame(depth, seen or {}, params))
         return obs
+
+    def _frame(self, depth: Tensor, seen: dict[str, Tensor], params: dict[str, Tensor]) -> Frame:
+        """What the head camera truly sees; `depth` as ManiSkill gives it, [E, H, W, 1]."""
+        ids = seen["segmentation"] if "segmentation" in seen else self._textures(segmentation=True)["segmentation"]
+        labels = relabel(ids, self.labels)
+        return Frame(depth[..., 0], labels, params["intrinsic_cv"], params["cam2world_gl"], "head")
+
+    def _add_senses(self, seen: dict[str, Tensor], place: dict[str, Tensor], frame: Frame) -> None:
+        """Put the thermal image, float32 [E, H, W, 1] [C], into `place`; degrade the colour and depth in `seen`."""
+        if THERMAL in self.senses.chosen:
+            place["thermal"] = self.senses.thermal(frame)[..., None]
+        if DEGRADED in self.senses.chosen:
+            colour, depth, _ = self.senses.degraded(seen.get("rgb"), metres(frame.depth), frame)
+            if colour is not None:
+                seen["rgb"] = colour
+            if "depth" in seen:
+                seen["depth"] = (depth * 1000.0).round().clamp(max=65535.0).to(torch.int32).to(torch.int16)[..., None]
 
     def _levels(self, depth: Tensor, params: dict[str, Tensor]) -> Tensor:
         """Levels of the K hazards at 16 x 16 points of the depth image, [E, K, 16, 16], each in its hazard's unit."""
@@ -118,7 +147,8 @@ class Observer:
         self._refresh()
         self.camera.capture()
         seen = self._textures(rgb=True, depth=labels is None, segmentation=labels is None)
-        return seen["rgb"][0], self._view(seen if labels is None else labels.take())
+        colour, view = self._view(seen if labels is None else labels.take(), seen["rgb"])
+        return colour[0], view
 
     def glance(self) -> View:
         """The view of a look without its image, in a third of the time."""
@@ -126,14 +156,18 @@ class Observer:
             return self.look()[1]
         self.display.show(effects=False)
         self._refresh()
-        return self._view(self._label_camera.take())
+        return self._view(self._label_camera.take())[1]
 
     def _refresh(self) -> None:
         self.display.scene.update_render(update_sensors=True, update_human_render_cameras=False)
 
-    def _view(self, seen: dict[str, Tensor]) -> View:
-        """The view of "depth" in [mm] and "segmentation", [E, H, W, 1] each."""
+    def _view(self, seen: dict[str, Tensor], colour: Any = None) -> tuple[Any, View]:
+        """The `colour` and the view of "depth" in [mm] and "segmentation", [E, H, W, 1] each, degraded if asked for."""
         params = self.camera.get_params()
         levels = self._levels(seen["depth"], params)
-        labels = relabel(seen["segmentation"], self.labels)
-        return View.of(seen["depth"], params["intrinsic_cv"], params["cam2world_gl"], labels, levels)
+        frame, depth = self._frame(seen["depth"], seen, params), seen["depth"]
+        labels = frame.labels
+        if DEGRADED in self.senses.chosen:
+            colour, depth, _ = self.senses.degraded(colour, metres(frame.depth), frame)
+            labels = torch.where(depth > 0.0, labels, NOTHING)
+        return colour, View.of(depth, frame.intrinsic, frame.cam2world, labels, levels)

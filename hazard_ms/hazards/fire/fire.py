@@ -34,6 +34,7 @@ class Fire(Hazard):
     state_type: ClassVar[type[State]] = FireState
     level: ClassVar[Level] = TEMPERATURE
     tells: ClassVar[dict[str, Quantity]] = TELLS
+    signals: ClassVar[str] = "hazard_ms.sensing.senses.of_fire:FireSignals"
     uses: ClassVar[tuple[str, ...]] = ("water", "air")
 
     room_temperature: float = 20.0  # [C] [HAZARD fire/fire_utils.py:16]
@@ -175,11 +176,10 @@ class Fire(Hazard):
         return inside | (self.image(state, world, points) > self.agent_bound)
 
     def agent_info(self, state: FireState, world: World) -> dict[str, Tensor]:
-        place = world.agent_position[:, None]
         return {
             "agent_temperature": state.agent_temperature.clone(),
             "agent_overheated": state.agent_temperature > self.endurance,
-            "agent_in_fire": self.forbids(state, world, place)[:, 0],
+            "agent_in_fire": self.forbids(state, world, world.agent_position[:, None])[:, 0],
         }
 
 

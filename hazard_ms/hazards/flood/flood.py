@@ -53,6 +53,7 @@ class Flood(Hazard):
         "hazard_class": Quantity("hazard class of the water to people, H1 to H6, 0 if dry", "", 0.0, 6.0),
         "agent_traction": Quantity("share of the agent's weight that is left on the floor", "", 0.0, 1.0),
     }
+    signals: ClassVar[str] = "hazard_ms.sensing.senses.of_others:FloodSignals"
     fills: ClassVar[bool] = True
     provides: ClassVar[dict[str, str]] = {"water": "image"}
 

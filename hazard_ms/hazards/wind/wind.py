@@ -15,8 +15,7 @@ cart has settled: it feels nothing, for ever. Constants: docs/physics.md 1.3; wh
 the pressure upwind of the centre, and the logarithmic profile, over which force and torque are integrated from a
 thing's base to its top. There the new velocity is a weighted mean of the thing's own and of those of the air that
 meets it, so wind alone makes no thing faster than its gusts, in any direction. Blows break fragile things, and robots
-fall over. What is carried away stops at the enclosure that `Room.beyond` sets. Limits: no added mass; things do not
-shelter one another.
+fall over. What is carried away stops at the enclosure that `Room.beyond` sets. Limits: no added mass, no mutual lee.
 """
 
 from __future__ import annotations
@@ -60,6 +59,7 @@ class Wind(Hazard):
         "agent_fallen": Quantity("the agent lies on the ground", "", 0, 1),
         "agent_struck": Quantity("energy of the hardest blow at the agent in the last frame", "J", 0.0),
     }
+    signals: ClassVar[str] = "hazard_ms.sensing.senses.of_others:WindSignals"
     fills: ClassVar[bool] = True  # with haze
     open_air: ClassVar[bool] = True
     provides: ClassVar[dict[str, str]] = {"air": "velocity_at"}

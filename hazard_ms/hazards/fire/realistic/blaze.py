@@ -61,6 +61,7 @@ class Blaze(Hazard):
     state_type: ClassVar[type[State]] = BlazeState
     level: ClassVar[Level] = TEMPERATURE
     tells: ClassVar[dict[str, Quantity]] = TELLS_OF_BLAZE
+    signals: ClassVar[str] = "hazard_ms.sensing.senses.of_fire:BlazeSignals"
     fills: ClassVar[bool] = True  # with smoke
     uses: ClassVar[tuple[str, ...]] = ("water", "air")
 

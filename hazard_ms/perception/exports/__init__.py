@@ -1,0 +1,1 @@
+"""Datasets in the layouts that other people's trainers read."""

@@ -1,0 +1,1 @@
+"""How a detector errs in pictures that it was not trained on, and whether what agents believe by that is so."""

@@ -113,7 +113,7 @@ def eyes_of(text: str) -> str:
 
 
 def camera_of(text: str) -> dict[str, Any]:
-    """Keywords of gym.make for the eyes of a perception; none for the robots' own. Raises ValueError as `parts` does."""
+    """Keywords of gym.make for the eyes of a perception, none for the robots' own. Raises ValueError as `parts`."""
     made = Eyes.of(eyes_of(text))
     return {} if made == Eyes.of(EYES) else {"sensor_configs": made.camera}
 

@@ -159,7 +159,7 @@ def _missing(brief: Brief, decision: Decision, seen: Sequence[Target], doubts: S
     """How many targets are expected to be where none is seen, and their value: of each category what beliefs leave."""
     left = Counter(t.category for t in brief.targets)
     left.subtract(Counter(t.category for t in decision.targets if t.rescued or t.held))
-    values, count = {t.category: t.value for t in brief.targets}, dict(left.items())
+    values, count = {t.category: t.value for t in brief.targets}, {kind: float(n) for kind, n in left.items()}
     for target, doubt in zip(seen, doubts, strict=True):
         count[target.category] = count.get(target.category, 0) - (1.0 - doubt)
     missing = {category: max(number, 0.0) for category, number in count.items()}

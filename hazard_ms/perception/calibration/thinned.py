@@ -57,7 +57,8 @@ class Thinned:
 
     def annotations(self, image: int, first: int) -> list[dict[str, Any]]:
         """The rows of its things in COCO's form for the picture numbered `image`, with ids from `first` on."""
-        masks, rows = self.masks(), []
+        masks = self.masks()
+        rows: list[dict[str, Any]] = []
         for thing in self.picture.things:
             mask = masks.get(int(thing["instance"]))
             if mask is not None:

@@ -6,6 +6,7 @@ are one thing.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -87,7 +88,7 @@ class Small(Detector):
         return things(chances, offsets[0, :, :height, :width].cpu().numpy(), self.classes)
 
 
-def things(chances: NDArray[np.float32], offsets: NDArray[np.float32], classes: list[str]) -> list[Detection]:
+def things(chances: NDArray[np.float32], offsets: NDArray[np.float32], classes: Sequence[str]) -> list[Detection]:
     """The things that the pixels of a picture point at.
 
     `chances`, [C + 2, H, W]: of structure, of each of `classes`, and of other things; `offsets`, [2, H, W] [pixels]:

@@ -139,7 +139,8 @@ class OwnLabeller(DetectingLabeller):
         changes its category, or is hardly believed any more, loses its index.
         """
         sure = [*gone, *(t for t in self._tracker.tracks if t.rescued and t not in gone)]
-        for track, category, track.belief in believed(self._tracker.tracks, sure, self._expected):
+        for track, category, belief in believed(self._tracker.tracks, sure, self._expected):
+            track.belief = belief
             if category != track.category or track.belief < FORGET:
                 self._drop(track)
             track.category = category

@@ -1,1 +1,1 @@
-"""How a detector errs in pictures that it was not trained on, and whether what agents believe by that is so."""
+"""The errors of detectors in pictures that they were not trained on, and whether what agents believe by these is so."""

@@ -1,4 +1,4 @@
-"""What a detector tells of captured pictures, picture by picture, beside what is there."""
+"""Captured pictures as a detector sees them, one by one, beside what is there."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Observed:
 
 
 def observed(detector: Detector, pictures: Sequence[Thinned], classes: Sequence[str]) -> list[Observed]:
-    """What a detector tells of `pictures` of things of `classes`; things of other categories count as none.
+    """The `pictures` as a detector sees them, with things of `classes`; things of other categories count as none.
 
     A detection is of the thing that has more than half of its pixels.
     """

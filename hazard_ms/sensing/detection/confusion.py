@@ -1,13 +1,13 @@
-"""How a detector errs, as measured in pictures that it was not trained on, and what its looks tell by that.
+"""The errors of a detector, as counted in pictures that it was not trained on, and what its looks tell by them.
 
-A look at a thing tells a category, or misses it. With b the bucket of its pixels, k its category and c its clutter:
+A look at a thing tells a category, or misses it. With b the bucket of its pixels, k its category, one of L, and c clutter:
 
     P(miss | k)      = 1 - found[b]
     P(told k | k)    = found[b] right[b]
     P(told j | k)    = found[b] (1 - right[b]) taken[k][j]
     P(miss | c)      = 1 - again          c: something else that was once told as j0, or nothing at all
     P(told j0 | c)   = again steady
-    P(told j | c)    = again (1 - steady) / (K - 1)
+    P(told j | c)    = again (1 - steady) / (L - 1)
 
 Before the second look, c has the weight clutter[j0], the number of such places in a scene, and k that of the number of
 k that there are to be found, times `seen`, times the chance that k is told as j0.
@@ -47,12 +47,12 @@ class Look(NamedTuple):
 class Confusion:
     """The errors of a detector, for looks with the eyes with which they were measured."""
 
-    classes: Annotated[tuple[Name, ...], Within(2, 1000)]  # K categories
+    classes: Annotated[tuple[Name, ...], Within(2, 1000)]  # L categories
     pixels: Annotated[tuple[Count, ...], Within(1, 20)]  # least of each bucket, the first 0
     found: Annotated[tuple[Share, ...], Within(1, 20)]  # share of the looks at a thing that was found before, by bucket
     right: Annotated[tuple[Share, ...], Within(1, 20)]  # share of what is found that gets its category, by bucket
     taken: dict[str, dict[str, Count]]  # looks at a category that told another one: the true one, the told one
-    clutter: dict[str, Count]  # places in a scene that are told as a category and are none of the K
+    clutter: dict[str, Count]  # places in a scene that are told as a category and are none of the L
     again: Share  # share of the looks at such places that tell something once more
     steady: Share  # share of these that tell the same
     seen: Share  # share of the things that are found by any look
@@ -79,7 +79,7 @@ class Confusion:
 
     @functools.cached_property
     def off(self) -> NDArray[np.float64]:
-        """The chance of each wrong category, [K, K], by the true one: rows sum to 1, 0 on the diagonal."""
+        """The chance of each wrong category, [L, L], by the true one: rows sum to 1, 0 on the diagonal."""
         count = np.array([[self.taken.get(k, {}).get(j, 0.0) for j in self.classes] for k in self.classes])
         count += ONE / (len(self.classes) - 1)
         np.fill_diagonal(count, 0.0)
@@ -91,14 +91,14 @@ class Confusion:
         return bisect_right(self.pixels, pixels) - 1
 
     def told(self, category: str, pixels: float) -> NDArray[np.float64]:
-        """The chance, [K], that a thing of each category that is found is told as `category`."""
+        """The chance, [L], that a thing of each category that is found is told as `category`."""
         number, right = self.classes.index(category), _inside(self.right[self.bucket(pixels)])
         chances: NDArray[np.float64] = (1.0 - right) * self.off[:, number]
         chances[number] = right
         return chances
 
     def likelihood(self, look: Look, first: str) -> NDArray[np.float64]:
-        """The chance of a look for each category, and last for clutter that was `first` told so: [K + 1]."""
+        """The chance of a look for each category, and last for clutter that was `first` told so: [L + 1]."""
         found, again, steady = _inside(self.found[self.bucket(look.pixels)]), _inside(self.again), _inside(self.steady)
         if look.told is None:
             return np.append(np.full(len(self.classes), 1.0 - found), 1.0 - again)
@@ -106,7 +106,7 @@ class Confusion:
         return np.append(found * self.told(look.told, look.pixels), clutter)
 
     def posterior(self, looks: Sequence[Look], expected: Mapping[str, float], usual: float) -> NDArray[np.float64]:
-        """The chance of each category, and last that it is none of them, [K + 1], after `looks` at one place.
+        """The chance of each category, and last that it is none of them, [L + 1], after `looks` at one place.
 
         The first look has told something. `expected`: how many of each category there are, `usual` where it is silent.
         """

@@ -1,4 +1,4 @@
-"""What all looks at the place of one track tell together: see `hazard_ms.sensing.detection.confusion`.
+"""The evidence of all looks at the place of one track, by `hazard_ms.sensing.detection.confusion`.
 
 Looks from about one place err alike, so of those from within APART of each other only the one with the most pixels
 counts, the earliest of equal ones.
@@ -39,7 +39,7 @@ class Evidence:
 
     @property
     def looks(self) -> tuple[Look, ...]:
-        """Those that count, in their order."""
+        """The looks that count, in their order."""
         return tuple(self._looks)
 
     def chances(self, expected: Mapping[str, float]) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """The errors of a detector, as counted in pictures that it was not trained on, and what its looks tell by them.
 
-A look at a thing tells a category, or misses it. With b the bucket of its pixels, k its category, one of L, and c clutter:
+A look at a thing tells a category, or misses it. With b the bucket of its pixels, k its category, one of L, c clutter:
 
     P(miss | k)      = 1 - found[b]
     P(told k | k)    = found[b] right[b]

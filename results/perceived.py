@@ -2,7 +2,8 @@
 
 Every agent plays the 25 scenes of each task's split `test` and sees through our small detector. Writes perceived.md
 beside this file, with the same agents' scores of scores.csv and the paper's; rows of what was played elsewhere stay.
-With `tables` alone it plays nothing.
+With `tables` alone it plays nothing. `parts [SCENES]` plays the first scenes, 5 by default, with each part of the track
+alone, with all and with none, and writes perceived_parts.md.
 """
 
 from __future__ import annotations
@@ -31,6 +32,28 @@ PAPER = {
     "GPT-3.5": (63.5, 38.5, 16.2),
     "GPT-4": (67.7, 38.2, 33.9),
 }
+PLAIN, LARGER = "small:fusion=false", "512/120"
+# what is played by name: the perception, and whether agents count beliefs
+PARTS = {
+    "none": (PLAIN, False),
+    f"eyes {LARGER}": (f"{PLAIN},eyes={LARGER}", False),
+    "fusion": ("small", False),
+    "belief": (PLAIN, True),
+    "fusion and belief": ("small", True),
+    f"all, eyes {LARGER}": (f"small:eyes={LARGER}", True),
+}
+DOUBTING = {"greedy": "greedy:belief=false", "planner": "planner:belief=0.0", "mcts": "mcts:belief=0.0"}  # without
+PARTS_HEAD = """# The parts of the track with perception
+
+Made by `./run python results/perceived.py parts`. The first {scenes} scenes of `test`, Fetch, presets `paper`. Value in
+percent, with 95 % bootstrap intervals over scenes, and the difference from none of the parts, paired by episode.
+`eyes`: other pictures than 256/120; `fusion`: tracks keep what all looks tell; `belief`: agents weigh values by it.
+Written at
+{machine}.
+
+| task | agent | parts | Value | more than none | s an episode |
+|---|---|---|---|---|---|
+"""
 HEAD = """# With perception
 
 Made by `./run python results/perceived.py`. Agents see through `--perception small`: segmentation is withheld, things
@@ -95,8 +118,32 @@ def rows() -> str:
     return made
 
 
+def parts(scenes: int) -> None:
+    """Play the first `scenes` of each task with the parts of the track, and write their table."""
+    text = PARTS_HEAD.format(scenes=scenes, machine=machine())
+    for task in TASKS:
+        for agent, without in DOUBTING.items():
+            none: dict[Episode, float] = {}
+            for number, (name, (perception, doubts)) in enumerate(PARTS.items()):
+                folder = RAW.parent / "perceived_parts" / str(number) / agent / task
+                who = agent if doubts else without
+                told = ("--split", "test", "--episodes", str(scenes), "--perception", perception, "--agents", who)
+                evaluate(task, folder, *told)
+                played = results_in(folder)
+                own = {(r.seed, r.scene): r.tally.value for r in played}
+                none = none or own
+                seconds = sum(r.wall_seconds for r in played) / len(played)
+                more = "-" if own == none and number == 0 else words(difference(own, none))
+                text += f"| {task} | {agent} | {name} | {words(value_of(played))} | {more} | {seconds:.0f} |\n"
+    (HERE / "perceived_parts.md").write_text(text, encoding="utf-8")
+    print(text)
+
+
 def main(wanted: list[str]) -> None:
     """Play the agents called `wanted`, or all, and write the table. Raises ValueError for unknown names."""
+    if wanted[:1] == ["parts"]:
+        parts(int(wanted[1]) if len(wanted) > 1 else 5)
+        return
     names = [f"{task}-{agent}" for task in TASKS for agent in AGENTS]
     for name in [] if wanted == ["tables"] else [one_of(each, names, "an agent of a task") for each in wanted] or names:
         task, _, agent = name.partition("-")

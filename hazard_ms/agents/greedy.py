@@ -1,11 +1,12 @@
 """Our greedy agent, after the paper's: always the known target of the lowest cost; looks around when it knows none.
 
-    cost = (distance + HANDLING) * (1 + failures)^2 / predicted value
+    cost = (distance + HANDLING) * (1 + failures)^2 / (predicted value * belief)
 
 The predicted value is halved where the target is damaged, or where a hazard threatens it by the time of arrival, with
 the hazard's level continued along the straight line through the last two sightings. A target that failed repeatedly
-gets a growing cost and is given up at last, so no path is tried for ever. Searching: walk to the landmark with the most
-unexplored floor around it, then look around there.
+gets a growing cost and is given up at last, so no path is tried for ever. The belief is that the thing is what it seems
+to be, 1 with the truth; a pick-up that met no target is no failure, as the thing is not believed in any more.
+Searching: walk to the landmark with the most unexplored floor around it, then look around there.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from hazard_ms.agents.base import Agent, distance, known, open_targets
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
+from hazard_ms.skills.failures import NOT_A_TARGET
 from hazard_ms.skills.options.landmarks import AROUND, frontier
 
 WALKING = 1.0 / 62.0  # [m/frame] (docs/benchmark.md 1)
@@ -33,11 +35,14 @@ class Greedy(Agent):
 
     colours = False
 
-    def __init__(self, give_up: int = GIVE_UP) -> None:
-        """`give_up`: failures after which a target is given up. Raises ValueError unless it is positive."""
+    def __init__(self, give_up: int = GIVE_UP, belief: bool = True) -> None:
+        """`give_up`: failures after which a target is given up; `belief`: whether values count by what it believes.
+
+        Raises ValueError unless `give_up` is positive.
+        """
         if give_up < 1:
             raise ValueError(f"give_up must be at least 1, got {give_up}")
-        self._give_up = give_up
+        self._give_up, self._belief = give_up, belief
 
     def reset(self, brief: Brief) -> None:
         """Forget the last episode. Nothing is random."""
@@ -64,7 +69,7 @@ class Greedy(Agent):
         if self._before is None or decision.last_result is None or decision.last_result.ok:
             return
         action, start = self._before
-        if action.target is None:
+        if action.target is None or (self._belief and decision.last_result.reason == NOT_A_TARGET):
             return
         way = float(np.hypot(*(np.asarray(decision.agent_position) - start)))
         if action.verb in (WALK_TO, WALK_ONE_STEP) and way > PROGRESS:
@@ -116,7 +121,7 @@ class Greedy(Agent):
         levels, height = _predicted(sighting, decision.frame + way / WALKING), float(sighting.position[2])
         threats = zip(self._hazards, levels, strict=False)  # a level is missing where there was no hazard image
         lost = target.damaged or any(hazard.threatens(target, level, height) for hazard, level in threats)
-        value = target.value * (self._damaged_share if lost else 1.0)
+        value = target.value * (self._damaged_share if lost else 1.0) * (target.belief if self._belief else 1.0)
         loyalty = LOYALTY if decision.last_action == Action(WALK_TO, name) else 1.0
         return loyalty * way * (1 + self._failures.get(name, 0)) ** 2 / value
 

@@ -94,6 +94,30 @@ def train(options: Annotated[tyro.conf.OmitArgPrefixes[TrainOptions], tyro.conf.
     return run(options)
 
 
+def calibrate(
+    folders: tyro.conf.Positional[tuple[Path, ...]],
+    perception: str = "small",
+    split: tuple[str, ...] = ("test",),
+    every: int = 1,
+    output: Annotated[Path | None, flag("-o")] = None,
+) -> int:
+    """Count the errors of a detector in pictures that it was not trained on, and print whether beliefs by them are so.
+
+    Agents that see through the detector weigh its looks by the table, if that lies beside its weights.
+
+    Args:
+        folders: Datasets, OUTPUT/TASK.
+        perception: The detector, as `hazard-ms play --perception` takes it.
+        split: Splits whose pictures are taken, of each dataset those that it has.
+        every: Of how many pixels the first is looked at, both ways: 4 makes 256 pixels of 1024.
+        output: File for the table, NAME_confusion.json beside the weights NAME.safetensors.
+    """
+    from hazard_ms.perception.calibration.command import calibrate as run
+
+    print(run(folders, perception, split, every, output))
+    return 0
+
+
 PerceptionCommand = (
     Annotated[int, tyro.conf.subcommand(name="capture", constructor=capture)]
     | Annotated[int, tyro.conf.subcommand(name="check", constructor=check)]
@@ -101,4 +125,5 @@ PerceptionCommand = (
     | Annotated[int, tyro.conf.subcommand(name="score", constructor=score)]
     | Annotated[int, tyro.conf.subcommand(name="export", constructor=export)]
     | Annotated[int, tyro.conf.subcommand(name="train", constructor=train)]
+    | Annotated[int, tyro.conf.subcommand(name="calibrate", constructor=calibrate)]
 )

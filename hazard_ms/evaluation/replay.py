@@ -9,6 +9,7 @@ from hazard_ms.evaluation.options import EpisodeOptions, ReplayOptions
 from hazard_ms.evaluation.result import EpisodeResult, result_files, versions
 from hazard_ms.evaluation.spread import spread
 from hazard_ms.evaluation.workers import SILENCE, Job
+from hazard_ms.sensing.detection.perception import with_eyes
 
 EXACT, SAME_SCORE, DIFFERENT = "exact", "same score", "different"
 
@@ -52,7 +53,7 @@ def episode_of(record: EpisodeResult, load: tuple[str, ...] = ()) -> EpisodeOpti
             agent=record.agent,
             seed=record.seed,
             scene=scene,
-            perception=record.perception,
+            perception=with_eyes(record.perception, record.eyes),
         )
     except TypeError as error:
         raise ValueError(f"settings must be those of an episode, got {record.settings!r:.200}: {error}") from None

@@ -21,6 +21,7 @@ from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
 from hazard_ms.machine.files import write
 from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.registry.version import __version__
+from hazard_ms.sensing.detection.eyes import EYES
 from hazard_ms.spec.foreign import plain
 from hazard_ms.spec.foreign.files import printable, read_foreign, sha256_of
 from hazard_ms.spec.foreign.plain import Within
@@ -118,6 +119,7 @@ class EpisodeResult:
     phase_seconds: dict[str, Seconds] = field(default_factory=dict)  # wall time by phase, as in `Played` [s]
     clock: str = OFF  # by which hazards went on while the agent thought
     perception: str = TRUTH  # what told the agent of things
+    eyes: Annotated[str, Within(0, 100)] = EYES  # with which it looked: see `hazard_ms.sensing.detection.eyes`
     counters: dict[str, float] = field(default_factory=dict)  # the agent's own counts, such as calls of a model
     files: dict[str, str] = field(default_factory=dict)  # SHA-256 of those that agent and perception name, by path
     versions: dict[str, str] = field(default_factory=lambda: versions())

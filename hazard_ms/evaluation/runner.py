@@ -16,6 +16,7 @@ from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import BROKEN, STUCK, DecisionRecord, EpisodeResult, Link, Played, file_hashes
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.registry.detectors import TRUTH
+from hazard_ms.sensing.detection.perception import eyes_of
 from hazard_ms.skills.actions import wait
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import STOP, Action, Decision, Result
@@ -211,6 +212,7 @@ def result_of(options: EpisodeOptions, env: SkillEnv, played: Played) -> Episode
         phase_seconds=played.phase_seconds,
         clock=options.clock,
         perception=options.perception,
+        eyes=eyes_of(options.perception),
         counters=played.counters,
         files=file_hashes(options.agent, options.perception),
     )

@@ -18,6 +18,7 @@ from hazard_ms.evaluation.spread import in_shard, shard, spread
 from hazard_ms.evaluation.workers import Job
 from hazard_ms.machine.files import make_folder
 from hazard_ms.registry.version import __version__
+from hazard_ms.sensing.detection.perception import eyes_of
 
 LONGEST_NAME = 255  # of a file, in the file systems of Linux and macOS [bytes]
 
@@ -99,8 +100,9 @@ def kept(options: SweepOptions, episode: EpisodeOptions) -> EpisodeResult | None
 def _is_of(result: EpisodeResult, episode: EpisodeOptions) -> bool:
     """Whether a result is that of an episode, by what both name."""
     e = episode
-    told = (result.env_id, result.agent, result.seed, result.clock, result.perception, result.settings)
-    return told == (e.env_id, e.agent, e.seed, e.clock, e.perception, json.loads(json.dumps(e.settings)))
+    told = (result.env_id, result.agent, result.seed, result.clock, result.perception, result.eyes, result.settings)
+    settings = json.loads(json.dumps(e.settings))
+    return told == (e.env_id, e.agent, e.seed, e.clock, e.perception, eyes_of(e.perception), settings)
 
 
 def _play_all(episodes: list[EpisodeOptions], options: SweepOptions) -> dict[EpisodeOptions, str]:

@@ -30,6 +30,7 @@ class Target:
     rescued: bool = False
     held: bool = False
     damaged: bool = False  # whether it was damaged when last seen
+    belief: float = 1.0  # the chance that it is what it seems to be, and there: 1 with the truth
 
 
 class TargetTable:

@@ -14,7 +14,7 @@ from hazard_ms.env import HazardEnv
 from hazard_ms.env.time_limit import is_bare
 from hazard_ms.robots import skill_control_mode
 from hazard_ms.sensing.detection.labeller import Labeller
-from hazard_ms.sensing.detection.perception import TRUTH
+from hazard_ms.sensing.detection.perception import TRUTH, camera_of
 from hazard_ms.sensing.detection.perception import perception as perception_of
 from hazard_ms.sensing.semantic_map import SemanticMap, cells_for
 from hazard_ms.skills.actions import skill
@@ -31,7 +31,7 @@ from hazard_ms.skills.decision import (
     Result,
     available,
 )
-from hazard_ms.skills.failures import EPISODE_OVER
+from hazard_ms.skills.failures import EPISODE_OVER, NOT_A_TARGET, REFUSED
 
 
 class SkillEnv:
@@ -79,10 +79,12 @@ class SkillEnv:
     def make(cls, env_id: str, perception: str = TRUTH, **keywords: Any) -> SkillEnv:
         """A new environment for skills, made with `keywords` of gym.make, in the control mode that skills need.
 
+        Its head camera has the eyes of the `perception` unless `keywords` have `sensor_configs`.
+
         Raises ValueError for keywords and a `perception` that are not allowed, and where nothing renders.
         """
         mode = skill_control_mode(keywords.get("robot_uids", "fetch"))
-        made = gym.make(env_id, **{"obs_mode": "none", "control_mode": mode, **keywords})
+        made = gym.make(env_id, **{"obs_mode": "none", "control_mode": mode, **camera_of(perception), **keywords})
         try:
             return cls(made, perception=perception)
         except ValueError:
@@ -145,11 +147,14 @@ class SkillEnv:
         self._check(action)
         self._reward, doing = 0.0, skill(self.stage, action)
         result = self.run(doing)
-        if action.verb == PICK_UP and result.ok and action.target is not None:
+        if action.verb == PICK_UP and action.target is not None:
             index = self._labeller.index(action.target)
-            self._labeller.took(index)
-            for seen in self.maps:
-                seen.forget(index)
+            if result.ok:
+                self._labeller.took(index)
+                for seen in self.maps:
+                    seen.forget(index)
+            elif result.reason in REFUSED:
+                self._labeller.refused(index, result.reason == NOT_A_TARGET)
         self._last = (action, result)
         info = self.base.get_info()
         terminated = action.verb == STOP or bool(info["success"][0]) or bool(info["fail"][0])

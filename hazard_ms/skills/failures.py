@@ -34,3 +34,6 @@ FAILURES = (
 
 # Of an action that was still under way, and did not fail: whoever asks for it again goes on with it
 UNFINISHED = (MAX_FRAMES, EPISODE_OVER)
+
+# Of a pick-up that may have found no target where one was believed to be
+REFUSED = (NOT_A_TARGET, UNREACHABLE)

@@ -23,6 +23,10 @@ from hazard_ms.cli.__main__ import main
         (["score", "{}", "{}/none.json"], "must be a dataset"),
         (["train", "-o", "{}"], "DATA must be one dataset or more"),
         (["train", "{}", "-o", "{}"], "must be a dataset"),
+        (["calibrate", "{}"], "each of DATA must have one of the splits test"),
+        (["calibrate", "{}", "--every", "0"], "every must be a whole number from 1 to 64, got 0"),
+        (["calibrate", "{}", "--perception", "truth"], "perception must have a detector that says which categories"),
+        (["calibrate", "{}", "--perception", "noisy"], "perception must have a detector that says which categories"),
         (["capture", "--fov", "200"], "fov must be from 10 to 150 degrees, got 200.0"),
     ],
 )

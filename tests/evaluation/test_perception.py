@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 from hazard_ms.agents.base import agent
-from hazard_ms.evaluation.comparison.folders import groups
+from hazard_ms.evaluation.comparison.folders import groups, title
 from hazard_ms.evaluation.options import EpisodeOptions, SweepOptions
 from hazard_ms.evaluation.replay import episode_of
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.evaluation.runner import Runner, agent_of
+from hazard_ms.evaluation.sweep import kept
 from hazard_ms.sensing.detection.noisy import Noisy
 from hazard_ms.sensing.detection.perception import perception
 from hazard_ms.skills.executor import SkillEnv
@@ -73,6 +74,42 @@ def test_agents_get_no_labels_and_no_names_of_the_truth(env: SkillEnv) -> None:
     assert all("#" in t.name for t in env.brief().targets)
     played(env, "truth")
     assert (images := env.decision().images) is not None and images.segmentation is not None
+
+
+@pytest.mark.render
+@pytest.mark.parametrize("name", ["greedy", "planner"])
+def test_with_the_truth_beliefs_change_nothing(env: SkillEnv, name: str) -> None:
+    """Not a bit of the simulation: the chain of hashes is the same, and every decision."""
+    off = {"greedy": "false", "planner": "0"}[name]
+    usual = played(env, "truth", who=name)
+    assert played(env, "truth", who=f"{name}:belief={off}") == usual and len(usual[1]) > 1
+
+
+@pytest.mark.render
+def test_the_camera_has_the_eyes_of_the_perception() -> None:
+    """96 x 64 pixels with 90 degrees over the width: a focal length of 48 pixels both ways."""
+    made = SkillEnv.make(TASK, "noisy:eyes=96x64/90", effects="off")
+    try:
+        decision, _ = made.reset(seed=SEED)
+        assert decision.images is not None and decision.images.depth.shape == (64, 96)
+        intrinsic = made.base.observer.camera.get_params()["intrinsic_cv"][0].cpu().numpy()
+        assert np.diag(intrinsic)[:2].tolist() == pytest.approx([48.0, 48.0], rel=1e-4)
+    finally:
+        made.close()
+
+
+def test_a_result_of_other_eyes_is_another_episode(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """When a detector gets other eyes, what it played before is replayed with the old ones, and played anew."""
+    sweep = SweepOptions(episodes=1, perception="noisy", agents=("greedy",), output=tmp_path)
+    (episode,) = sweep.episode_options()
+    old = replace(result_of(episode), perception="noisy")
+    assert old.eyes == "256/120"
+    old.write(sweep.place(episode))
+    assert kept(sweep, episode) == old
+    monkeypatch.setattr(Noisy, "eyes", "512/120")
+    assert kept(sweep, episode) is None
+    assert episode_of(old).perception == "noisy:eyes=256/120"
+    assert "eyes 512/120" in title(replace(old, eyes="512/120")) and "eyes" not in title(old)
 
 
 def test_who_sees_what_is_hidden_needs_the_truth() -> None:

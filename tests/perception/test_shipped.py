@@ -19,7 +19,7 @@ from hazard_ms.tasks import task_of
 
 
 def test_it_knows_everything_that_is_to_be_rescued_and_the_carts() -> None:
-    known = set(Small()._classes)
+    known = set(Small().classes)
     for env_id in ("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1"):
         task = task_of(env_id, "paper")
         for scene in task.scenes("test"):

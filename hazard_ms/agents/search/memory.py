@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hazard_ms.agents.search.fire_watch import FireWatch
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
-from hazard_ms.skills.failures import TOO_FAR
+from hazard_ms.skills.failures import NOT_A_TARGET, TOO_FAR
 
 PROGRESS = 0.2  # a walk that got it this far is not a failure, even if it did not arrive [m]
 LEGS = 12  # walks without arrival to one thing that together count as a failure: 19 m, longer than any way [ours]
@@ -25,8 +26,9 @@ Seen = tuple[int, Place]  # a frame, and where a thing was seen in it
 class Memory:
     """The memory of one episode; `note` enters each decision, `chose` the action that was taken."""
 
-    def __init__(self, seed: int) -> None:
-        """Begin an episode; `seed` fixes all randomness in it."""
+    def __init__(self, seed: int, belief: bool = True) -> None:
+        """Begin an episode; `seed` fixes all randomness in it; `belief`: see `Weights`."""
+        self._belief = belief
         self.fire = FireWatch(seed)
         self.failures: dict[str, int] = {}  # of walks to a thing, and of picking it up
         self.missed: dict[str, list[tuple[Place, Place]]] = {}  # failed pick-ups: where it stood then, and the thing
@@ -42,6 +44,10 @@ class Memory:
         for target in decision.targets:
             sighting = decision.map.objects.get(target.index)
             track = self.tracks.setdefault(target.name, [])
+            if track and sighting is not None and target.belief < 1.0 and _far(track[-1][1], sighting.position):
+                track.clear()  # another thing has the name by now
+                self.failures.pop(target.name, None)
+                self.missed.pop(target.name, None)
             if sighting is not None and (not track or sighting.frame > track[-1][0]):
                 track.append((sighting.frame, (float(sighting.position[0]), float(sighting.position[1]))))
         if self._before is not None and self._before[0].verb == EXPLORE:
@@ -57,7 +63,9 @@ class Memory:
     def _judge(self, action: Action, start: Place, decision: Decision) -> None:
         """Count the last action's failure, unless it was a walk that came further."""
         name = action.target
-        if name is None:
+        if name is None or (
+            self._belief and decision.last_result is not None and decision.last_result.reason == NOT_A_TARGET
+        ):
             return
         if (
             action.verb in (WALK_TO, WALK_ONE_STEP)
@@ -91,3 +99,8 @@ def _seen(decision: Decision, name: str) -> Place | None:
     """The place where a thing was seen last; None if it is not on the map."""
     sighting = decision.map.objects.get(decision.index(name))
     return None if sighting is None else (float(sighting.position[0]), float(sighting.position[1]))
+
+
+def _far(before: Place, now: NDArray[np.floating]) -> bool:
+    """Whether a thing that was seen at the place `before` cannot be that at `now` [m], [3]."""
+    return bool(np.hypot(now[0] - before[0], now[1] - before[1]) > ELSEWHERE)

@@ -6,6 +6,7 @@ around is worth what is expected to be found, and takes the time of fetching tha
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -33,6 +34,7 @@ MOST_FOUND = 2.0  # targets that a single search is counted on to find: any more
 FOUND_WHOLE = 0.8  # share of its value that a target counts when it has to be found first [ours]
 # standard deviation of the frames of a plan over their root: a rescue of 170 frames takes 50 more or less, or fails
 SPREAD = 4.0  # [sqrt(frames)] [ours]
+LEAST_MISSING = 0.1  # targets that must be expected to be elsewhere for a search to be weighed [ours]
 CART_WAY = 6.0  # distance to a cart while none is known [m] [ours]
 
 
@@ -65,6 +67,7 @@ class Weights:
     fading: float = 0.3  # of its value that a target loses if it is saved at the last frame rather than the first
     search: float = 1.0  # of what may be found that is counted
     caution: float = 0.0  # of SPREAD that is counted: 1 where plans leave time for what goes wrong
+    belief: float = 1.0  # of the doubts about what things are that is counted: 0 where all are what they seem to be
 
     def __post_init__(self) -> None:
         """Raises ValueError unless each is from 0 to 1."""
@@ -110,18 +113,23 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
     unseen = [t for t in open_ones if t.index not in decision.map.objects and t.name != decision.held]
     given_up = [name for name, count in failures.items() if count >= give_up]
     carts = tuple(name for name in known(decision, decision.containers) if failures.get(name, 0) < give_up)
-    wanted = unseen or (held and not carts)
+    doubts = [weights.belief * (1.0 - t.belief) for t in seen]
+    missing, worth = float(len(unseen)), sum(t.value for t in unseen)
+    if any(doubts):
+        missing, worth = _missing(brief, decision, seen, doubts)
+    wanted = missing >= LEAST_MISSING or (held and not carts)
     places = (
         lookouts(decision, memory.visits, memory.looks, [*given_up, *_failed_ways(failures, seen)]) if wanted else ()
     )
     targets = [*held, *seen]
     frames = _frames(decision, memory, targets, places, carts, weights.loyalty, brief.radius)
     works = [1.0 if t in held else times.works * memory.chance(decision, t.name) for t in targets]
+    works = [chance * (1.0 - doubt) for chance, doubt in zip(works, [*(0.0 for _ in held), *doubts], strict=True)]
     forecast = Forecast(brief, decision, memory.fire)
     whole = [forecast.whole_until(t, decision.map.objects[t.index]) if t in seen else np.inf for t in targets]
-    share = min(1.0, MOST_FOUND / max(sum(mark.share for mark in places) * len(unseen), 1e-9))
-    found = [mark.share * len(unseen) * share for mark in places]
-    mean = weights.search * FOUND_WHOLE * sum(t.value for t in unseen) / max(len(unseen), 1)
+    share = min(1.0, MOST_FOUND / max(sum(mark.share for mark in places) * missing, 1e-9))
+    found = [mark.share * missing * share for mark in places]
+    mean = weights.search * FOUND_WHOLE * worth / (missing or 1.0)
     put_away = times.bag if not decision.containers else times.cart + (0.0 if carts else CART_WAY * WALK)
     fetch = FOUND_WAY * WALK + _pick(times, times.works) + put_away
     return Outlook(
@@ -145,6 +153,17 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
             spread=weights.caution * SPREAD,
         ),
     )
+
+
+def _missing(brief: Brief, decision: Decision, seen: Sequence[Target], doubts: Sequence[float]) -> tuple[float, float]:
+    """How many targets are expected to be where none is seen, and their value: of each category what beliefs leave."""
+    left = Counter(t.category for t in brief.targets)
+    left.subtract(Counter(t.category for t in decision.targets if t.rescued or t.held))
+    values, count = {t.category: t.value for t in brief.targets}, {kind: float(n) for kind, n in left.items()}
+    for target, doubt in zip(seen, doubts, strict=True):
+        count[target.category] = count.get(target.category, 0) - (1.0 - doubt)
+    missing = {category: max(number, 0.0) for category, number in count.items()}
+    return sum(missing.values()), sum(number * values.get(category, 0.0) for category, number in missing.items())
 
 
 def _pick(times: SkillFrames, works: float) -> float:

@@ -17,6 +17,8 @@ from hazard_ms.spec.checks import whole
 FARTHEST = 2.2  # distance from the base at which a pick-up surely may begin: 2.5 m from the shoulder [m]
 REACH = 0.2  # way to a target from which it is picked up without walking up to it first [m]
 DROP_WAY = 0.7  # way left to a cart from which a drop drives on by itself, while the arm unfolds [m] [ours]
+DOUBTFUL = 0.3  # doubt about a target from which it is looked at on the way before it is walked up to [ours]
+CLOSER = 1.5  # length of the way from which that is done [m] [ours]
 GIVE_UP = 4  # failures with one thing, after which it is given up [ours]
 MOST_FAILURES = 100  # any larger number to give up at must be a mistake [ours]
 
@@ -48,7 +50,7 @@ class Searcher(Agent):
 
     def reset(self, brief: Brief) -> None:
         """Begin an episode with an empty memory."""
-        self._brief, self._memory = brief, Memory(brief.random_seed)
+        self._brief, self._memory = brief, Memory(brief.random_seed, self._weights.belief > 0.0)
         self._goal: tuple[str, frozenset[str]] | None = None  # where it goes to search, and the targets known then
 
     def act(self, decision: Decision) -> Action:
@@ -91,7 +93,13 @@ class Searcher(Agent):
             return self._search(decision, name, begin.why)
         near = distance(decision, decision.map.objects[decision.index(name)]) < FARTHEST
         near &= ahead.way(begin.goal) <= self._reach and not self._memory.failures.get(name)
+        if not near and self._doubtful(decision, name) and ahead.way(begin.goal) > CLOSER:
+            return self._say(f"closer first: {begin.why}", Action(WALK_ONE_STEP, name))
         return self._say(begin.why, Action(PICK_UP if near else WALK_TO, name))
+
+    def _doubtful(self, decision: Decision, name: str) -> bool:
+        """Whether a target may well be something else, so that a closer look may change the plan."""
+        return self._weights.belief * (1.0 - decision.target(name).belief) > DOUBTFUL
 
     def _towards(self, decision: Decision, cart: str, way: float) -> Action:
         """The next action with what is for a `cart` at the end of a `way` [m]: a drop drives on by itself."""

@@ -12,6 +12,7 @@ from hazard_ms.evaluation.metrics import value
 from hazard_ms.evaluation.regret.causes import EpisodeRegret, beside
 from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult, result_files
 from hazard_ms.registry.detectors import TRUTH
+from hazard_ms.sensing.detection.eyes import EYES
 
 
 @dataclass(frozen=True)
@@ -104,4 +105,5 @@ def title(result: EpisodeResult) -> str:
             words.append(f"{name.removesuffix('_uids').replace('_', ' ')} {shown}")
     words += [] if result.clock == OFF else [f"clock {result.clock}"]
     words += [] if result.perception == TRUTH else [f"perception {result.perception}"]
+    words += [] if result.eyes == EYES else [f"eyes {result.eyes}"]
     return ", ".join(words)

@@ -6,6 +6,7 @@ are one thing.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,10 +17,12 @@ from torch.nn import functional
 
 from hazard_ms.perception.detectors.small_network import SCALE, SmallNetwork, features, without_normalisation
 from hazard_ms.perception.detectors.weights import read_recipe, read_weights
+from hazard_ms.sensing.detection.confusion import Confusion
 from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
 
 NETWORK = "small"  # in the file beside the weights
 SHIPPED = Path(__file__).parents[1] / "weights" / "small.safetensors"
+CONFUSION = "_confusion.json"  # end of the name of the table of errors beside the weights
 FOREGROUND = 0.4  # probability of all known categories together from which a pixel counts [ours]
 FEWEST = 6  # pixels of a thing [ours]
 STRAY = 0.1  # share of a thing's pixels below which a patch apart from the others is left out [ours]
@@ -43,8 +46,10 @@ class Small(Detector):
                 f"perception small must find the package's weights, got none at {SHIPPED}: install hazard_ms anew, or "
                 "train others with `hazard-ms perception train DATA -o FOLDER --model small` and give small:FILE"
             )
-        self._classes: list[str] = read_recipe(file.with_suffix(".json"), (NETWORK,))["classes"]
-        made = SmallNetwork(len(self._classes) + 2)
+        self.classes = read_recipe(file.with_suffix(".json"), (NETWORK,))["classes"]
+        table = file.with_name(f"{file.stem}{CONFUSION}")
+        self.confusion = Confusion.read(table) if table.is_file() else None
+        made = SmallNetwork(len(self.classes) + 2)
         try:
             made.load_state_dict({name: value.float() for name, value in read_weights(file).items()})
         except RuntimeError as error:
@@ -55,7 +60,7 @@ class Small(Detector):
     def of(cls, network: SmallNetwork, classes: list[str]) -> Small:
         """The detector that asks `network`, whose classes from 1 on are the categories `classes`."""
         made = cls.__new__(cls)
-        made._classes = classes
+        made.classes = classes
         made._use(network)
         return made
 
@@ -80,10 +85,10 @@ class Small(Detector):
         height, width = depth.shape
         by_pixel = logits[0, :, :height, :width].permute(1, 2, 0)  # as they lie in memory, which is quicker
         chances = by_pixel.softmax(-1).permute(2, 0, 1).cpu().numpy()
-        return things(chances, offsets[0, :, :height, :width].cpu().numpy(), self._classes)
+        return things(chances, offsets[0, :, :height, :width].cpu().numpy(), self.classes)
 
 
-def things(chances: NDArray[np.float32], offsets: NDArray[np.float32], classes: list[str]) -> list[Detection]:
+def things(chances: NDArray[np.float32], offsets: NDArray[np.float32], classes: Sequence[str]) -> list[Detection]:
     """The things that the pixels of a picture point at.
 
     `chances`, [C + 2, H, W]: of structure, of each of `classes`, and of other things; `offsets`, [2, H, W] [pixels]:

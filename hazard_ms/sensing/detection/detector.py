@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import abc
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+from hazard_ms.sensing.detection.confusion import Confusion
+from hazard_ms.sensing.detection.eyes import EYES
 
 Box = tuple[float, float, float, float]  # left, top, right, bottom [pixels]; the last two just outside
 
@@ -27,6 +32,10 @@ class Detector(abc.ABC):
     Parameters of `__init__` that are annotated as int, float, bool or str can be given with the detector's name; one
     called `path` takes the file or folder that follows it.
     """
+
+    eyes: ClassVar[str] = EYES  # with which agents look for it, unless others are asked for
+    classes: Sequence[str] = ()  # the categories that it tells, where it says so
+    confusion: Confusion | None = None  # its errors, where they were measured: tracks are fused by them
 
     @abc.abstractmethod
     def detect(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> list[Detection]:

@@ -79,6 +79,9 @@ class Labeller:
     def missed(self, index: int) -> None:
         """Nothing that can be used was within reach where the agent believes the thing `index` to be."""
 
+    def refused(self, index: int, other: bool) -> None:
+        """The hand has not taken what the agent knows as the thing `index`; `other`: it met what is no target."""
+
     def took(self, index: int) -> None:
         """The hand has taken what the agent knows as the thing `index`."""
 
@@ -89,10 +92,16 @@ class DetectingLabeller(Labeller):
     withheld = True
     needs_colours = True
 
-    def __init__(self, world: World, containers: Sequence[str], detector: Detector, threshold: float) -> None:
-        """Begin an episode in `world`; detections of `detector` with a score below `threshold` do not count."""
+    def __init__(
+        self, world: World, containers: Sequence[str], detector: Detector, threshold: float, fused: bool = False
+    ) -> None:
+        """Begin an episode in `world`; detections of `detector` with a score below `threshold` do not count.
+
+        `fused`: whether looks are fused by the errors of the detector, where these are known.
+        """
         super().__init__(world, containers)
         self._detector, self._threshold = detector, threshold
+        self._confusion = detector.confusion if fused else None
         self._categories = tuple(thing.category for thing in world.specs[0].things)
         wanted = [target.category for target in self._table.rows(world)]
         wanted += [self._categories[world.index(0, name)] for name in containers]

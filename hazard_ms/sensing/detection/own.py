@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.sensing.camera import STRUCTURE
+from hazard_ms.sensing.detection.beliefs import believed
 from hazard_ms.sensing.detection.detector import Detector
 from hazard_ms.sensing.detection.labeller import DetectingLabeller, blank
 from hazard_ms.sensing.detection.tracks import ENOUGH, Track, Tracker, surroundings
@@ -31,15 +32,21 @@ CART_WITHIN = 1.0  # the same for carts, by their middles [m] [ours]
 WIDEST = 0.3  # half the width of what can be carried: a mask that is wider shows more than the thing [m] [ours]
 CART_WIDEST = 0.55  # the same for carts, which are 0.56 m by 0.94 m [m] [ours]
 MOST_THINGS = 512  # that are given names; scenes have up to 200 things [ours]
+LEAST, FORGET = 0.1, 0.03  # beliefs from which an agent is told of a track, and below which no more [ours]
 UNSURE = MOST_THINGS  # label of pixels that may be of something that can move
 
 
 class OwnLabeller(DetectingLabeller):
     """An agent's own tracks; truth only tells what a hand meets, what it holds, and whether that is safe."""
 
-    def __init__(self, world: World, containers: Sequence[str], detector: Detector, threshold: float) -> None:
-        """Begin an episode in `world`; detections of `detector` with a score below `threshold` do not count."""
-        super().__init__(world, containers, detector, threshold)
+    def __init__(
+        self, world: World, containers: Sequence[str], detector: Detector, threshold: float, fused: bool = False
+    ) -> None:
+        """Begin an episode in `world`; detections of `detector` with a score below `threshold` do not count.
+
+        `fused`: whether looks are fused by the errors of the detector, where these are known.
+        """
+        super().__init__(world, containers, detector, threshold, fused)
         self._carts = [world.index(0, name) for name in containers]
         rows, count = self._table.rows(world), Counter[str]()
         self._told: list[Target] = []
@@ -54,7 +61,8 @@ class OwnLabeller(DetectingLabeller):
         self._kinds = [name.partition("#")[0] for name in names]
         self.loose = np.ones(MOST_THINGS + 1, bool)
         self.loose[len(rows) : len(names)] = False  # carts stay where they are
-        self._tracker = Tracker()
+        self._tracker = Tracker(self._confusion)
+        self._expected = Counter(self._kinds)  # of each category, as the agent is told before the episode
         self._by_index: dict[int, Track] = {}
         self._taken: tuple[Track, int] | None = None  # the track in the hand, and the index along B of what it is
         self._stowed: list[Track] = []  # in the bag
@@ -81,6 +89,9 @@ class OwnLabeller(DetectingLabeller):
             self._by_index.pop(track.index, None)
         for number, track in tracks.items():
             track.score = max(track.score, found[number].score)
+        if self._confusion is not None:
+            self._believe(out_of_sight)
+        for track in tracks.values():
             self._introduce(track)
         self.containers = self._surest_carts()
         return replace(true, labels=self._labels(view, tracks, out_of_sight))
@@ -104,7 +115,7 @@ class OwnLabeller(DetectingLabeller):
 
     def _introduce(self, track: Track) -> None:
         """Give a track that was seen often enough its index: one of what was told if that is free, else a new one."""
-        if track.index >= 0 or track.frames < ENOUGH or track.refuted:
+        if track.index >= 0 or track.frames < ENOUGH or track.refuted or track.belief < LEAST:
             return
         free = [i for i, kind in enumerate(self._kinds) if kind == track.category and i not in self._by_index]
         if free:
@@ -121,6 +132,26 @@ class OwnLabeller(DetectingLabeller):
         if track.index >= 0:
             self._by_index[track.index] = track
 
+    def _believe(self, gone: Sequence[Track]) -> None:
+        """Form the beliefs in all tracks anew from the evidence; those of categories that cannot all be there share it.
+
+        Tracks that are `gone`, in the hand or the bag, and rescued ones are what they were taken for. A track that
+        changes its category, or is hardly believed any more, loses its index.
+        """
+        sure = [*gone, *(t for t in self._tracker.tracks if t.rescued and t not in gone)]
+        for track, category, belief in believed(self._tracker.tracks, sure, self._expected):
+            track.belief = belief
+            if category != track.category or track.belief < FORGET:
+                self._drop(track)
+            track.category = category
+
+    def _drop(self, track: Track) -> None:
+        """Take its index from a track, which stays."""
+        if self._by_index.get(track.index) is track:
+            del self._by_index[track.index]
+            self._lost.append(track.index)
+        track.index = -1
+
     def _is_cart(self, index: int) -> bool:
         """Whether the agent takes the thing `index` for a cart."""
         return bool(self._carts) and self._kinds[index] == self._categories[self._carts[0]]
@@ -131,7 +162,7 @@ class OwnLabeller(DetectingLabeller):
         They are those of the surest detections; where too few are found, names of others that must be somewhere.
         """
         found = [track for index, track in self._by_index.items() if self._is_cart(index)]
-        count = sorted(track.index for track in sorted(found, key=lambda t: -t.score)[: len(self._carts)])
+        count = sorted(track.index for track in sorted(found, key=lambda t: (-t.belief, -t.score))[: len(self._carts)])
         names = [name for i, name in enumerate(self.names) if self._is_cart(i) and i not in self._by_index]
         return (*(self.names[index] for index in count), *names)[: len(self._carts)]
 
@@ -141,6 +172,10 @@ class OwnLabeller(DetectingLabeller):
             track.index, track.refuted = -1, True
             self._missed.append(index)
         self.containers = self._surest_carts()
+
+    def refused(self, index: int, other: bool) -> None:
+        if self._confusion is not None and (other or self.thing(index) < 0):
+            self.missed(index)
 
     def _let_go(self) -> None:
         """Note what has become of the thing that was in the hand, once it is not there any more."""
@@ -182,7 +217,8 @@ class OwnLabeller(DetectingLabeller):
         for row in self._told:
             track = self._by_index.get(row.index)
             rescued, in_hand = track is not None and track.rescued, track is not None and track is held
-            made.append(replace(row, rescued=rescued, held=in_hand, damaged=row.index in damaged))
+            belief = 1.0 if track is None or rescued or in_hand else track.belief
+            made.append(replace(row, rescued=rescued, held=in_hand, damaged=row.index in damaged, belief=belief))
         return tuple(made)
 
     def damaged(self, true: NDArray[np.bool_]) -> NDArray[np.bool_] | None:

@@ -2,6 +2,7 @@
 
 noisy:miss=0.2,confuse=0.05,erode=1
 mask_rcnn:detector.pth,association=paper,threshold=0.7
+small:eyes=512/120
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any
 from hazard_ms.registry import load
 from hazard_ms.registry.detectors import DETECTORS, TRUTH
 from hazard_ms.sensing.detection.detector import Detector
+from hazard_ms.sensing.detection.eyes import EYES, Eyes
 from hazard_ms.sensing.detection.labeller import THRESHOLD, DetectingLabeller, Labeller, PublishedLabeller
 from hazard_ms.sensing.detection.own import OwnLabeller
 from hazard_ms.simulation.world import World
@@ -31,23 +33,36 @@ class Perception:
     detector: Detector | None = None
     association: str = OWN
     threshold: float = THRESHOLD
+    fusion: bool = True
 
     def labeller(self, world: World, containers: Sequence[str]) -> Labeller:
         """The labeller of an episode that begins in `world` with `containers`, the names of its carts."""
         if self.detector is None:
             return Labeller(world, containers)
-        return ASSOCIATIONS[self.association](world, containers, self.detector, self.threshold)
+        return ASSOCIATIONS[self.association](world, containers, self.detector, self.threshold, self.fusion)
 
 
 class Common:
     """The parameters that can be given with every detector."""
 
-    def __init__(self, association: str = OWN, threshold: float = THRESHOLD) -> None:
-        """`association`: own or paper; `threshold`: score from which detections count. Raises ValueError for others."""
+    def __init__(
+        self, association: str = OWN, threshold: float = THRESHOLD, eyes: str = "", fusion: bool = True
+    ) -> None:
+        """Choose how detections become things.
+
+        `association`: own or paper; `threshold`: score from which detections count; `eyes`: of the camera, empty for
+        those of the detector; `fusion`: whether tracks keep the evidence of all looks, where the errors of the detector
+        are known. Raises ValueError for others.
+        """
         self.association = one_of(association, ASSOCIATIONS, "association")
         if not 0.0 <= threshold <= 1.0:
             raise ValueError(f"threshold must be from 0 to 1, got {threshold!r}")
-        self.threshold = threshold
+        self.threshold, self.eyes, self.fusion = threshold, eyes, fusion
+        if eyes:
+            Eyes.of(eyes)
+
+
+COMMON = tuple(inspect.signature(Common).parameters)
 
 
 def parts(text: str) -> tuple[str, Common, dict[str, Any]]:
@@ -64,7 +79,7 @@ def parts(text: str) -> tuple[str, Common, dict[str, Any]]:
         raise ValueError(f"perception must be {TRUTH} without parameters, got {text!r}")
     if len(paths) > 1:
         raise ValueError(f"perception must name one file or folder, got {text!r}")
-    common = [part for part in pairs if part.partition("=")[0] in ("association", "threshold")]
+    common = [part for part in pairs if part.partition("=")[0] in COMMON]
     own = [*(f"path={path}" for path in paths), *(part for part in pairs if part not in common)]
     shared = Common(**parameters(Common, common))
     if name == TRUTH:
@@ -88,4 +103,24 @@ def perception(text: str) -> Perception:
     detector = kind(**own)
     if not isinstance(detector, Detector):
         raise ValueError(f"a detector must be a subclass of {Detector.__module__}.Detector, got {kind!r}")
-    return Perception(detector, common.association, common.threshold)
+    return Perception(detector, common.association, common.threshold, common.fusion)
+
+
+def eyes_of(text: str) -> str:
+    """The eyes with which a perception looks, by its specification. Raises ValueError as `parts` does."""
+    name, common, _ = parts(text)
+    return EYES if name == TRUTH else common.eyes or load(DETECTORS[name]).eyes
+
+
+def camera_of(text: str) -> dict[str, Any]:
+    """Keywords of gym.make for the eyes of a perception, none for the robots' own. Raises ValueError as `parts`."""
+    made = Eyes.of(eyes_of(text))
+    return {} if made == Eyes.of(EYES) else {"sensor_configs": made.camera}
+
+
+def with_eyes(text: str, eyes: str) -> str:
+    """The specification `text` of a perception that looks with `eyes`, whatever its detector has today."""
+    name, _, rest = text.partition(":")
+    if name not in (TRUTH, *DETECTORS) or eyes == eyes_of(text):
+        return text
+    return f"{name}:" + ",".join(part for part in (*rest.split(","), f"eyes={eyes}") if part)

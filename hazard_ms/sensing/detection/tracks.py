@@ -3,6 +3,10 @@
 A detection goes on with a track of its category within GATE of where that was seen last, and a little farther while it
 is out of sight. Where that place is in view and empty, the thing has moved, and may be as far as it can drift. Of all
 ways to pair detections with tracks the one of the least summed distance is taken (Hungarian method).
+
+With the errors of the detector known, tracks are fused: a detection of another category within CLOSE goes on with a
+track, too, if none of its own does, and each track keeps the evidence of all looks at it, those that missed it among
+them.
 """
 
 from __future__ import annotations
@@ -14,6 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
+from hazard_ms.sensing.detection.confusion import Confusion
+from hazard_ms.sensing.detection.fusion import Evidence
 from hazard_ms.sensing.sighting import Sighting, merged
 from hazard_ms.sensing.view import View
 from hazard_ms.spec.catalogue import CATEGORIES
@@ -25,6 +31,7 @@ BEHIND = 0.15  # what is this far behind where a thing was shows that it is gone
 AROUND = 0.05  # by which a thing may reach beyond what was seen of it [m] [ours]
 ENOUGH = 2  # frames in which a thing must be seen before it is believed [ours]
 GONE = 2  # frames in which its place must be seen empty before it is forgotten [ours]
+CLOSE = 0.2  # distance within which a thing of another category is the same one, told otherwise [m] [ours]
 UNPAIRED = 1e6  # cost of a pair that cannot be: more than all distances of a scene together [m]
 
 
@@ -40,6 +47,9 @@ class Track:
     score: float = 0.0  # of its surest detection
     refuted: bool = False  # whether it turned out not to be there, so that it is never believed again
     rescued: bool = False
+    evidence: Evidence | None = None  # of all looks; None where they are not fused
+    size: float = 0.0  # its pixels at 1 m, by the last sighting
+    belief: float = 1.0  # the chance that it is there and of its category
 
     @property
     def loose(self) -> bool:
@@ -75,8 +85,13 @@ def surroundings(view: View, sighting: Sighting) -> tuple[tuple[slice, slice], N
     return window, np.abs(view.depth[window] - far) < reach
 
 
-def pairs(tracks: Sequence[Track], found: Sequence[tuple[str, Sighting]], frame: int) -> list[tuple[int, int]]:
-    """The pairs (track, detection) of the least summed distance, as indices; `found`: category and sighting each."""
+def pairs(
+    tracks: Sequence[Track], found: Sequence[tuple[str, Sighting]], frame: int, fused: bool = False
+) -> list[tuple[int, int]]:
+    """The pairs (track, detection) of the least summed distance, as indices; `found`: category and sighting each.
+
+    A pair of two categories, where these are `fused`, counts as if it were farther apart than all of one.
+    """
     if not tracks or not found:
         return []
     old = np.array([track.sighting.position for track in tracks], np.float64)
@@ -84,7 +99,10 @@ def pairs(tracks: Sequence[Track], found: Sequence[tuple[str, Sighting]], frame:
     cost = np.linalg.norm(old[:, None] - new[None], axis=-1)
     same = np.array([[track.category == category for category, _ in found] for track in tracks])
     reach = np.array([track.reach(frame) for track in tracks])
-    cost[~same | (cost >= reach[:, None])] = UNPAIRED
+    close = ~same & (cost < CLOSE) & fused
+    far = ~same | (cost >= reach[:, None])
+    cost[close] += reach.max()
+    cost[far & ~close] = UNPAIRED
     rows, columns = linear_sum_assignment(cost)
     return [(int(r), int(c)) for r, c in zip(rows, columns, strict=True) if cost[r, c] < UNPAIRED]
 
@@ -92,9 +110,10 @@ def pairs(tracks: Sequence[Track], found: Sequence[tuple[str, Sighting]], frame:
 class Tracker:
     """The tracks of an episode."""
 
-    def __init__(self) -> None:
-        """Begin without any."""
+    def __init__(self, confusion: Confusion | None = None) -> None:
+        """Begin without any; `confusion`: the errors of the detector by which looks are fused."""
         self.tracks: list[Track] = []
+        self._confusion = confusion
 
     def update(
         self, view: View, frame: int, found: Mapping[int, tuple[str, Sighting]], still: Sequence[Track] = ()
@@ -111,7 +130,7 @@ class Tracker:
                 track.empty += 1
         numbers = list(found)
         matched: dict[int, Track] = {}
-        for row, column in pairs(known, [found[n] for n in numbers], frame):
+        for row, column in pairs(known, [found[n] for n in numbers], frame, self._confusion is not None):
             track, seen = known[row], found[numbers[column]][1]
             track.frames += track.sighting.frame < frame
             track.sighting, track.empty = merged(track.sighting, seen), 0
@@ -120,6 +139,40 @@ class Tracker:
             if number not in matched:
                 matched[number] = Track(*found[number])
                 self.tracks.append(matched[number])
+        if self._confusion is not None:
+            self._look(view, frame, known, {n: (found[n], track) for n, track in matched.items()})
         lost = [track for track in known if track.empty >= GONE and track.loose]
         self.tracks = [track for track in self.tracks if track not in lost]
         return matched, lost
+
+    def _look(
+        self,
+        view: View,
+        frame: int,
+        known: Sequence[Track],
+        told: Mapping[int, tuple[tuple[str, Sighting], Track]],
+    ) -> None:
+        """Enter what a `view` told of its tracks, and that it told nothing of the others whose places it shows."""
+        assert self._confusion is not None
+        eye = view.cam2world[:3, 3]
+        for (category, seen), track in told.values():
+            track.size = seen.pixels * float(np.sum((seen.position - eye) ** 2))
+            if category not in self._confusion.classes:
+                continue
+            if track.evidence is None:
+                track.evidence = Evidence(self._confusion, category, seen.pixels, eye)
+            else:
+                track.evidence.look(category, seen.pixels, eye)
+        found = [track for _, track in told.values()]
+        for track in known:
+            if track.evidence is not None and track not in found and shows(view, track.sighting):
+                track.evidence.look(None, track.size / float(np.sum((track.sighting.position - eye) ** 2)), eye)
+
+
+def shows(view: View, sighting: Sighting) -> bool:
+    """Whether `view` shows what is where a thing was seen last: nothing is before it, and something is there."""
+    pixel = view.pixel_of(sighting.position)
+    if pixel is None:
+        return False
+    row, column, far = pixel
+    return bool(abs(float(view.depth[row, column]) - far) < sighting.radius + BEHIND)

@@ -8,11 +8,11 @@ number in rapidly varied shallow water flows, Int. J. Numer. Meth. Fluids 43, 20
 sides, depths on sides taken from upstream, momentum carried by the mean discharge of neighbouring sides, first
 velocities and then depths. Where the flow speeds up along its way its energy head is carried in place of its momentum,
 as the paper has it for contractions, which keeps fronts on dry ground fast. Water at rest stays at rest over any
-ground. Steps of ground are seen from the higher side, so water only passes what it stands above. What leaves a cell is
-limited to what it holds. Sums of depth are compensated (Kahan).
+ground. Steps of ground are seen from the higher side, so water only passes what it stands above. Cells give no more than
+they hold. Sums of depth are compensated (Kahan).
 
-A step is as long as the fastest wave allows; what the last one of a frame goes beyond its end, the next frame has
-less to do, so the water is ahead of time by less than a step. Order: 1. Limits: no turbulence, bodies do not act back.
+A step is as long as the fastest wave allows; the water is ahead of the frame by less than one. Order: 1. Limits: no
+turbulence, bodies do not act back.
 """
 
 from __future__ import annotations

@@ -1,0 +1,52 @@
+"""`hazard-ms perception calibrate`: the errors of a detector as a table, and whether beliefs by such tables are so."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from hazard_ms.machine.files import write
+from hazard_ms.perception import layout
+from hazard_ms.perception.calibration.measuring import confusion_of
+from hazard_ms.perception.calibration.observing import observed
+from hazard_ms.perception.calibration.reliability import crossed, table
+from hazard_ms.perception.calibration.thinned import Thinned
+from hazard_ms.perception.training.pictures import read
+from hazard_ms.sensing.detection.perception import perception as perception_of
+from hazard_ms.spec.checks import whole
+
+MOST_EVERY = 64  # pixels; any larger number must be a mistake [ours]
+
+
+def calibrate(datasets: Sequence[Path], text: str, splits: Sequence[str], every: int, output: Path | None) -> str:
+    """Count the errors of the detector of a perception in every `every`-th pixel of the pictures of some `splits`.
+
+    The table goes to the file `output`; what is returned is the reliability diagram, with the table of half of the
+    scenes for the other half. Raises ValueError for datasets without these splits, and for detectors that do not say
+    which categories they tell.
+    """
+    whole(every, 1, MOST_EVERY, "every")
+    detector = perception_of(text).detector
+    if detector is None or not detector.classes:
+        raise ValueError(f"perception must have a detector that says which categories it tells, got {text!r}")
+    parts = [(home, split) for home in datasets for split in splits if (home / layout.instances(split)).is_file()]
+    if {home for home, _ in parts} != set(datasets):
+        raise ValueError(f"each of DATA must have one of the splits {', '.join(splits)}")
+    pictures = [Thinned(picture, every) for home, split in parts for picture in read([home], split)]
+    looks = observed(detector, pictures, detector.classes)
+    command = f"hazard-ms perception calibrate {' '.join(home.name for home in datasets)} --perception {text}"
+    command += f" --split {' '.join(splits)} --every {every}"
+    made = confusion_of(looks, detector.classes, eyes_of(pictures[0]), command)
+    if output is not None:
+        write(output, json.dumps(asdict(made), indent=1) + "\n")
+    return table(crossed(looks, detector.classes))
+
+
+def eyes_of(picture: Thinned) -> str:
+    """The eyes that took a picture: its side in pixels, over the angle in degrees."""
+    matrix, width = picture.intrinsic(), picture.depth().shape[1]
+    return f"{width}/{2.0 * float(np.degrees(np.arctan(width / 2.0 / matrix[0, 0]))):.0f}"

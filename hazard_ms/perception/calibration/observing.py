@@ -1,0 +1,68 @@
+"""Captured pictures as a detector sees them, one by one, beside what is there."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hazard_ms.perception.calibration.thinned import Thinned
+from hazard_ms.sensing.camera import STRUCTURE
+from hazard_ms.sensing.detection.detector import Detector
+from hazard_ms.sensing.detection.labeller import THRESHOLD
+from hazard_ms.sensing.sighting import SEEN_PIXELS, Sighting, sightings
+from hazard_ms.sensing.view import View
+
+
+@dataclass(frozen=True)
+class Told:
+    """One detection: its category, where it is, and the number of the thing that it is of, 0 where it is of none."""
+
+    category: str
+    sighting: Sighting
+    thing: int
+
+
+@dataclass(frozen=True)
+class Observed:
+    """One picture: what was told, the surest last, and the things that are visible in it."""
+
+    scene: str  # with its dataset
+    view: View
+    told: tuple[Told, ...]
+    visible: dict[int, int]  # pixels by number
+    kinds: dict[int, str]  # categories of all things of the scene by number
+
+
+def observed(detector: Detector, pictures: Sequence[Thinned], classes: Sequence[str]) -> list[Observed]:
+    """The `pictures` as a detector sees them, with things of `classes`; things of other categories count as none.
+
+    A detection is of the thing that has more than half of its pixels.
+    """
+    made = []
+    for frame, picture in enumerate(pictures):
+        ids, known = picture.ids(), picture.picture.categories()
+        kinds = {number: kind for number, kind in known.items() if kind in classes}
+        view = View(picture.depth(), picture.intrinsic(), picture.cam2world())
+        detector.aim(view.intrinsic, view.cam2world)
+        found = [
+            d for d in detector.detect(picture.rgb(), view.depth) if d.score >= THRESHOLD and d.category in classes
+        ]
+        found.sort(key=lambda d: d.score)
+        labels = np.full(ids.shape, STRUCTURE, np.int64)
+        for number, one in enumerate(found):
+            labels[one.mask] = number
+        seen = sightings(replace(view, labels=labels), frame, len(found), frozenset(), None)
+        told = []
+        for number, sighting in seen.items():
+            under = ids[labels == number]
+            thing, pixels = Counter(under.tolist()).most_common(1)[0]
+            real = 2 * pixels > len(under) and thing in kinds
+            told.append(Told(found[number].category, sighting, thing if real else 0))
+        numbers, counts = np.unique(ids, return_counts=True)
+        shown = zip(numbers.tolist(), counts.tolist(), strict=True)
+        visible = {number: pixels for number, pixels in shown if number in kinds and pixels >= SEEN_PIXELS}
+        made.append(Observed(f"{picture.picture.dataset.name}/{picture.scene}", view, tuple(told), visible, kinds))
+    return made

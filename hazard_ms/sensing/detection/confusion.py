@@ -1,0 +1,143 @@
+"""The errors of a detector, as counted in pictures that it was not trained on, and what its looks tell by them.
+
+A look at a thing tells a category, or misses it. With b the bucket of its pixels, k its category, one of L, c clutter:
+
+    P(miss | k)      = 1 - found[b]
+    P(told k | k)    = found[b] right[b]
+    P(told j | k)    = found[b] (1 - right[b]) taken[k][j]
+    P(miss | c)      = 1 - again          c: something else that was once told as j0, or nothing at all
+    P(told j0 | c)   = again steady
+    P(told j | c)    = again (1 - steady) / (L - 1)
+
+Before the second look, c has the weight clutter[j0], the number of such places in a scene, and k that of the number of
+k that there are to be found, times `seen`, times the chance that k is told as j0.
+"""
+
+from __future__ import annotations
+
+import functools
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.spec.foreign import plain
+from hazard_ms.spec.foreign.plain import Within
+
+LARGEST = 1_000_000  # of a file [bytes] [ours]
+ONE = 1.0  # look by which each row of `taken` is smoothed [ours]
+LEAST = 1e-3  # no chance is believed to be smaller than this, nor larger than 1 less this [ours]
+Share = Annotated[float, Within(0, 1)]
+Count = Annotated[float, Within(0, 1e6)]
+Name = Annotated[str, Within(1, 100)]
+
+
+class Look(NamedTuple):
+    """One look at a place: what was told there, None for nothing, and the thing's pixels, seen or expected."""
+
+    told: str | None
+    pixels: float
+
+
+@dataclass(frozen=True)
+class Confusion:
+    """The errors of a detector, for looks with the eyes with which they were measured."""
+
+    classes: Annotated[tuple[Name, ...], Within(2, 1000)]  # L categories
+    pixels: Annotated[tuple[Count, ...], Within(1, 20)]  # least of each bucket, the first 0
+    found: Annotated[tuple[Share, ...], Within(1, 20)]  # share of the looks at a thing that was found before, by bucket
+    right: Annotated[tuple[Share, ...], Within(1, 20)]  # share of what is found that gets its category, by bucket
+    taken: dict[str, dict[str, Count]]  # looks at a category that told another one: the true one, the told one
+    clutter: dict[str, Count]  # places in a scene that are told as a category and are none of the L
+    again: Share  # share of the looks at such places that tell something once more
+    steady: Share  # share of these that tell the same
+    seen: Share  # share of the things that are found by any look
+    eyes: Name = "256/120"  # of the looks
+    command: Annotated[str, Within(0, 1000)] = ""  # that measured it
+
+    def __post_init__(self) -> None:
+        """Raises ValueError for buckets that do not fit each other, and for categories that are not known."""
+        if not len(self.pixels) == len(self.found) == len(self.right):
+            raise ValueError(f"found and right must have {len(self.pixels)} buckets, as pixels has")
+        if self.pixels[0] != 0 or list(self.pixels) != sorted(set(self.pixels)):
+            raise ValueError(f"pixels must increase from 0, got {self.pixels}")
+        if len(set(self.classes)) < len(self.classes):
+            raise ValueError("classes must be different categories")
+        named = {*self.taken, *(told for row in self.taken.values() for told in row), *self.clutter}
+        if bad := sorted(named - set(self.classes)):
+            raise ValueError(f"a category of the table must be one of its classes, got {bad[0]!r:.100}")
+
+    @classmethod
+    def read(cls, path: Path) -> Confusion:
+        """The table in a file NAME.json. Raises ValueError for a file that holds none."""
+        found: Confusion = plain.made(cls, plain.read(path, LARGEST), "confusion")
+        return found
+
+    @functools.cached_property
+    def off(self) -> NDArray[np.float64]:
+        """The chance of each wrong category, [L, L], by the true one: rows sum to 1, 0 on the diagonal."""
+        count = np.array([[self.taken.get(k, {}).get(j, 0.0) for j in self.classes] for k in self.classes])
+        count += ONE / (len(self.classes) - 1)
+        np.fill_diagonal(count, 0.0)
+        shares: NDArray[np.float64] = count / count.sum(1, keepdims=True)
+        return shares
+
+    def bucket(self, pixels: float) -> int:
+        """The number of the bucket of so many pixels."""
+        return bisect_right(self.pixels, pixels) - 1
+
+    def told(self, category: str, pixels: float) -> NDArray[np.float64]:
+        """The chance, [L], that a thing of each category that is found is told as `category`."""
+        number, right = self.classes.index(category), _inside(self.right[self.bucket(pixels)])
+        chances: NDArray[np.float64] = (1.0 - right) * self.off[:, number]
+        chances[number] = right
+        return chances
+
+    def likelihood(self, look: Look, first: str) -> NDArray[np.float64]:
+        """The chance of a look for each category, and last for clutter that was `first` told so: [L + 1]."""
+        found, again, steady = _inside(self.found[self.bucket(look.pixels)]), _inside(self.again), _inside(self.steady)
+        if look.told is None:
+            return np.append(np.full(len(self.classes), 1.0 - found), 1.0 - again)
+        clutter = again * (steady if look.told == first else (1.0 - steady) / (len(self.classes) - 1))
+        return np.append(found * self.told(look.told, look.pixels), clutter)
+
+    def posterior(self, looks: Sequence[Look], expected: Mapping[str, float], usual: float) -> NDArray[np.float64]:
+        """The chance of each category, and last that it is none of them, [L + 1], after `looks` at one place.
+
+        The first look has told something. `expected`: how many of each category there are, `usual` where it is silent.
+        """
+        first = looks[0].told
+        assert first is not None
+        there = np.array([expected.get(name, usual) for name in self.classes])
+        weight = np.append(
+            self.seen * there * self.told(first, looks[0].pixels), max(self.clutter.get(first, 0.0), LEAST)
+        )
+        for look in looks[1:]:
+            weight = weight * self.likelihood(look, first)
+        chances: NDArray[np.float64] = weight / weight.sum()
+        return chances
+
+
+def _inside(share: float) -> float:
+    return min(max(share, LEAST), 1.0 - LEAST)
+
+
+def within_count(chances: Sequence[float], count: float) -> list[float]:
+    """The `chances` that each of some places shows one of the `count` things there are: their sum is at most `count`.
+
+    Where it is larger, the odds of all are divided by the same number until it is not.
+    """
+    odds = np.array([chance / (1.0 - min(chance, 1.0 - LEAST)) for chance in chances])
+    if sum(chances) <= count:
+        return list(chances)
+    if count <= 0.0:
+        return [0.0] * len(chances)
+    low, high = 0.0, 1.0  # factors on the odds
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if (middle * odds / (1 + middle * odds)).sum() < count else (low, middle)
+    return (low * odds / (1 + low * odds)).tolist()

@@ -1,0 +1,101 @@
+"""Agents that doubt: expected value, a closer look first, and nothing of it where nothing is in doubt."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from hazard_ms.agents.base import agent
+from hazard_ms.agents.search.memory import Memory
+from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision, Result
+from hazard_ms.skills.failures import NOT_A_TARGET
+from tests.worlds.playground import Playground, brief, play
+
+AGENTS = ("greedy", "planner", "mcts:simulations=100")
+
+
+def doubted(decision: Decision, **beliefs: float) -> Decision:
+    """The decision of an agent that believes in targets only so much."""
+    rows = tuple(replace(row, belief=beliefs.get(row.name, row.belief)) for row in decision.targets)
+    return replace(decision, targets=rows)
+
+
+@pytest.mark.parametrize("name", AGENTS)
+def test_the_nearer_of_two_that_is_hardly_believed_comes_second(name: str) -> None:
+    """At 1.5 m and 2.5 m: with a tenth of its value the nearer one costs more a metre."""
+    ground = Playground({"near": (1.5, 0.0), "far": (-2.5, 0.0)}, {"near": 5.0, "far": 5.0})
+    player = agent(name)
+    player.reset(brief())
+    ground.do(player.act(ground.decision()))
+    assert player.act(doubted(ground.decision(), near=0.1)).target == "far"
+    other = agent(name)
+    other.reset(brief())
+    other.act(replace(ground.decision(), last_action=None, last_result=None))
+    assert other.act(ground.decision()).target == "near"
+
+
+@pytest.mark.parametrize("name", ["greedy:belief=false", "planner:belief=0", "mcts:simulations=100,belief=0"])
+def test_without_belief_doubts_do_not_count(name: str) -> None:
+    ground = Playground({"near": (1.5, 0.0), "far": (-2.5, 0.0)}, {"near": 5.0, "far": 5.0})
+    player = agent(name)
+    player.reset(brief())
+    ground.do(player.act(ground.decision()))
+    assert player.act(doubted(ground.decision(), near=0.1)) == Action(WALK_TO, "near")
+
+
+def test_the_planner_looks_closer_before_it_walks_far() -> None:
+    """2.5 m to what may well be none: it decides anew on the way. 1 m is no way, and 0.8 is hardly a doubt."""
+    for away, belief, verb in ((2.5, 0.6, WALK_ONE_STEP), (2.5, 0.8, WALK_TO), (1.0, 0.6, WALK_TO)):
+        ground = Playground({"a": (away, 0.0)}, {"a": 5.0})
+        player = agent("planner:reach=0")
+        player.reset(brief())
+        ground.do(player.act(ground.decision()))
+        assert player.act(doubted(ground.decision(), a=belief)) == Action(verb, "a")
+
+
+def test_what_is_hardly_believed_is_searched_for_elsewhere() -> None:
+    """One target, seen a good way off, and a landmark by unseen floor: if that is hardly it, it must be elsewhere."""
+    for belief, first in ((1.0, "known"), (0.02, "table")):
+        ground = Playground({"table": (2.5, 0.0), "known": (-2.8, 0.0)}, {"known": 5.0})
+        told = replace(brief(), targets=ground.decision().targets)
+        player = agent("planner")
+        player.reset(told)
+        ground.do(player.act(ground.decision()))
+        assert player.act(doubted(ground.decision(), known=belief)).target == first
+
+
+def test_what_was_no_target_is_no_failure_of_whatever_gets_its_name() -> None:
+    ground = Playground({"a": (2.0, 0.0)}, {"a": 1.0})
+    ground.look()
+    pick = Action(PICK_UP, "a")
+    for belief, count in ((True, {}), (False, {"a": 1})):
+        memory = Memory(0, belief)
+        memory.chose(ground.decision(), pick)
+        memory.note(replace(ground.decision(), last_action=pick, last_result=Result(False, NOT_A_TARGET, 0)))
+        assert memory.failures == count
+
+
+def test_a_name_that_is_seen_far_from_where_it_was_is_that_of_another_thing() -> None:
+    """Unless nothing is in doubt: then the thing has moved."""
+    for belief, frames in ((0.9, [7]), (1.0, [0, 7])):
+        ground = Playground({"a": (2.0, 0.0)}, {"a": 1.0})
+        ground.look()
+        memory = Memory(0)
+        memory.note(doubted(ground.decision(), a=belief))
+        memory.failures["a"] = 1
+        sighting = ground.map.objects[0]
+        ground.remember(0, replace(sighting, position=sighting.position + 1.0, frame=7))
+        memory.note(doubted(ground.decision(), a=belief))
+        assert [frame for frame, _ in memory.tracks["a"]] == frames
+        assert memory.failures == ({} if belief < 1.0 else {"a": 1})
+
+
+@pytest.mark.parametrize("name", ["greedy", "planner", "mcts"])
+def test_with_the_truth_beliefs_change_nothing(name: str) -> None:
+    """The same decisions in a whole rescue, with and without a look at beliefs, which are all 1."""
+    places = {"a": (1.5, 0.3), "b": (-2.0, 1.0), "table": (2.5, -2.0), "c": (6.0, 6.0), "d": (0.5, -1.5)}
+    values = {"a": 1.0, "b": 5.0, "c": 5.0, "d": 1.0}
+    off = {"greedy": "false", "planner": "0", "mcts": "0"}[name]
+    taken = [play(agent(text), Playground(places, values)) for text in (name, f"{name}:belief={off}")]
+    assert taken[0] == taken[1] and len(taken[0]) > 6 and Action(EXPLORE) in taken[0]

@@ -181,7 +181,7 @@ def through_open(paths: FlowPaths | FloodState, there: Tensor, is_open: Tensor) 
     step = torch.where(both & free[:, :, None] & free[:, None], gap, NEVER)
     for _ in range(box.shape[1]):  # each round finds at least one more shortest path
         length = torch.minimum(length, (length[:, None] + step).amin(-1))
-    return torch.where(free, length, NEVER)
+    return length
 
 
 def path_lengths(

@@ -165,8 +165,8 @@ class FireEffects(SceneEffects):
         base = world.base_of(world.position, world.rotation, world.extent).cpu().numpy()
         rotation, centre = world.rotation.cpu().numpy(), world.position.cpu().numpy()
         on_things = (body_flames(fire) * (world.exists & ~world.away) / SCALE_LAST).cpu().numpy()
-        place, scale = floor_flames(fire, frame)
-        place, scale = above_water(world, place).cpu().numpy(), scale.cpu().numpy()
+        flames, scales = floor_flames(fire, frame)
+        place, scale = above_water(world, flames).cpu().numpy(), scales.cpu().numpy()
         on_floor = scale / SCALE_LAST
         broad = np.sqrt(world.extent[..., :2].prod(-1).cpu().numpy()) / BROAD_EDGE
         heat = np.concatenate([on_things * np.minimum(broad, 1.0), on_floor * FLOOR_HEAT], -1)

@@ -38,7 +38,7 @@ def test_it_finds_things_in_a_room_that_it_has_not_seen(tmp_path: Path) -> None:
     env = EnvOptions(split="test")
     capture(CaptureOptions(env=env, scenes=("kitchen_b/11",), per_scene=16, size=256, fov=120.0, output=tmp_path))
     pictures, detector = read([tmp_path / "HazardFire-v1"], "test"), Small()
-    truth, found = truth_of(pictures, detector._classes), results_of(detector, pictures)
+    truth, found = truth_of(pictures, detector.classes), results_of(detector, pictures)
     large = (256.0, math.inf)
     numbers = sorted({row["category_id"] for row in truth["annotations"]})
     others = dict(zip(numbers, np.roll(numbers, 1).tolist(), strict=True))

@@ -17,6 +17,7 @@ from torch import Tensor
 from hazard_ms.kernels.launch import Launches
 from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.handles import Handles
+from hazard_ms.simulation.jet import Jet
 from hazard_ms.simulation.openings import Openings
 from hazard_ms.simulation.walls import Walls
 from hazard_ms.spec import Body, Build, SceneSpec
@@ -72,6 +73,7 @@ class World:
     agent_position: Tensor
     agent_heading: Tensor
     handles: Handles | None = field(default=None, repr=False)
+    jet: Jet | None = None  # of the extinguisher that the agent uses, where there are any
     agent_build: Build | None = None  # mass, width, drag area and friction of the agent's robot
     fields: dict[str, Callable[[Tensor], Tensor]] = field(default_factory=dict, repr=False)
     launches: Launches = field(default_factory=Launches, repr=False)  # prepared launches of its hazards' kernels

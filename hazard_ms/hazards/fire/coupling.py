@@ -14,6 +14,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.base import none_set
+from hazard_ms.hazards.fire.dousing import NEVER, douse
 from hazard_ms.hazards.fire.fire_state import BURNING, FireState
 from hazard_ms.hazards.fire.spread import DIRECTIONS
 from hazard_ms.simulation.world import World
@@ -21,7 +22,6 @@ from hazard_ms.spec import rounding
 
 WET = 0.005  # water over the base of a thing, or over the floor, that wets it [m] [ours]
 BOILING = 100.0  # boiling temperature of water [C]
-NEVER = 2**40  # birth of a flame that has gone out [frame]
 PER_WIND = 0.0842  # logarithm of the rate of spread per speed of the wind [s/m]
 FASTEST = 15.0  # wind at 1 m beyond which fire spreads no faster: some 25 m/s at 10 m, where McArthur's index ends [M]
 ABOVE_FLOOR = 1.0  # height at which the wind counts [m] [ours]
@@ -30,7 +30,8 @@ DIRECTION_VECTORS = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
 
 
 def drench(state: FireState, world: World) -> None:
-    """Put out things and flames that are under water now, for good. Does nothing where no hazard provides water."""
+    """Put out what is under water now, for good, and what extinguishers reach. Does nothing without either."""
+    douse(state, world)
     if "water" not in world.fields:
         return
     level = world.fields["water"]

@@ -31,6 +31,7 @@ from hazard_ms.hazards.fire.fire import begin_flames
 from hazard_ms.hazards.fire.fire_state import BURNING, NORMAL, lit
 from hazard_ms.hazards.fire.realistic import (
     burners,
+    extinguishing,
     front,
     fuels,
     kindling,
@@ -127,6 +128,7 @@ class Blaze(Hazard):
     @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
     def advance(self, state: BlazeState, world: World, dt: float) -> None:
         wetting.soak(state, world)
+        extinguishing.go_out(state, world)
         due = world.chance.due(self.every)
         if due is not None:
             waiting = {} if none_set(~due) else {name: getattr(state, name).clone() for name in HEATED}
@@ -139,7 +141,7 @@ class Blaze(Hazard):
 
     def _heat(self, state: BlazeState, world: World, step: float) -> None:
         """Advance smoke, heat and burning by `step` seconds of fire."""
-        fires = self._fires(state, world)
+        fires = extinguishing.fight(state, world, self._fires(state, world), step)
         fires = self._smoke(state, world, fires, step)
         self._warm(state, world, fires, step)
         front.warm(state, world, fires, self.room_temperature, step)
@@ -200,6 +202,7 @@ class Blaze(Hazard):
         state.burn_age.add_(burning_now * step)
         state.burn_updates.copy_((state.burn_age / (self.time_scale * UPDATE)).long())
         ignites = live & (state.status == NORMAL) & (state.temperature >= state.threshold)
+        ignites &= state.coated < wetting.SOAKED
         state.status.add_(ignites | (burning_now & (state.burn_age >= state.burn_end)))  # normal -> burning -> burnt
         state.temperature.masked_fill_(ignites, self.flame_temperature)
 

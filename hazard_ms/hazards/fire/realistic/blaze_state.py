@@ -29,7 +29,7 @@ HEATED = (  # names of the quantities that an update of heat changes
     ),
     *("zone_upper", "zone_lower", "zone_pressure", "zone_height", "zone_temperature", "zone_low_temperature"),
     *("zone_density", "zone_low_density", "zone_emissivity", "zone_share", "zone_draught"),
-    *("floor_temperature", "agent_toxic_dose", "wet"),
+    *("floor_temperature", "agent_toxic_dose", "wet", "coated", "flame_wet", "flame_coated"),
 )
 
 
@@ -56,6 +56,9 @@ class BlazeState(FireState):
     flame_age: Tensor = quantity("E F", "s", "time since the flame appeared")
     under_water: Tensor = quantity("E B", "", "share of its height that is under water now", low=0.0, high=1.0)
     wet: Tensor = quantity("E B", "", "share of its surface that is wet", low=0.0, high=1.0)
+    coated: Tensor = quantity("E B", "", "share of its surface under powder", low=0.0, high=1.0)
+    flame_wet: Tensor = quantity("E F", "", "share of what burns there that is wet", low=0.0, high=1.0)
+    flame_coated: Tensor = quantity("E F", "", "the same under powder", low=0.0, high=1.0)
     flame_dry: Tensor = quantity("E F", "", "share of the flame that is above water", fill=1.0, low=0.0, high=1.0)
     first_height: Tensor = quantity("E", "m", "height of what burns first", fill=1.0, low=0.0)
     flame_peak: Tensor = quantity("E F", "kW", "heat release of the flame once grown", low=0.0)

@@ -2,7 +2,7 @@
 
     under water   u = (level - base) / height of the thing, 0 to 1
     wet           w, the share of its surface with a film of water: as much as was ever under water, until it dries
-    drying        dw/dt = -q / (FILM LATENT) above the water, q the flux on it, or that of its own flames
+    drying        dw/dt = -q / (FILM LATENT) above the water, q the flux on it; TOUCH_FLUX in its own flames
     burning       a thing gives off 1 - w of its heat; below STARVED it goes out, for good
     heating       a thing that is wet all over is no hotter than boiling water, so it ignites once a part is dry
 
@@ -64,7 +64,7 @@ def dry(state: BlazeState, flux: Tensor, step: float) -> None:
     """Dry what is wet for `step` seconds of fire under `flux` [kW/m^2], [E, B], or under its own flames."""
     if none_set(state.wet > 0):
         return
-    heat = torch.where(state.status == BURNING, flux.clamp(min=TOUCH_FLUX), flux)
+    heat = torch.where(state.status == BURNING, TOUCH_FLUX, flux)
     state.wet.copy_(torch.maximum(state.wet - heat * (step / (FILM * LATENT)), state.under_water))
     _cool(state)
 

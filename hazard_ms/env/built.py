@@ -23,8 +23,8 @@ from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.labels import labels_of
 from hazard_ms.sensing.observations import Observer
 from hazard_ms.simulation import building, clearance
-from hazard_ms.simulation.lighting import Lighting
-from hazard_ms.simulation.viewpoint import corner_view
+from hazard_ms.simulation.drawing.lighting import Lighting
+from hazard_ms.simulation.drawing.viewpoint import corner_view
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec, Task, checks
 

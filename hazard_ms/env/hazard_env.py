@@ -26,7 +26,7 @@ from hazard_ms.scenes.choice import SceneChoice, SceneTurns
 from hazard_ms.scenes.files import playing
 from hazard_ms.sensing.modes import check_senses, finite
 from hazard_ms.sensing.observation_table import ObservationTable
-from hazard_ms.simulation.lighting import LIGHTINGS
+from hazard_ms.simulation.drawing.lighting import LIGHTINGS
 from hazard_ms.spec import checks
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import task_of

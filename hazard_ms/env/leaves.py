@@ -15,8 +15,8 @@ from torch import Tensor
 
 from hazard_ms.scenes.shell import ShellBox, leaf
 from hazard_ms.scenes.walls import WALLS, runs_along_x
+from hazard_ms.simulation.drawing.textured_box import surface_material, textured_box
 from hazard_ms.simulation.names import actor_name
-from hazard_ms.simulation.textured_box import surface_material, textured_box
 from hazard_ms.simulation.world import World
 
 GONE = -10.0  # height of what is broken [m]

@@ -40,7 +40,7 @@ from hazard_ms.perception.options import VARIED, CaptureOptions
 from hazard_ms.perception.states import Watch, attributes, stirred
 from hazard_ms.perception.viewpoints import viewpoints
 from hazard_ms.sensing.camera import NOTHING, STRUCTURE, points_of_depth
-from hazard_ms.simulation.lighting import DRAWN
+from hazard_ms.simulation.drawing.lighting import DRAWN
 
 POSES = 8  # pictures of a stop [ours]
 WATCHED_EVERY = 10  # frames, after which what is wet is noted: the flood of the original rises as often

@@ -16,7 +16,7 @@ from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.told import told
 from hazard_ms.sensing.target_table import Target
-from hazard_ms.simulation.viewpoint import corner_view, following_view
+from hazard_ms.simulation.drawing.viewpoint import corner_view, following_view
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import EXPLORE, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv

@@ -16,7 +16,7 @@ from hazard_ms.effects.entities import FRAMES_PER_SECOND
 from hazard_ms.effects.raytracing.still import Image, Photographer, Viewpoint
 from hazard_ms.evaluation.runner import played_to
 from hazard_ms.pictures.options import IDLE, RenderOptions
-from hazard_ms.simulation.viewpoint import corner_view
+from hazard_ms.simulation.drawing.viewpoint import corner_view
 from hazard_ms.skills.executor import SkillEnv
 
 THIRD_ANGLE = 1.15  # vertical, of the third person's eye, as in the environment [rad]

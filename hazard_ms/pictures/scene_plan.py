@@ -15,7 +15,7 @@ from hazard_ms.scenes.floor import OVERHEAD_HEIGHT, RUG_HEIGHT, boxes_of
 from hazard_ms.scenes.materials import MATERIALS
 from hazard_ms.scenes.shell import ShellBox, shell
 from hazard_ms.simulation.bare_scene import build
-from hazard_ms.simulation.viewpoint import corner_view
+from hazard_ms.simulation.drawing.viewpoint import corner_view
 from hazard_ms.spec import SceneSpec
 
 WIDTH, HEIGHT, FIELD_OF_VIEW = 640, 480, 1.15  # of the view [pixels], [rad]

@@ -9,7 +9,7 @@ from hazard_ms.effects.looks import Looks, tell_of_first_picture
 from hazard_ms.effects.raytracing.sensor import take_over
 from hazard_ms.episode.situation import Situation
 from hazard_ms.simulation.building import extent_of_bag, pose_of
-from hazard_ms.simulation.lighting import Lighting
+from hazard_ms.simulation.drawing.lighting import Lighting
 
 
 class Display:

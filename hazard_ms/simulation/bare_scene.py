@@ -13,7 +13,7 @@ from mani_skill.utils.structs.types import SimConfig
 
 from hazard_ms.machine.render_backend import backend
 from hazard_ms.simulation import building
-from hazard_ms.simulation.lighting import Lighting
+from hazard_ms.simulation.drawing.lighting import Lighting
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec
 

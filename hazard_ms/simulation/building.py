@@ -20,9 +20,9 @@ from hazard_ms.assets.index import asset, asset_path
 from hazard_ms.assets.primitives import colour
 from hazard_ms.assets.rows import Asset
 from hazard_ms.scenes.shell import shell
+from hazard_ms.simulation.drawing.textured_box import surface_material, textured_box
 from hazard_ms.simulation.names import actor_name
 from hazard_ms.simulation.physx import CpuHandles, GpuHandles
-from hazard_ms.simulation.textured_box import surface_material, textured_box
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Body, Fixture, Room, SceneSpec
 

@@ -60,9 +60,9 @@ class Jet:
 
 
 def spot(jet: Jet, points: Tensor) -> tuple[Tensor, Tensor]:
-    """How the jets pass `points` [m], [E, P, 3], world frame: the area of their cross-section there, and whether hit.
+    """Cross-sections of the jets at `points` [m], [E, P, 3], world frame, and whether they hit them.
 
-    The area is in [m^2], [E, P]; whether the points are within the cone and its reach: [E, P], bool.
+    Areas [m^2], [E, P], and whether the points are within the cone and its reach, [E, P], bool.
     """
     way = points - jet.place[:, None]
     along = (way * jet.aim[:, None]).sum(-1)
@@ -73,7 +73,7 @@ def spot(jet: Jet, points: Tensor) -> tuple[Tensor, Tensor]:
 
 
 def spray(jet: Jet, walls: Walls, points: Tensor) -> Tensor:
-    """What arrives at `points` [m], [E, P, 3], world frame, on a surface across the jet [kg/m^2 s], [E, P]."""
+    """Flux of the agent at `points` [m], [E, P, 3], world frame, on a surface across the jet [kg/m^2 s], [E, P]."""
     area, hit = spot(jet, points)
     hit &= jet.flowing[:, None] & ~blocked(walls, jet.place[:, None], points)[:, 0]
     return torch.where(hit, jet.number("rate")[:, None] / area, 0.0)

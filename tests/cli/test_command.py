@@ -18,7 +18,7 @@ from hazard_ms.env.hazard_env import EFFECTS
 from hazard_ms.evaluation import choices
 from hazard_ms.hazards.presets import PRESETS
 from hazard_ms.scenes.splits import families, split_names
-from hazard_ms.simulation.lighting import LIGHTINGS
+from hazard_ms.simulation.drawing.lighting import LIGHTINGS
 
 ROOT = Path(__file__).parents[2]
 COMMAND = f"{sys.executable} -m hazard_ms.cli"

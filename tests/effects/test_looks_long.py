@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hazard_ms.simulation.lighting import LIGHTINGS
+from hazard_ms.simulation.drawing.lighting import LIGHTINGS
 from tests.worlds.watching import TASKS, start, told
 
 pytestmark = [pytest.mark.long, pytest.mark.render, pytest.mark.timeout(3600)]

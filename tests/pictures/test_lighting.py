@@ -12,7 +12,7 @@ import pytest
 import torch
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.simulation.lighting import DRAWN, FIRST_FAILURE, LAST_FAILURE, LIGHTINGS, Lighting
+from hazard_ms.simulation.drawing.lighting import DRAWN, FIRST_FAILURE, LAST_FAILURE, LIGHTINGS, Lighting
 from hazard_ms.tasks import task_of
 
 FRAMES = 40  # of an episode: the fire has spread by then

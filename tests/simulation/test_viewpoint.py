@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hazard_ms.simulation.viewpoint import ABOVE, BEHIND, corner_view, following_view
+from hazard_ms.simulation.drawing.viewpoint import ABOVE, BEHIND, corner_view, following_view
 from tests.sketch.test_ways import divided
 
 

@@ -129,14 +129,14 @@ def lengths(state: BlazeState, world: World, eye: Tensor, points: Tensor) -> Way
     way = points - eye[:, None]
     way = torch.where(way.abs() < SMALL, SMALL, way)
     length = way.norm(dim=-1)[..., None]
-    along = torch.where(state.zone_across > 0, 1, 0)[:, None]
-    begin, step = eye.gather(1, along), way.gather(2, along[:, None].expand(-1, way.shape[1], 1))  # [E, 1], [E, P, 1]
-    end = state.zone_end[:, None]
-    first = torch.cat([torch.full_like(end[..., :1], -torch.inf), end[..., :-1]], -1)
-    low, high = _cut(first, end, begin[:, None], step)
-    for axis in (0, 1):  # the walls of the house, beyond which there is no smoke
-        size = world.room[:, None, axis, None]
-        near, far = _cut(torch.zeros_like(size), size, eye[:, None, axis, None], way[..., axis, None])
+    number, columns = torch.arange(state.zone_area.shape[1], device=eye.device), state.zone_columns[:, None]
+    low, high = torch.zeros_like(length), torch.ones_like(length)
+    for axis, place in ((0, number % columns), (1, number // columns)):  # of each room in the grid of all, [E, R]
+        ends = (state.zone_end_x, state.zone_end_y)[axis]
+        begins = torch.cat([torch.full_like(ends[:, :1], -torch.inf), ends[:, :-1]], 1)
+        size = world.room[:, axis, None]  # beyond the walls of the house there is no smoke
+        first, last = (torch.minimum(of.gather(1, place).clamp(min=0.0), size) for of in (begins, ends))
+        near, far = _cut(first[:, None], last[:, None], eye[:, None, axis, None], way[..., axis, None])
         low, high = torch.maximum(low, near), torch.minimum(high, far)
     share = (high - low).clamp(min=0.0)
     ends = torch.stack([eye[:, None, 2, None] + way[..., 2, None] * t for t in (low, high)])

@@ -12,7 +12,7 @@ from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.panels import MapPanel, hazard_panel, strongest
 from hazard_ms.pictures.told import told
 from hazard_ms.sensing.camera import relabel
-from hazard_ms.simulation.viewpoint import corner_view, following_view
+from hazard_ms.simulation.drawing.viewpoint import corner_view, following_view
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.web.playing.link import HAZARD, HEAD, MAP, ROOM
 

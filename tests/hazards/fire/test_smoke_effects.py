@@ -191,7 +191,7 @@ def test_the_agent_feels_heat_and_breathes_smoke_at_its_chest() -> None:
         assert float(info["agent_temperature"]) == pytest.approx(warmth, rel=1e-3)
         assert float(info["agent_visibility"]) == pytest.approx(sight, rel=1e-3)
         assert bool(info["agent_in_smoke"]) is (face < 1.0)
-        breathed = smoke.breathed(state, REAL._chest(world))
+        breathed = smoke.breathed(state, tenability.chest(world))
         assert bool(tenability.toxic_rate(breathed) > 1e-3) is poison
 
 

@@ -73,27 +73,30 @@ def test_drops_are_discs_of_the_stated_sizes() -> None:
     assert smeared[0][behind].float().std() < 0.5 * rgb[0][behind].float().std()
 
 
-def house(rooms: int = 2) -> tuple[Any, Any]:
-    """The state of the smoke in two houses, one whose rooms stand along x, one along y; and their world."""
+def house() -> tuple[Any, Any]:
+    """The state of the smoke in three houses: rooms along x, along y, and in a grid of four; and their world."""
     far = torch.inf
+    none = [far] * 4
     state = SimpleNamespace(
-        zone_across=torch.tensor([0, 1]),
-        zone_end=torch.tensor([[3.0, far], [2.0, far]]),
-        zone_height=torch.tensor([[1.0, 2.0], [1.5, 0.4]]),
-        zone_density=torch.tensor([[2.0, 0.5], [1.0, 3.0]]),
-        zone_low_density=torch.tensor([[0.1, 0.0], [0.0, 0.3]]),
-        zone_temperature=torch.tensor([[300.0, 80.0], [150.0, 500.0]]),
-        zone_low_temperature=torch.tensor([[40.0, 20.0], [20.0, 60.0]]),
+        zone_columns=torch.tensor([2, 1, 2]),
+        zone_end_x=torch.tensor([[3.0, far, far, far], none, [2.0, far, far, far]]),
+        zone_end_y=torch.tensor([none, [2.0, far, far, far], [3.0, far, far, far]]),
+        zone_area=torch.tensor([[12.0, 12.0, 0.0, 0.0], [8.0, 12.0, 0.0, 0.0], [6.0, 9.0, 4.0, 6.0]]),
+        zone_height=torch.tensor([[1.0, 2.0, 0.0, 0.0], [1.5, 0.4, 0.0, 0.0], [1.0, 2.0, 1.5, 0.4]]),
+        zone_density=torch.tensor([[2.0, 0.5, 9.0, 9.0], [1.0, 3.0, 9.0, 9.0], [2.0, 0.5, 1.0, 3.0]]),
+        zone_low_density=torch.tensor([[0.1, 0.0, 9.0, 9.0], [0.0, 0.3, 9.0, 9.0], [0.1, 0.0, 0.0, 0.3]]),
+        zone_temperature=torch.tensor([[300.0, 80.0, 9.0, 9.0], [150.0, 500.0, 9.0, 9.0], [300.0, 80.0, 150.0, 500.0]]),
+        zone_low_temperature=torch.tensor([[40.0, 20.0, 9.0, 9.0], [20.0, 60.0, 9.0, 9.0], [40.0, 20.0, 20.0, 60.0]]),
     )
-    return state, SimpleNamespace(room=torch.tensor([[6.0, 4.0], [4.0, 5.0]]))
+    return state, SimpleNamespace(room=torch.tensor([[6.0, 4.0], [4.0, 5.0], [5.0, 5.0]]))
 
 
 def summed(state: Any, world: Any, e: int, eye: np.ndarray, point: np.ndarray) -> tuple[float, float]:
     """Optical depth and mean temperature of the smoke, from 40,000 places along a line."""
     t = (np.arange(40000) + 0.5) / 40000
     places = eye + (point - eye) * t[:, None]
-    axis = int(state.zone_across[e])
-    room = (places[:, axis] > float(state.zone_end[e, 0])).astype(int)
+    east, north = (places[:, k] > float(end[e, 0]) for k, end in enumerate((state.zone_end_x, state.zone_end_y)))
+    room = east.astype(int) + int(state.zone_columns[e]) * north.astype(int)
     high = places[:, 2] > state.zone_height[e].numpy()[room]
     thick = np.where(high, state.zone_density[e].numpy()[room], state.zone_low_density[e].numpy()[room])
     warm = np.where(high, state.zone_temperature[e].numpy()[room], state.zone_low_temperature[e].numpy()[room])
@@ -106,13 +109,13 @@ def test_smoke_along_a_line_is_what_sampling_sums_up() -> None:
     """Lines in one room, through two, along the face of the layer, and out of the house."""
     state, world = house()
     rng = np.random.default_rng(0)
-    eye = np.array([[1.0, 1.2, 1.1], [1.0, 1.2, 1.6]])
-    points = np.stack([np.column_stack([rng.uniform(-3, 9, (60, 2)), rng.uniform(0, 2.6, 60)]) for _ in range(2)])
+    eye = np.array([[1.0, 1.2, 1.1], [1.0, 1.2, 1.6], [1.0, 1.2, 1.3]])
+    points = np.stack([np.column_stack([rng.uniform(-3, 9, (60, 2)), rng.uniform(0, 2.6, 60)]) for _ in range(3)])
     points[:, 0] = [5.0, 1.2, 1.1]
     made = of_fire.BlazeSignals(SimpleNamespace(room_temperature=20.0)).murk(
         state, world, torch.tensor(eye, dtype=torch.float32), torch.tensor(points, dtype=torch.float32)
     )
-    for e in range(2):
+    for e in range(3):
         for p in range(60):
             depth, warm = summed(state, world, e, eye[e], points[e, p])
             assert float(made.sight[e, p]) == pytest.approx(depth, abs=2e-3)
@@ -125,7 +128,7 @@ def test_smoke_is_nearly_clear_in_thermal_infrared() -> None:
     """Rayleigh absorption at 10 um, c f / wavelength with c = 4.49, over 8.7 m^2/g of 1.8 g/cm^3 in visible light."""
     state, world = house()
     made = of_fire.BlazeSignals(SimpleNamespace(room_temperature=20.0)).murk(
-        state, world, torch.tensor([[1.0, 1.0, 2.0]] * 2), torch.tensor([[[2.0, 3.0, 2.1]]] * 2)
+        state, world, torch.tensor([[1.0, 1.0, 2.0]] * 3), torch.tensor([[[2.0, 3.0, 2.1]]] * 3)
     )
     share = (4.49 / 10e-6) / (8700.0 * 1800.0)
     assert (made.far / made.sight).flatten().tolist() == pytest.approx([share] * 2, rel=5e-3)

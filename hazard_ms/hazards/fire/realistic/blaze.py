@@ -51,7 +51,6 @@ from hazard_ms.spec.severity import SEVERITIES, USUAL
 
 ESTABLISHED = 60.0  # age of the fires with which a scene begins [s] [ours]
 UPDATE = 1 / 6  # unit in which pictures count the age of flames on things: 5 frames of the original [s]
-CHEST = 1.0  # height at which the agent feels heat and smoke [m] [ours]
 
 
 @dataclass(frozen=True)
@@ -178,7 +177,7 @@ class Blaze(Hazard):
     def _warm(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> None:
         """Heat things, and the agent, for `step` seconds of fire."""
         things = state.status.shape[1]
-        points = torch.cat([world.position, self._chest(world)], 1)
+        points = torch.cat([world.position, tenability.chest(world)], 1)
         flux, gas = self._exposure(state, world, fires, points)
         reached = torch.where(touching.touched(fires, world, state.ceiling), touching.TOUCH_FLUX, 0.0)
         taken = torch.maximum(flux[:, :things], reached) + radiation.CONVECTION * (
@@ -193,7 +192,9 @@ class Blaze(Hazard):
         state.agent_temperature.copy_(gas[:, -1])
         seconds = step / self.time_scale  # the agent's: it does not age as fast as the fire
         state.agent_dose.add_(tenability.dose_rate(gas[:, -1], flux[:, -1]) * seconds)
-        state.agent_toxic_dose.add_(tenability.toxic_rate(smoke.breathed(state, self._chest(world))[:, 0]) * seconds)
+        state.agent_toxic_dose.add_(
+            tenability.toxic_rate(smoke.breathed(state, tenability.chest(world))[:, 0]) * seconds
+        )
 
     def _burn(self, state: BlazeState, world: World, step: float) -> None:
         """Let things catch fire and burn out."""
@@ -205,13 +206,6 @@ class Blaze(Hazard):
         ignites &= state.coated < wetting.SOAKED
         state.status.add_(ignites | (burning_now & (state.burn_age >= state.burn_end)))  # normal -> burning -> burnt
         state.temperature.masked_fill_(ignites, self.flame_temperature)
-
-    @staticmethod
-    def _chest(world: World) -> Tensor:
-        """Place where the agent feels heat [m], [E, 1, 3], world frame."""
-        place = world.agent_position.clone()
-        place[:, 2] += CHEST
-        return place[:, None]
 
     @torch.inference_mode()
     def strain(self, state: BlazeState, world: World) -> Strain:
@@ -236,11 +230,11 @@ class Blaze(Hazard):
         """
         apart = (state.flame_place[:, None, :, :2] - points[:, :, None, :2]).abs().amax(-1)
         inside = ((apart <= spread.STEP / 2) & lit(state, world.frame)[:, None]).any(-1)
-        raised = points + points.new_tensor([0.0, 0.0, CHEST])
+        raised = points + points.new_tensor([0.0, 0.0, tenability.CHEST])
         return inside | (self._exposure(state, world, self._fires(state, world), raised)[0] > self.agent_bound)
 
     def agent_info(self, state: BlazeState, world: World) -> dict[str, Tensor]:
-        flux, gas = (v[:, 0] for v in self._exposure(state, world, self._fires(state, world), self._chest(world)))
+        flux, gas = (v[:, 0] for v in self._exposure(state, world, self._fires(state, world), tenability.chest(world)))
         return {
             "agent_temperature": gas,
             "agent_flux": flux,
@@ -248,7 +242,7 @@ class Blaze(Hazard):
             "agent_thermal_class": tenability.thermal_class(gas, flux),
             "agent_overheated": state.agent_dose >= tenability.UNBEARABLE,
             "agent_in_fire": self.forbids(state, world, world.agent_position[:, None])[:, 0],
-            "agent_in_smoke": state.smoke_height < CHEST,
+            "agent_in_smoke": state.smoke_height < tenability.CHEST,
             "agent_toxic_dose": state.agent_toxic_dose.clone(),
-            "agent_visibility": smoke.visibility(state, self._chest(world))[:, 0],
+            "agent_visibility": smoke.visibility(state, tenability.chest(world))[:, 0],
         }

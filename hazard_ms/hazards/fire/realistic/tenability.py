@@ -13,8 +13,10 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
+from hazard_ms.simulation.world import World
 from hazard_ms.spec import rounding
 
+CHEST = 1.0  # height at which the agent feels heat and smoke [m] [ours]
 # I, II, III; IV above [docs/physics.md 3.1; fluxes: NIST TN 1474]
 CLASSES = ((100.0, 1.0), (160.0, 2.0), (260.0, 10.0))
 RADIANT_FROM = 2.5  # flux from which it counts for the dose [kW/m^2] [docs/physics.md 3.1, 4.4]
@@ -26,6 +28,13 @@ AIR, MONOXIDE, CYANIDE, DIOXYGEN, OXYGEN = 28.96, 28.01, 27.03, 32.0, 20.9
 DIOXIDE = 0.8  # carbon dioxide made per oxygen used up, by volume: of wood 1, of plastics 0.7 [-] [M: SFPE]
 _MOLES = ((3, DIOXYGEN), (4, MONOXIDE), (5, CYANIDE))  # columns of a gas, and of what
 BREATHLESS = 13.0  # oxygen below which its lack counts [% by volume] [docs/physics.md 3.1: ISO 13571]
+
+
+def chest(world: World) -> Tensor:
+    """Place where the agent feels heat [m], [E, 1, 3], world frame."""
+    place = world.agent_position.clone()
+    place[:, 2] += CHEST
+    return place[:, None]
 
 
 def toxic_rate(gas: Tensor) -> Tensor:

@@ -7,9 +7,8 @@ The scheme is the momentum-conserving one of Stelling and Duinmeijer, A staggere
 number in rapidly varied shallow water flows, Int. J. Numer. Meth. Fluids 43, 2003: depths in cells, velocities on their
 sides, depths on sides taken from upstream, momentum carried by the mean discharge of neighbouring sides, first
 velocities and then depths. Where the flow speeds up along its way its energy head is carried in place of its momentum,
-as the paper has it for contractions, which keeps fronts on dry ground fast. Water at rest stays at rest over any
-ground. Steps of ground are seen from the higher side, so water only passes what it stands above. Cells give no more than
-they hold. Sums of depth are compensated (Kahan).
+as the paper has it for contractions, which keeps fronts on dry ground fast. Water at rest stays at rest. Steps of
+ground are seen from the higher side. Cells give no more than they hold. Sums of depth are compensated (Kahan).
 
 A step is as long as the fastest wave allows; the water is ahead of the frame by less than one. Order: 1. Limits: no
 turbulence, bodies do not act back.

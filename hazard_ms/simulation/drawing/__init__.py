@@ -1,0 +1,1 @@
+"""Drawing apart from the bodies of scenes: lights, boxes with textures, and the view of films."""

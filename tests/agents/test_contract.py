@@ -92,7 +92,7 @@ def test_parameters_are_converted_as_they_are_annotated() -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("greedy:giveup=3", "give_up=..., got 'giveup=3'"),
+        ("greedy:giveup=3", "give_up=..., belief=..., got 'giveup=3'"),
         ("greedy:give_up=few", "give_up must be int, got 'few'"),
         ("greedy:give_up=0", "give_up must be at least 1, got 0"),
         ("random:seed=3", r"\(none\), got 'seed=3'"),

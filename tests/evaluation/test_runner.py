@@ -116,7 +116,7 @@ def test_a_run_ends_at_the_frame_that_was_asked_for(env: SkillEnv, frame: int) -
     assert Runner(env, Looker()).run(SEED).ended == "stopped", "the next run is not cut short"
 
 
-@pytest.mark.parametrize("every", [None, 90])
+@pytest.mark.parametrize("every", [None, pytest.param(90, marks=pytest.mark.long)])
 def test_an_episode_in_which_no_time_passes_ends(env: SkillEnv, every: int | None) -> None:
     """An agent that drops nothing for ever decides a hundred times; one that looks around in between goes on."""
     played = Runner(env, Idle(every)).run(SEED)

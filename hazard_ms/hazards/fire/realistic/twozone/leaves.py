@@ -12,6 +12,8 @@ counts as if the leaf were cold; a leaf is gone at once.
 
 from __future__ import annotations
 
+import math
+
 import torch
 from torch import Tensor
 
@@ -20,6 +22,7 @@ from hazard_ms.hazards.fire.realistic.radiation import AIR, CONVECTION, GRAVITY,
 from hazard_ms.hazards.fire.realistic.twozone.balance import FAR
 from hazard_ms.simulation.openings import Strain
 from hazard_ms.simulation.world import World
+from hazard_ms.spec import rounding
 
 CHARS = 12.5  # least flux that ignites wood with a flame beside it [kW/m^2] [M: SFPE]
 FIRST = 60.0  # furnace time below which the furnace counts as hot as then: 349 C [s] [ours]
@@ -28,7 +31,7 @@ HIGH = 0.9  # share of a leaf's height at which its heat is read [ours]
 
 def furnace(seconds: Tensor) -> Tensor:
     """Heat [kW/m^2], [...], on a cold face in the furnace of ISO 834 after so many seconds, [...]; from FIRST on."""
-    warmth = 345.0 * torch.log10(8.0 / 60.0 * seconds.clamp(min=FIRST) + 1.0)
+    warmth = 345.0 / math.log(10.0) * rounding.log(8.0 / 60.0 * seconds.clamp(min=FIRST) + 1.0)
     cold = 20.0 + KELVIN
     return STEFAN * ((warmth + cold) ** 4 - cold**4) + CONVECTION * warmth
 

@@ -16,7 +16,7 @@ from hazard_ms.env.leaves import Leaves
 from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.grasp import Hand
 from hazard_ms.episode.situation import Situation
-from hazard_ms.hazards.base import none_set
+from hazard_ms.hazards.base import loosened, none_set
 from hazard_ms.hazards.presets import FREQUENCIES
 from hazard_ms.scenes.choice import SceneChoice
 from hazard_ms.sensing.display import Display
@@ -70,11 +70,7 @@ class BuiltEnv(BaseEnv):
 
     def _load_scene(self, options: dict[str, Any]) -> None:
         self.lights: Lighting | None = None  # where nothing renders, nothing shines
-        loose = (
-            ()
-            if self.gpu_sim_enabled
-            else tuple(frozenset().union(*(h.loosens(spec) for h in self.task.hazards)) for spec in self.specs)
-        )
+        loose = () if self.gpu_sim_enabled else tuple(loosened(self.task.hazards, spec) for spec in self.specs)
         self.actors = building.build_scenes(self.scene, self.specs, loose)
         self.bags = building.build_bags(self.scene, self.num_envs)
         self.world = building.make_world(self.specs, self.device, loose)

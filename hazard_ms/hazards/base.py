@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import abc
 import dataclasses
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import torch
@@ -19,7 +20,12 @@ from hazard_ms.spec import Level, Quantity, SceneSpec
 if TYPE_CHECKING:
     from hazard_ms.simulation.world import World
 
-__all__ = ["DTYPES", "Hazard", "Level", "Push", "State", "none_set", "quantity"]
+__all__ = ["DTYPES", "Hazard", "Level", "Push", "State", "loosened", "none_set", "quantity"]
+
+
+def loosened(hazards: Iterable[Hazard], spec: SceneSpec) -> frozenset[str]:
+    """Names of the furniture of a scene that some of the `hazards` can set free."""
+    return frozenset().union(*(hazard.loosens(spec) for hazard in hazards))
 
 
 def none_set(mask: Tensor) -> bool:

@@ -32,8 +32,12 @@ class Standalone:
         self.scene.px.step()
 
 
-def build(spec: SceneSpec, draw: bool = False, rate: int = PHYSICS_RATE) -> Standalone:
+def build(
+    spec: SceneSpec, draw: bool = False, rate: int = PHYSICS_RATE, loose: frozenset[str] = frozenset()
+) -> Standalone:
     """Build the scene of `spec`, ready to be rendered if `draw`, for `rate` physics steps a second [Hz].
+
+    `loose`: names of the furniture that can be set free.
 
     Raises ValueError if `draw` without a renderer.
     """
@@ -46,8 +50,8 @@ def build(spec: SceneSpec, draw: bool = False, rate: int = PHYSICS_RATE) -> Stan
         systems.append(sapien.render.RenderSystem(info.render_device))
     scene = ManiSkillScene([sapien.Scene(systems)], debug_mode=False, device=torch.device("cpu"), backend=info)
     scene.set_timestep(1.0 / rate)
-    rows = building.build_scenes(scene, (spec,))
-    world = building.make_world((spec,), torch.device("cpu"))
+    rows = building.build_scenes(scene, (spec,), (loose,))
+    world = building.make_world((spec,), torch.device("cpu"), (loose,))
     world.handles = building.connect(scene, (spec,), rows, torch.device("cpu"))
     if draw:
         Lighting(scene, (spec,))

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.episode import snapshot
 from hazard_ms.episode.episode import Episode
-from hazard_ms.hazards.base import Hazard
+from hazard_ms.hazards.base import Hazard, loosened
 from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.hazards.presets import FREQUENCIES
 from hazard_ms.machine.cache import home
@@ -200,7 +200,7 @@ def _begun(task: Task, physics: str, world: World, seeds: Sequence[int]) -> _Cou
 def _simulated(task: Task, physics: str, spec: SceneSpec, seed: int) -> _Course:
     """One episode at frame 0 in a simulator of its own, without a robot."""
     control, rate = FREQUENCIES[physics]
-    scene = bare_scene.build(spec, rate=rate)
+    scene = bare_scene.build(spec, rate=rate, loose=loosened(task.hazards, spec))
     course = _begun(task, physics, scene.world, (seed,))
 
     def physics_step() -> None:

@@ -4,8 +4,8 @@
 
 The predicted value is halved where the target is damaged, or where a hazard threatens it by the time of arrival, with
 the hazard's level continued along the straight line through the last two sightings. A target that failed repeatedly
-gets a growing cost and is given up at last, so no path is tried for ever. The belief is that the thing is what it seems
-to be, 1 with the truth; a pick-up that met no target is no failure, as the thing is not believed in any more.
+gets a growing cost and is given up at last, so no path is tried for ever. Values count by the belief that the thing is
+what it seems to be, 1 with the truth. A pick-up that met no target does not count as a failure: it ends the belief.
 Searching: walk to the landmark with the most unexplored floor around it, then look around there.
 """
 

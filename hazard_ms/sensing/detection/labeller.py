@@ -80,7 +80,7 @@ class Labeller:
         """Nothing that can be used was within reach where the agent believes the thing `index` to be."""
 
     def refused(self, index: int, other: bool) -> None:
-        """The hand has not taken what the agent knows as the thing `index`; `other`: it met what is no target."""
+        """The hand has not taken what the agent knows as the thing `index`; `other`: it met something else."""
 
     def took(self, index: int) -> None:
         """The hand has taken what the agent knows as the thing `index`."""

@@ -17,6 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hazard_ms.planning.committed import committed
 from hazard_ms.planning.orienteering import solve
@@ -81,15 +82,25 @@ class Courses:
         return tuple(state.saved + _solved(problem, limit) for limit in limits)
 
     def choice(
-        self, state: State, action: Action, notion: Notion, future: Timeline, limits: Reach, best: Reach
+        self,
+        state: State,
+        action: Action,
+        notion: Notion,
+        future: Timeline,
+        limits: Reach,
+        best: Reach,
+        place: Place | None = None,
     ) -> Reach:
-        """The value that the best course that begins with `action` reaches by each of `limits`; `best`: any course."""
+        """The value that the best course that begins with `action` reaches by each of `limits`; `best`: any course.
+
+        `place` [m]: where somebody walks whose target is nothing that there is.
+        """
         if action.verb == STOP:
             return (state.saved,) * len(limits)
         through = self._through(state, action, notion, future, limits)
         if all(a >= b - ROUNDING for a, b in zip(through, best, strict=True)):
             return best
-        after = self.after(state, action, notion, future)
+        after = self.after(state, action, notion, future, place)
         after = replace(after, frame=max(state.frame, after.frame - EASE))
         anew = [
             value if after.frame <= limit else state.saved
@@ -128,13 +139,20 @@ class Courses:
         rests = (replace(problem, limit=limit) for limit in limits)
         return tuple(state.saved + committed(rest, goal, cart, MOST_LABELS, BEAM) for rest in rests)
 
-    def after(self, state: State, action: Action, notion: Notion, future: Timeline) -> State:
-        """The state in which `action` usually leaves a rescue; what cannot work takes no time."""
+    def after(
+        self, state: State, action: Action, notion: Notion, future: Timeline, place: Place | None = None
+    ) -> State:
+        """The state in which `action` usually leaves a rescue; what cannot work takes no time; `place` as above."""
         if action.verb == EXPLORE:
             return self._later(state, self._explore)
         index = future.names.index(action.target) if action.target in future.names else -1
         if action.verb in (WALK_TO, WALK_ONE_STEP):
-            return self._walked(state, index, action.verb == WALK_ONE_STEP, future)
+            if index >= 0:
+                place = future.position_at(state.frame)[index, :2]
+            edge = self._scene.edges[index] if index >= 0 else 0.0
+            return state if place is None else self._walked(state, place, edge, action.verb == WALK_ONE_STEP)
+        if index < 0 and action.verb == PICK_UP:
+            return state
         if action.verb == PICK_UP:
             away, pick = self._away(state, index, future), self._pick(index, state.frame, future)
             if state.holding is not None or index not in state.left or away > MOST_REACH:
@@ -165,9 +183,9 @@ class Courses:
         """Frames that it usually takes to pick up the thing `index`, at its height at a frame."""
         return self._times.usual(skill_times.PICK_UP, float(future.position_at(frame)[index, 2]))
 
-    def _walked(self, state: State, index: int, one_step: bool, future: Timeline) -> State:
-        """The state after a walk to the thing `index`, or the first part of a long one."""
-        goal, edge = future.position_at(state.frame)[index, :2].astype(np.float64), self._scene.edges[index]
+    def _walked(self, state: State, to: Place | NDArray[np.float32], edge: float, one_step: bool) -> State:
+        """The state after a walk `to` the middle of a thing with an `edge` around it [m], or its first part if long."""
+        goal = np.asarray(to, np.float64)
         place, ways = np.array(state.place), self._scene.ways
         route = ways.route(place, goal, edge)
         if not np.isfinite(route.metres):

@@ -7,7 +7,7 @@ from collections import Counter
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.agents.courses import Courses, Notion, Reach, State
+from hazard_ms.agents.courses import Courses, Notion, Place, Reach, State
 from hazard_ms.agents.truth import Future
 from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.rescue_problem import RescueScene
@@ -26,13 +26,13 @@ class Hindsight:
 
     def __init__(self, env: SkillEnv, times: SkillTimes | None = None) -> None:
         """Take an environment in which an episode has just begun; `times` of skills, as measured if None."""
-        base, brief = env.base, env.brief()
+        base, robot = env.base, env.brief().robot
         self._env, self._future = env, Future(env)
-        scene = RescueScene(base.specs[0], brief.robot, base.agent.build.radius, brief.max_frames)
-        carts = tuple(base.world.index(0, name) for name in brief.containers)
-        self._courses = Courses(scene, carts, times or skill_times.shipped(brief.robot))
-        self.targets = {target.index: target for target in brief.targets}
-        self.truth = Notion({target.index: target.value for target in brief.targets})
+        scene = RescueScene(base.specs[0], robot, base.agent.build.radius, env.max_frames)
+        carts = tuple(base.world.index(0, cart.name) for cart in base.specs[0].containers)
+        self._courses = Courses(scene, carts, times or skill_times.shipped(robot))
+        self.targets = {target.index: target for target in base.observer.table.rows(base.world)}
+        self.truth = Notion({index: target.value for index, target in self.targets.items()})
         self._failures: Counter[int] = Counter()
 
     def state(self) -> State:
@@ -65,9 +65,20 @@ class Hindsight:
         """The value that the best plan reaches from `state` by each of `limits`; `notion`: by default the truth."""
         return self._courses.best(state, notion or self.truth, self._future.timeline(), limits)
 
-    def choice(self, state: State, action: Action, limits: Reach, best: Reach, notion: Notion | None = None) -> Reach:
-        """The value that the best course that begins with `action` reaches by each of `limits`; `best`: any course."""
-        return self._courses.choice(state, action, notion or self.truth, self._future.timeline(), limits, best)
+    def choice(
+        self,
+        state: State,
+        action: Action,
+        limits: Reach,
+        best: Reach,
+        notion: Notion | None = None,
+        place: Place | None = None,
+    ) -> Reach:
+        """The value that the best course that begins with `action` reaches by each of `limits`; `best`: any course.
+
+        `place` [m]: where somebody walks whose target is nothing that there is.
+        """
+        return self._courses.choice(state, action, notion or self.truth, self._future.timeline(), limits, best, place)
 
     def begins_with(self, state: State, limit: float) -> str:
         """The first rescue of the best plan from `state` by `limit` in words; empty where it has none."""

@@ -6,14 +6,19 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from hazard_ms.agents.courses import Notion, State, mean
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.agents.courses import Notion, Reach, State, mean
 from hazard_ms.agents.hindsight import Hindsight
 from hazard_ms.evaluation.metrics import Tally
 from hazard_ms.evaluation.regret.causes import LATENCY, LEAST, MEMORY, PERCEPTION, Appraisal, Without
+from hazard_ms.evaluation.regret.identities import Identities, Meant
 from hazard_ms.evaluation.result import Played
 from hazard_ms.evaluation.runner import fates
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.skills.decision import Action, Decision, Result
+from hazard_ms.sensing.view import View
+from hazard_ms.skills.decision import NEED_TARGET, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.spec.catalogue import CATEGORIES
 
@@ -50,33 +55,44 @@ class Appraiser(Watcher):
         self._total = sum(self._mind.truth.values.values())
         self._clear: dict[int, str] = {}  # targets that were clearly in view, and how
         self._held_once: set[int] = set()  # targets that the map of a decision once held
-        look = env.stage.look
+        self._identities = Identities(env)
+        self._notice(env.base.observer.glance(), env.frame)  # as the first look was, which is over
+        view, look = env.labeller.view, env.stage.look
+
+        def viewed(rgb: NDArray[np.uint8] | None, true: View, frame: int) -> View:
+            self._notice(true, frame)
+            return view(rgb, true, frame)
 
         def looked() -> None:
             look()
-            self._notice()
+            self._identities.looked()
 
+        env.labeller.view = viewed  # type: ignore[method-assign]
         env.stage.look = looked
 
-    def _notice(self) -> None:
-        for index, seen in self._env.seen.objects.items():
-            if index in self._mind.targets and index not in self._clear and seen.pixels >= CLEAR:
-                self._clear[index] = f"was in view with {seen.pixels} pixels at frame {seen.frame}"
+    def _notice(self, true: View, frame: int) -> None:
+        """Note which targets are clearly in view, by its `true` labels."""
+        assert true.labels is not None
+        shown = true.labels[(true.labels >= 0) & (true.depth > 0.0)]
+        for index, pixels in enumerate(np.bincount(shown).tolist()):
+            if index in self._mind.targets and index not in self._clear and pixels >= CLEAR:
+                self._clear[index] = f"was in view with {pixels} pixels at frame {frame}"
 
     def asked(self, so_far: Played) -> None:
         """Work out what the best plan reaches from here."""
-        self._notice()
+        self._identities.looked()  # after the look that ends an action
         self._state = self._mind.state()
         self._best = mean(self._mind.best(self._state, self._mind.limits(self._state)))
         self.bests.append(self._best / self._total)
 
     def decided(self, decision: Decision, action: Action, note: str) -> None:
         """Judge the choice; `note` is not looked at."""
-        self._action = action
+        meant = self._identities.meant(action)
+        self._action = meant.action
         if len(self.appraisals) == self._count:
             return
         now = self._state if self._env.frame == decision.frame else self._mind.state()
-        judged = _Judged(self._mind, self._state, now, action, self._total)
+        judged = _Judged(self._mind, self._state, now, meant, self._total)
         known = self._known(decision)
         regret = judged.regret(self._mind.truth)
         seen, without, instead = regret, {}, ""
@@ -85,17 +101,28 @@ class Appraiser(Watcher):
         if seen > LEAST:
             without, instead = self._without(judged, known), judged.instead()
         self._held_once |= set(known)
+        best, mistaken = self._best / self._total, self._mistaken(decision, action, meant)
         self.appraisals.append(
-            Appraisal(
-                decision.frame, action.verb, action.target, self._best / self._total, regret, seen, without, instead
-            )
+            Appraisal(decision.frame, action.verb, action.target, best, regret, seen, without, instead, mistaken)
         )
+
+    def _mistaken(self, decision: Decision, action: Action, meant: Meant) -> str:
+        """What the target of an action really is, in words, where it was taken for something to rescue and is not."""
+        wanted = action.verb in NEED_TARGET and any(t.name == action.target for t in decision.targets)
+        if not wanted or meant.body in self._mind.targets:
+            return ""
+        what = "nothing that can be carried" if meant.body < 0 else self._env.base.world.names[0][meant.body]
+        return f"{action.target} is {what}"
 
     def _known(self, decision: Decision) -> dict[int, Known]:
         """The targets that the agent knew of."""
         objects = decision.map.objects
-        found = {t.index: (t, objects[t.index].position) for t in decision.targets if t.index in objects}
-        return {index: Known(t.category, (float(place[0]), float(place[1]))) for index, (t, place) in found.items()}
+        found = [(self._identities.body(t.index), t, objects[t.index]) for t in decision.targets if t.index in objects]
+        return {
+            body: Known(target.category, (float(seen.position[0]), float(seen.position[1])))
+            for body, target, seen in found
+            if body in self._mind.targets
+        }
 
     def _without(self, judged: _Judged, known: dict[int, Known]) -> dict[str, Without]:
         """What the choice would have lost without each thing that went wrong before it."""
@@ -142,8 +169,8 @@ class Appraiser(Watcher):
 class _Judged:
     """One choice between the state in which the agent saw the world, and that in which it had chosen."""
 
-    def __init__(self, mind: Hindsight, seen: State, now: State, action: Action, total: float) -> None:
-        self._mind, self.seen, self._now, self._action, self._total = mind, seen, now, action, total
+    def __init__(self, mind: Hindsight, seen: State, now: State, meant: Meant, total: float) -> None:
+        self._mind, self.seen, self._now, self._meant, self._total = mind, seen, now, meant, total
         self._limits = mind.limits(seen)
 
     @property
@@ -159,21 +186,24 @@ class _Judged:
         """How much less the choice reaches than the best plan when the agent was asked, as a share of all value."""
         best = self._mind.best(self.seen, self._limits, notion)
         later = self._mind.best(self._now, self._limits, notion) if self.waited else best
-        choice = self._mind.choice(self._now, self._action, self._limits, later, notion)
+        choice = self._choice(self._now, later, notion)
         return max(0.0, mean(best) - mean(choice)) / self._total
 
     def instead(self) -> str:
         """What the best plan began with, at the pace at which the choice loses most, in words."""
         best = self._mind.best(self.seen, self._limits)
-        choice = self._mind.choice(self._now, self._action, self._limits, best)
+        choice = self._choice(self._now, best)
         lost = [b - c for b, c in zip(best, choice, strict=True)]
         return self._mind.begins_with(self.seen, self._limits[lost.index(max(lost))])
 
     def at_once(self) -> float:
         """The same if the agent had chosen at once."""
         best = self._mind.best(self.seen, self._limits)
-        choice = self._mind.choice(self.seen, self._action, self._limits, best)
-        return (mean(best) - mean(choice)) / self._total
+        return (mean(best) - mean(self._choice(self.seen, best))) / self._total
+
+    def _choice(self, state: State, best: Reach, notion: Notion | None = None) -> Reach:
+        """The value that the best course from `state` reaches that begins with the choice; `best`: any course."""
+        return self._mind.choice(state, self._meant.action, self._limits, best, notion, self._meant.place)
 
 
 def _list(words: list[str]) -> str:

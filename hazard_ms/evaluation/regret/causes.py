@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -51,6 +51,7 @@ class Appraisal:
     seen: float  # the same among the targets that had been seen: no agent could have known of the others
     without: Mapping[str, Without] = field(default_factory=dict)  # by cause
     instead: str = ""  # what the best plan began with, in words
+    mistaken: str = ""  # what it was done to, in words, where that is no target and was taken for one
 
 
 @dataclass(frozen=True)
@@ -139,6 +140,8 @@ def cause_of(appraisal: Appraisal, fallback: bool) -> tuple[str, str]:
     """
     if appraisal.regret <= LEAST:
         return "", ""
+    if appraisal.mistaken:
+        return PERCEPTION, appraisal.mistaken
     if appraisal.seen <= LEAST:
         return UNSEEN, f"{_percent(appraisal.regret)} lies in targets that had not been seen yet"
     for cause in (PERCEPTION, MEMORY):
@@ -171,6 +174,9 @@ def decisions_of(
     """
     made = []
     for one, fallback, landing in zip(appraisals, fallbacks, landings, strict=True):
+        if one.mistaken:  # all that it lost in the end was lost by the choice
+            lost = max(one.regret, one.best - landing)
+            one = replace(one, regret=lost, seen=lost)
         cause, evidence = cause_of(one, fallback)
         unseen = one.regret - min(one.seen, one.regret) if cause else 0.0
         execution = one.best - one.regret - landing

@@ -17,7 +17,6 @@ from hazard_ms.evaluation.result import FAILED, DamagedResultError, EpisodeResul
 from hazard_ms.evaluation.runner import play
 from hazard_ms.evaluation.workers import Crew, Job, Outcome, Say, ending
 from hazard_ms.machine.cores import cores
-from hazard_ms.registry.detectors import TRUTH
 
 
 @dataclass(frozen=True)
@@ -106,18 +105,13 @@ def _job(path: Path, result: EpisodeResult, load: tuple[str, ...]) -> RegretJob:
 
 
 def _records(folders: Sequence[Path]) -> dict[Path, EpisodeResult]:
-    """The results in `folders` by their files; a file that holds none, or whose agent saw no truth, is left out."""
+    """The results in `folders` by their files; a file that holds none is left out."""
     found = {}
     for path in result_files(folders):
         try:
-            result = EpisodeResult.read(path)
+            found[path] = EpisodeResult.read(path)
         except DamagedResultError as damaged:
             print(f"left out: {damaged}")
-            continue
-        if result.perception == TRUTH:
-            found[path] = result
-        else:
-            print(f"left out: the perception of {path} must be {TRUTH} for a regret, got {result.perception}")
     return found
 
 

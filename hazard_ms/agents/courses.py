@@ -147,10 +147,9 @@ class Courses:
             return self._later(state, self._explore)
         index = future.names.index(action.target) if action.target in future.names else -1
         if action.verb in (WALK_TO, WALK_ONE_STEP):
-            if index >= 0:
-                place = future.position_at(state.frame)[index, :2]
-            edge = self._scene.edges[index] if index >= 0 else 0.0
-            return state if place is None else self._walked(state, place, edge, action.verb == WALK_ONE_STEP)
+            goal = place if index < 0 else future.position_at(state.frame)[index, :2]
+            edge = 0.0 if index < 0 else self._scene.edges[index]
+            return state if goal is None else self._walked(state, goal, edge, action.verb == WALK_ONE_STEP)
         if index < 0 and action.verb == PICK_UP:
             return state
         if action.verb == PICK_UP:

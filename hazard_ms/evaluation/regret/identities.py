@@ -16,7 +16,7 @@ NOTHING = -1  # in place of an index along B
 
 
 class Meant(NamedTuple):
-    """What the target of an action really is."""
+    """An action as one to true things, and the place where its target is believed to be."""
 
     action: Action  # with the true thing as its target, where there is one
     body: int  # index along B of the true thing, or NOTHING

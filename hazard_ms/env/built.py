@@ -130,6 +130,7 @@ class BuiltEnv(BaseEnv):
             self.scene.px.gpu_apply_articulation_target_velocity()  # ManiSkill has sent the velocities already
 
     def _before_simulation_step(self) -> None:
+        self.leaves.push(self._sim_steps_per_control)
         self.episode.push(self.sim_timestep)
 
     def _after_control_step(self) -> None:

@@ -24,6 +24,7 @@ from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Room
 
 GONE = -10.0  # height of what is broken [m]
+SLOW = 0.1  # leaves that move less in a frame turn, others are put where they belong [m] [ours]
 HANDLE = (0.12, LEAF + 0.1, 0.025)  # of a lever on both faces: along the leaf, across it, upwards [m] [ours]
 
 
@@ -48,6 +49,10 @@ class Leaves:
         self._hinge, self._along, self._out = (
             torch.tensor(of, dtype=torch.float32, device=world.device).reshape(-1, 3) for of in (hinge, along, out)
         )
+
+        self._at = self._before = torch.full((len(where), 7), math.inf)  # poses at the last move, and before it
+        self._turning: list[int] = []
+        self._step = 0
 
     def poses(self) -> tuple[Tensor, Tensor]:
         """Middles of the leaves as the doors are open now [m], [L, 3], and their rotations, [L, 4].
@@ -76,8 +81,28 @@ class Leaves:
             rows[moved, 3:7] = turns
             self._scene.px.gpu_apply_rigid_dynamic_data()
             return
-        for actor, place, turn in zip(self._actors, places.tolist(), turns.tolist(), strict=True):
-            actor._objs[0].set_pose(sapien.Pose(place, turn))
+        now = torch.cat([places, turns], 1)
+        slow = (now - self._at).abs().amax(1) < SLOW
+        for number in (now != self._at).any(1).nonzero()[:, 0].tolist():
+            if not bool(slow[number]):
+                self._actors[number]._objs[0].set_pose(_pose(now[number]))
+        self._turning = [number for number in (now != self._at).any(1).nonzero()[:, 0].tolist() if bool(slow[number])]
+        self._before, self._at, self._step = self._at, now, 0
+
+    def push(self, steps: int) -> None:
+        """Lead leaves that turn on to where they are at the end of this physics step, one of `steps` in a frame.
+
+        So they push what is in their way at their own speed.
+        """
+        self._step += 1
+        share = min(1.0, self._step / steps)
+        for number in self._turning:
+            body = self._actors[number]._objs[0].find_component_by_type(PhysxRigidDynamicComponent)
+            body.set_kinematic_target(_pose(torch.lerp(self._before[number], self._at[number], share)))
+
+
+def _pose(numbers: Tensor) -> sapien.Pose:
+    return sapien.Pose(numbers[:3].tolist(), (numbers[3:] / numbers[3:].norm()).tolist())
 
 
 def _build(scene: Any, box: ShellBox, room: Room, o: Opening, env: int, number: int) -> Any:

@@ -66,7 +66,8 @@ class TwoRooms:
         x, y = seen.origin[0] + (x + 0.5) * seen.cell, seen.origin[1] + (y + 0.5) * seen.cell
         within = (x > 0.0) & (x < SIZE[0]) & (y > 0.0) & (y < SIZE[1])
         height = np.where(within, 0.0, 2.0).astype(np.float32)
-        for box in floor.partitions(replace(scene.room, openings=tuple(replace(o, open=1.0) for o in scene.room.openings))):
+        without = tuple(replace(o, open=1.0) if o.kind == "door" else o for o in scene.room.openings)
+        for box in floor.partitions(replace(scene.room, openings=without)):
             over = (np.abs(x - box.x) < box.half_x + 0.02) & (np.abs(y - box.y) < box.half_y + 0.02)
             height[over & (box.low < 1.8)] = 2.0
         for number, o in enumerate(scene.room.openings):

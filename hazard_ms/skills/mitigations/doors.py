@@ -3,10 +3,8 @@
 The robot walks to where its arm is long enough for the handle and brings its hand there. Then it steps out of the
 leaf's way, if it stands in it, and the leaf turns over its time; the hand follows as far as the arm gets.
 
-    F = F_0 + max(0, P) w / (2 (w - d))    at the handle, d from the free edge [NFPA 92, 4.4.2.2]
-
-P is the force of water and air on the leaf against its turn. Where F is more than the arm's pull (Build.pull: 59 N for
-Fetch, 29 N for G1), the leaf is held. Limits: latches are not locked; leaves of outer doors and windows are not drawn
+Where the leaf needs more force at the handle (.leaf) than the arm's pull (Build.pull: 59 N for Fetch, 29 N for G1), it
+is held. Limits: latches are not locked; leaves of outer doors and windows are not drawn
 open; the force is checked before and during the turn, but the leaf is not pressed back.
 """
 
@@ -17,27 +15,26 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.scenes.walls import WALLS, on_wall
 from hazard_ms.simulation import hinges
 from hazard_ms.simulation.openings import EVERY
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.mitigations.approach import approach
-from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, follow, go, never, posture_for
+from hazard_ms.skills.mitigations.leaf import REST_FORCE, Leaf
+from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, follow, go, lacking, never, posture_for
+from hazard_ms.skills.motor.grasping import APPROACH_FRAMES
 from hazard_ms.skills.motor.motion import drive
 from hazard_ms.skills.motor.navigation import Ways
-from hazard_ms.skills.motor.reaching import STAND_OFF
 from hazard_ms.skills.motor.routes import quickest
 from hazard_ms.skills.motor.surface import Leg, Place, Surface
-from hazard_ms.spec import Opening
 from hazard_ms.spec.robot import GRASP_REACH
 
 # Times of a quarter turn [s]: doors that move by themselves take 4 s to open, and 3 s to shut from 90 to 10 degrees and
 # 1.5 s from there, at least [ANSI/BHMA A156.19, 4.1.2 and 4.2]: leaves of 45 kg then have no more than 1.69 J
 OPENING_TIME, SHUTTING_TIME = 4.0, 4.5
-REST_FORCE = 22.2  # at the handle of an inner door without any pressure [N] [ADA 404.2.9: at most 5 lbf]
 WINDOW_SHARE = 0.9  # how far a window opens: a pane that is wholly out is broken [ours]
+SHARES = (0.85, 0.65)  # of the arm's span: distances from the handle at which it stands, in turn [ours]
 OFF_FACE = 0.08  # of the place for the hand from the middle of the leaf [m] [ours]
 ASIDE = 0.05  # gap that the base leaves to a leaf that turns [m] [ours]
 RINGS, DIRECTIONS = (0.3, 0.6, 0.9, 1.2, 1.6), 16  # where it looks for a place aside: distances [m], number of ways
@@ -67,57 +64,6 @@ def shut_door(stage: Stage, name: str) -> Skill:
     return (yield from _turn(stage, name, False))
 
 
-def handle_force(pressing: float, width: float) -> float:
-    """Force [N] at the handle of a leaf of `width` [m] on which `pressing` [N] acts against its turn."""
-    return REST_FORCE + max(0.0, pressing) * width / (2.0 * (width - hinges.HANDLE_EDGE))
-
-
-class _Leaf:
-    """One door or window of the first environment, and how a robot meets it."""
-
-    def __init__(self, stage: Stage, number: int) -> None:
-        self._stage, self.number = stage, number
-        self._openings = stage.world.openings
-        self.room = stage.world.specs[0].room
-        self.o: Opening = self.room.openings[number]
-        self.inner = self.o.wall not in WALLS  # its leaf turns on its hinges; others turn outwards
-
-    @property
-    def broken(self) -> bool:
-        return bool(self._openings.state.broken[0, self.number])
-
-    @property
-    def angle(self) -> float:
-        """How far it is open now [rad]."""
-        return hinges.angle(float(self._openings.share[0, self.number]))
-
-    def turn_to(self, angle: float) -> None:
-        rows = self._openings.state.open.new_zeros(1).long()
-        self._openings.set_open(rows, self.number, hinges.share(angle))
-
-    def handle(self) -> NDArray[np.float64]:
-        """The middle of its handle now [m], [3], world frame."""
-        if self.inner:
-            return hinges.handle(self.room, self.o, self.angle)
-        along = self.o.centre + self.o.width / 2 - hinges.HANDLE_EDGE
-        high = self.o.sill + (hinges.HANDLE_HEIGHT if self.o.kind == "door" else self.o.height / 2)
-        return np.array(on_wall(self.room, self.o.wall, along, high, 0.0))
-
-    def force(self, opening: bool) -> float:
-        """Force that it takes at the handle to open it, or to shut it [N]."""
-        pressing = float(self._openings.force[0, self.number]) * (1.0 if self.inner else -1.0)
-        return handle_force(pressing if opening else -pressing, self.o.width)
-
-    def meets(self, first: float, last: float, points: NDArray[np.float64], radius: NDArray[np.float64]) -> bool:
-        """Whether it would meet one of the discs around `points` [m], [N, 2], when it turns between these angles."""
-        return self.inner and bool(hinges.in_swing(self.room, self.o, first, last, points, radius).any())
-
-    def side(self, x: float, y: float) -> float:
-        """On which side of its wall a place [m] is: above 0 that into which it turns."""
-        start, _, out = hinges.hinge(self.room, self.o)
-        return float((np.array([x, y]) - start) @ out)
-
-
 def _turn(stage: Stage, name: str, opening: bool) -> Skill:
     known = stage.doors.find(name)
     if known is None:
@@ -126,25 +72,33 @@ def _turn(stage: Stage, name: str, opening: bool) -> Skill:
         return Result(False, failures.ALREADY_HOLDING)
     if known.kind == "doorway":
         return Result(False, failures.NO_LEAF)
-    leaf = _Leaf(stage, known.number)
+    leaf = Leaf(stage.world, known.number)
     goal = hinges.angle(_most(known.kind)) if opening else 0.0
     home = leaf.side(*stage.robot.base()[:2])
     nearest, farthest = stage.robot.build.span(float(leaf.handle()[2]))
-    walked = yield from approach(stage, leaf.handle(), max(nearest, STAND_OFF * farthest), farthest + GRASP_REACH)
-    if not walked.ok:
-        return walked
-    stage.doors.enter(known.number, stage.frame, stage.maps)  # it stands before it now
-    if leaf.broken or abs(leaf.angle - goal) < 1e-3:
-        return Result(not leaf.broken, failures.BROKEN if leaf.broken else "", walked.frames)
-    taken = yield from _take(stage, leaf.handle())
-    reason, used = "" if taken.ok else failures.UNREACHABLE, walked.frames + taken.frames
+    used, reason = 0, failures.UNREACHABLE
+    for share in SHARES:
+        walked = yield from approach(stage, leaf.handle(), max(nearest, share * farthest), farthest + GRASP_REACH)
+        used += walked.frames
+        if not walked.ok:
+            return Result(False, walked.reason, used)
+        stage.doors.enter(known.number, stage.frame, stage.maps)  # it stands before it now
+        if leaf.broken or abs(leaf.angle - goal) < 1e-3:
+            return Result(not leaf.broken, failures.BROKEN if leaf.broken else "", used)
+        taken = yield from _take(stage, leaf.handle())
+        used += taken.frames
+        if taken.ok:
+            reason = ""
+            break
+        used += (yield from fold(stage, _place(leaf.handle()))).frames
     if not reason and leaf.force(opening) > stage.robot.build.pull:
         reason = failures.HELD_SHUT if opening else failures.HELD_OPEN
     if not reason:
         turned = yield from _lead(stage, leaf, goal, opening, home)
         reason, used = turned.reason, used + turned.frames
         stage.doors.enter(known.number, stage.frame, stage.maps)
-    used += (yield from fold(stage, _place(leaf.handle()))).frames
+    if taken.ok:
+        used += (yield from fold(stage, _place(leaf.handle()))).frames
     return Result(not reason, reason, used)
 
 
@@ -153,7 +107,7 @@ def _most(kind: str) -> float:
 
 
 def _place(handle: NDArray[np.float64]) -> Place:
-    return Place(handle, AROUND, 0.0, np.inf)
+    return Place(handle, AROUND, 0.0, float(handle[2]) + AROUND)
 
 
 def _take(stage: Stage, handle: NDArray[np.float64]) -> Skill:
@@ -169,7 +123,7 @@ def _take(stage: Stage, handle: NDArray[np.float64]) -> Skill:
     posture = posture_for(stage, aim)
     if posture.error > GRASP_REACH:
         return Result(False, failures.UNREACHABLE)
-    route = quickest(stage, [Leg(posture.arm, 0.0)], Surface(stage, _place(handle)), 0.0)
+    route = quickest(stage, [Leg(posture.arm, 0.0)], Surface(stage, _place(handle)), lacking(stage))
     moved = yield from follow(stage, route, there)
     used = moved.frames
     if not there():
@@ -177,7 +131,7 @@ def _take(stage: Stage, handle: NDArray[np.float64]) -> Skill:
     return Result(there(), frames=used)
 
 
-def _lead(stage: Stage, leaf: _Leaf, goal: float, opening: bool, home: float) -> Skill:
+def _lead(stage: Stage, leaf: Leaf, goal: float, opening: bool, home: float) -> Skill:
     """Step aside, and let the `leaf` turn to the angle `goal` [rad] over its time."""
     first = leaf.angle
     aside = yield from _step_aside(stage, leaf, goal, home)
@@ -205,7 +159,7 @@ def _lead(stage: Stage, leaf: _Leaf, goal: float, opening: bool, home: float) ->
     return Result(True, frames=used)
 
 
-def _step_aside(stage: Stage, leaf: _Leaf, goal: float, home: float) -> Skill:
+def _step_aside(stage: Stage, leaf: Leaf, goal: float, home: float) -> Skill:
     """Drive to the nearest place out of the way of the `leaf`, on the side `home`; not at all if it is out already."""
     x, y, _ = stage.robot.base()
     radius = np.array([stage.robot.build.radius + ASIDE])
@@ -228,11 +182,11 @@ def _step_aside(stage: Stage, leaf: _Leaf, goal: float, home: float) -> Skill:
         return Result(False, failures.IN_THE_SWING)
     best = min(reached, key=lambda path: path.length)
     folded = yield from go(stage, stage.robot.tucked, REACH_FRAMES, never, 0.3)
-    moved = yield from drive(stage, best.points, REACH_FRAMES)
+    moved = yield from drive(stage, best.points, APPROACH_FRAMES)
     return Result(moved.ok, moved.reason, folded.frames + moved.frames)
 
 
-def _obstructed(stage: Stage, leaf: _Leaf, first: float, last: float) -> bool:
+def _obstructed(stage: Stage, leaf: Leaf, first: float, last: float) -> bool:
     """Whether the robot, furniture, or a body too heavy to be pushed aside is in the way from `first` to `last`."""
     if not leaf.inner:
         return False
@@ -241,7 +195,7 @@ def _obstructed(stage: Stage, leaf: _Leaf, first: float, last: float) -> bool:
     if leaf.meets(first, last, np.array([[x, y]]), np.array([stage.robot.build.radius])):
         return True
     pushed = (stage.robot.build.pull - REST_FORCE) / (world.robot.friction * 9.81)  # mass that the leaf pushes [kg]
-    there = world.exists[0] & ~world.away[0] & ~world.held[0] & (world.mass[0] > pushed)
+    there = world.exists[0] & ~world.away[0] & ~world.held[0] & (~world.movable[0] | (world.mass[0] > pushed))
     low = world.position[0, :, 2] - world.extent[0, :, 2] / 2
     there &= (low < leaf.o.sill + leaf.o.height) & (world.extent[0, :, 2] + low > leaf.o.sill + 0.02)
     rows = there.nonzero()[:, 0]

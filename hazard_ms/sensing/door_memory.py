@@ -12,12 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.scenes.walls import on_wall, thickness_of
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.view import View
-from hazard_ms.simulation.hinges import angle, under_leaf
+from hazard_ms.simulation.hinges import angle, spots, under_leaf
 from hazard_ms.simulation.world import World
-from hazard_ms.spec import Opening, SceneSpec
+from hazard_ms.spec import SceneSpec
 
 SPOTS = (-0.4, 0.0, 0.4)  # where along it an opening is looked for, as shares of its width from its middle [ours]
 BEFORE = 0.3  # what is seen this much nearer than an opening hides it [m] [ours]
@@ -42,12 +41,6 @@ def opening_names(spec: SceneSpec) -> tuple[str, ...]:
     return tuple(f"{o.kind}_{number}" for number, o in enumerate(spec.room.openings))
 
 
-def spots(spec: SceneSpec, o: Opening) -> NDArray[np.float64]:
-    """Points of an opening that a look may show [m], [S, 3], world frame, the middle among them."""
-    deep, high = thickness_of(spec.room, o.wall) / 2, o.sill + o.height / 2
-    return np.array([on_wall(spec.room, o.wall, o.centre + at * o.width, high, deep) for at in SPOTS])
-
-
 class DoorMemory:
     """The openings that the agent of the first environment knows."""
 
@@ -55,7 +48,7 @@ class DoorMemory:
         """Begin an episode in `world`: nothing is known."""
         self._world, self._spec = world, world.specs[0]
         self.names = opening_names(self._spec)
-        self._spots = [spots(self._spec, o) for o in self._spec.room.openings]
+        self._spots = [spots(self._spec.room, o, SPOTS) for o in self._spec.room.openings]
         self.known: dict[int, KnownOpening] = {}
 
     def look(self, view: View, frame: int, maps: Iterable[SemanticMap]) -> None:

@@ -15,7 +15,7 @@ from hazard_ms.skills import failures
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.decision import Action
 from hazard_ms.skills.mitigations.doors import open_ones, shut_ones
-from hazard_ms.skills.mitigations.leaf import Leaf, handle_force
+from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.grasping import GRASP_REACH
 from hazard_ms.spec import Body, Fixture, Opening
 from tests.worlds.two_rooms import DOOR, FAR, HALL, HINGE, ONE, SIZE, TwoRooms, spec, two_rooms
@@ -72,8 +72,8 @@ def test_a_door_opens_and_shuts_from_either_side(robot: str, start: object) -> N
 
 def test_a_hand_pulls_the_moment_of_what_presses_and_the_usual_force() -> None:
     """NFPA 92: 22.2 N, and 100 N in the middle of 0.9 m pulled at 0.83 m; nothing more where it pushes along."""
-    assert handle_force(100.0, 0.9) == pytest.approx(22.2 + 100.0 * 0.45 / 0.83)
-    assert handle_force(-100.0, 0.9) == 22.2
+    assert hinges.handle_force(100.0, 0.9) == pytest.approx(22.2 + 100.0 * 0.45 / 0.83)
+    assert hinges.handle_force(-100.0, 0.9) == 22.2
 
 
 def test_water_holds_a_door_that_opens_into_it_and_not_one_that_is_pushed_along() -> None:

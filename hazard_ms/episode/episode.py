@@ -188,6 +188,13 @@ class Episode:
         found = [h.flames(self.states[h.name], self.world) for h in self.hazards]
         return next((flames for flames in found if flames is not None), None)
 
+    def smother(self, rows: Tensor, thing: int) -> None:
+        """Keep the air from `thing`, an index along B, in the environments `rows` [R]: if it burns, it goes out."""
+        things = torch.zeros_like(self.world.exists)
+        things[rows, thing] = True
+        for hazard in self.hazards:
+            hazard.smother(self.states[hazard.name], self.world, things)
+
     def lying(self) -> Tensor | None:
         """Whether the agent lies on the ground where a hazard threw it over, [E], bool; None: none ever does."""
         falls = [h.fallen(self.states[h.name], self.world) for h in self.hazards]

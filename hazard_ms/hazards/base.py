@@ -146,6 +146,9 @@ class Hazard(abc.ABC):
         """The flames that an extinguisher can be aimed at now; None: none ever. Changes nothing."""
         return None
 
+    def smother(self, state: Any, world: World, things: Tensor) -> None:  # noqa: B027 most have nothing to do
+        """Keep the air from the things of the mask `things`, [E, B], for good: what burns of them goes out."""
+
     @property
     def clock(self) -> float:
         """Seconds of the hazard in a second of the episode: how fast the charge of extinguishers is used up [-]."""

@@ -146,6 +146,10 @@ class Fire(Burning):
             return
         light(state, slice(None), enlisted(state, aim, kept), frame + 1)
 
+    def smother(self, state: FireState, world: World, things: Tensor) -> None:
+        state.status.masked_fill_(things & (state.status == BURNING), NORMAL)
+        state.temperature.masked_fill_(things, self.room_temperature)
+
     @torch.inference_mode()
     def image(self, state: FireState, world: World, points: Tensor) -> Tensor:
         points = of_environments(points, world.num_envs)

@@ -210,6 +210,9 @@ class Blaze(Burning):
         heat = self._exposure(state, world, self._fires(state, world), leaves.faces(world))
         return leaves.strain(state, world, *heat, self.room_temperature, self.time_scale)
 
+    def smother(self, state: BlazeState, world: World, things: Tensor) -> None:
+        state.coated.masked_fill_(things, 1.0)
+
     @property
     def clock(self) -> float:
         return self.time_scale

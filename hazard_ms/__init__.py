@@ -6,8 +6,8 @@ nothing heavy:
     import gymnasium as gym, hazard_ms
     env = gym.make("HazardFire-v1")
 
-Third parties add tasks, hazards, robots, agents and detectors with `register_task`, `register_hazard`,
-`register_robot`, `register_agent` and `register_detector`; see `hazard_ms.registry`.
+Third parties add tasks, hazards, robots, agents, detectors and mitigations with `register_task`, `register_hazard`,
+`register_robot`, `register_agent`, `register_detector` and `register_mitigation`; see `hazard_ms.registry`.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from hazard_ms.registry import load, register_agent, register_hazard, register_r
 from hazard_ms.registry.announce import announce
 from hazard_ms.registry.detectors import register_detector
 from hazard_ms.registry.instructions import agree
+from hazard_ms.registry.mitigations import register_mitigation
 from hazard_ms.registry.version import __version__
 
 _LAZY = {  # imported when they are first asked for: they need torch, SAPIEN and ManiSkill
@@ -54,6 +55,7 @@ __all__ = [  # noqa: PLE0604
     "register_agent",
     "register_detector",
     "register_hazard",
+    "register_mitigation",
     "register_robot",
     "register_task",
     *_LAZY,

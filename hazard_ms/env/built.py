@@ -18,6 +18,7 @@ from hazard_ms.episode.grasp import Hand
 from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.base import loosened, none_set
 from hazard_ms.hazards.presets import FREQUENCIES
+from hazard_ms.registry.mitigations import tools_of
 from hazard_ms.scenes.choice import SceneChoice
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.labels import labels_of
@@ -75,6 +76,8 @@ class BuiltEnv(BaseEnv):
         self.bags = building.build_bags(self.scene, self.num_envs)
         self.world = building.make_world(self.specs, self.device, loose)
         self.world.agent_build = self.agent.build
+        if self.task.mitigations:
+            self.world.equip(tools_of(self.task.mitigations))
         self.episode = Episode(self.world, self.task.hazards, self.task.safe_place)
         self.leaves = Leaves(self.scene, self.world)
         self.situation = Situation(self.episode, self.agent, self.affects_agent)
@@ -127,6 +130,7 @@ class BuiltEnv(BaseEnv):
             self.scene.px.gpu_apply_articulation_target_velocity()  # ManiSkill has sent the velocities already
 
     def _before_simulation_step(self) -> None:
+        self.leaves.push(self._sim_steps_per_control)
         self.episode.push(self.sim_timestep)
 
     def _after_control_step(self) -> None:

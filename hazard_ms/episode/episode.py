@@ -18,7 +18,7 @@ from hazard_ms.episode import grasp
 from hazard_ms.episode.records import Damage, Rescue
 from hazard_ms.episode.safe_places import BAG, Drop
 from hazard_ms.episode.watchdog import FlightRecorder, Limits
-from hazard_ms.hazards.base import Hazard, Push, State, none_set
+from hazard_ms.hazards.base import Flames, Hazard, Push, State, none_set
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.kernels.pushing import free_only
 from hazard_ms.robots.robot import Robot
@@ -55,7 +55,9 @@ class Episode:
     def parts(self) -> dict[str, State]:
         """Every record with declared quantities, by name."""
         openings = {"openings": self.world.openings.state} if self._opens else {}
-        return {**self.states, **openings, "damage": self.damage, "rescue": self.rescue, "hand": self.hand}
+        equipment = {} if self.world.equipment is None else {"equipment": self.world.equipment.state}
+        rest = {"damage": self.damage, "rescue": self.rescue, "hand": self.hand}
+        return {**self.states, **openings, **equipment, **rest}
 
     def begin(self, rows: Tensor, seeds: Tensor) -> None:
         """Put everything in the environments `rows` [R] back in its place, with new `seeds` [R].
@@ -70,6 +72,8 @@ class Episode:
             part.clear(rows)
         if self._opens:
             world.openings.begin(rows)
+        if world.equipment is not None:
+            world.equipment.begin(rows)
         world.position[rows], world.rotation[rows] = self._start[0][rows], self._start[1][rows]
         world.velocity[rows] = world.angular_velocity[rows] = 0.0
         self.thaw(rows)
@@ -121,6 +125,8 @@ class Episode:
         self.world.chance.tick()
         for hazard in self.hazards:
             hazard.advance(self.states[hazard.name], self.world, dt)
+        if self.world.equipment is not None:
+            self.world.equipment.advance(dt, max((h.clock for h in self.hazards), default=1.0))
         self.loosen()
         for hazard in self.hazards:
             self.damage.add(hazard.damaged(self.states[hazard.name], self.world), self.world)
@@ -176,6 +182,18 @@ class Episode:
     def levels(self, points: Tensor) -> Tensor:
         """Levels of the K hazards at `points` [m], world frame, [E, P, 3]: [E, K, P], each in its hazard's unit."""
         return torch.stack([h.image(self.states[h.name], self.world, points) for h in self.hazards], dim=1)
+
+    def flames(self) -> Flames | None:
+        """Where something burns, and can be put out; None where no hazard burns."""
+        found = [h.flames(self.states[h.name], self.world) for h in self.hazards]
+        return next((flames for flames in found if flames is not None), None)
+
+    def smother(self, rows: Tensor, thing: int) -> None:
+        """Keep the air from `thing`, an index along B, in the environments `rows` [R]: if it burns, it goes out."""
+        things = torch.zeros_like(self.world.exists)
+        things[rows, thing] = True
+        for hazard in self.hazards:
+            hazard.smother(self.states[hazard.name], self.world, things)
 
     def lying(self) -> Tensor | None:
         """Whether the agent lies on the ground where a hazard threw it over, [E], bool; None: none ever does."""

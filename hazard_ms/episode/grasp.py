@@ -50,13 +50,13 @@ def distance_to_boxes(world: World, point: Tensor) -> Tensor:
 
 
 def nearest_target(world: World, hand: Tensor) -> tuple[Tensor, Tensor]:
-    """The target that is not safe yet and nearest to the `hand` [m], [E, 3]: its index along B, -1 for none, [E].
+    """The target, or tool, that is not safe and nearest to the `hand` [m], [E, 3]: its index along B, -1: none, [E].
 
     And the distance [m] of the hand from the surface of its box, infinite for none, [E]. Both hold until the next call.
     """
     found = world.launches.once(nearest, world.frame, lambda: (world.frame.clone(), world.agent_heading.clone()))
     bodies = world.launches.struct(Bodies, world)
-    world.launches.run(nearest, (world.num_envs,), hand, world.target, bodies, *found)
+    world.launches.run(nearest, (world.num_envs,), hand, world.takeable, bodies, *found)
     return found[0], found[1]
 
 

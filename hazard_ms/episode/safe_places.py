@@ -29,13 +29,14 @@ Rule = Callable[[Drop], Tensor]  # things that are safe now, [E, B], bool
 
 
 def in_bag(world: World) -> Rule:
-    """The rule of the bag: what the hand lets go over it is safe."""
+    """The rule of the bag: what the hand lets go over it is safe; tools do not go into it."""
 
     def rule(drop: Drop) -> Tensor:
         if none_set(drop.dropped >= 0):
             return torch.zeros_like(world.safe)
         over = (drop.gripper - drop.bag()).norm(dim=-1) <= BAG_REACH
-        return torch.arange(world.num_bodies, device=world.device) == torch.where(over, drop.dropped, -1)[:, None]
+        inside = torch.arange(world.num_bodies, device=world.device) == torch.where(over, drop.dropped, -1)[:, None]
+        return inside if world.equipment is None else inside & ~world.equipment.tool
 
     return rule
 

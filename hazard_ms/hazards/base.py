@@ -8,7 +8,7 @@ from __future__ import annotations
 import abc
 import dataclasses
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import torch
 from torch import Tensor
@@ -45,6 +45,13 @@ class Push:
 
     force: Tensor
     torque: Tensor | None = None
+
+
+class Flames(NamedTuple):
+    """Where something burns: things as along B, then flames on the floor, P in all."""
+
+    place: Tensor  # [m], [E, P, 3], world frame
+    lit: Tensor  # [E, P], bool
 
 
 class Hazard(abc.ABC):
@@ -134,6 +141,18 @@ class Hazard(abc.ABC):
         It is asked every openings.EVERY frames, after `advance`.
         """
         return None
+
+    def flames(self, state: Any, world: World) -> Flames | None:
+        """The flames that an extinguisher can be aimed at now; None: none ever. Changes nothing."""
+        return None
+
+    def smother(self, state: Any, world: World, things: Tensor) -> None:  # noqa: B027 most have nothing to do
+        """Keep the air from the things of the mask `things`, [E, B], for good: what burns of them goes out."""
+
+    @property
+    def clock(self) -> float:
+        """Seconds of the hazard in a second of the episode: how fast the charge of extinguishers is used up [-]."""
+        return 1.0
 
     def agent_info(self, state: Any, world: World) -> dict[str, Tensor]:
         """The numbers of `info` about the agent, by name, [E] each; with units as the hazard declares."""

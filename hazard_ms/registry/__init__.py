@@ -214,14 +214,14 @@ register_hazard(
     "fire",
     "hazard_ms.hazards.presets:fire",
     "hazard_ms.effects.fire:FireEffects",
-    tuple(f"hazard_ms.validation.{name}_cases:cases" for name in ("fire", "blaze", "smoke")),
+    tuple(f"hazard_ms.validation.{name}_cases:cases" for name in ("fire", "blaze", "smoke", "mitigation.fire")),
     "hazard_ms.validation.curves:fire_charts",
 )
 register_hazard(
     "flood",
     "hazard_ms.hazards.presets:flood",
     "hazard_ms.effects.flood:FloodEffects",
-    ("hazard_ms.validation.flood_cases:cases", "hazard_ms.validation.shallow_cases:cases"),
+    tuple(f"hazard_ms.validation.{name}_cases:cases" for name in ("flood", "shallow", "mitigation.door")),
     "hazard_ms.validation.curves:flood_charts",
 )
 register_hazard(

@@ -58,6 +58,7 @@ class HazardFetch(PlanarRobot, Fetch):
         elbow_room=0.70,
         nearest=0.40,
         stance=0.51,  # of the base, as its width
+        payload=6.0,  # of the arm at full extension (Fetch Robotics, hardware overview)
         drag_height=0.55,  # half of 1.10 m, its height with the torso down (Fetch Robotics, hardware overview)
     )
     rest = TUCKED

@@ -85,6 +85,7 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
         nearest=0.25,
         stoops=((0.12, 1.00), (0.36, 0.78), (0.34, 0.50)),
         stance=0.19,  # length of its soles between the contacts of its description
+        payload=3.0,  # of an arm (Unitree's specification of the G1 EDU; 2 kg for the basic one)
         drag_height=0.66,  # half of 1.32 m (Unitree's specification)
         rising=8.0,  # as long as getting up slowly and smoothly takes a G1 [He et al. 2025, arXiv 2502.12152; ours]
     )

@@ -224,13 +224,17 @@ class SemanticMap:
         )
         y, x = y[far <= radius], x[far <= radius]
         self.explored[y, x] = True
-        self._firm[y, x] = 0.0
-        self._light[y, x] = 0.0
-        self.object_id[y, x] = -1
+        self._firm[y, x], self._light[y, x], self.object_id[y, x] = 0.0, 0.0, -1
 
     def tell(self, height: NDArray[np.float32], explored: NDArray[np.bool_]) -> None:
         """Enter the true heights of what stays [m], and mark cells as explored, [Y, X] each, without a look."""
         self._firm, self.explored = np.maximum(self._firm, height), self.explored | explored
+
+    def clear(self, points: NDArray[np.float64]) -> None:
+        """Forget what stands on the floor at `points` [m], [P, 2], world frame: it has moved away."""
+        cells = [self.cell_of(point) for point in points]
+        y, x = np.array([c for c in cells if 0 <= min(c) and max(c) < len(self.explored)], int).reshape(-1, 2).T
+        self._firm[y, x], self._light[y, x], self.object_id[y, x] = 0.0, 0.0, -1
 
     def forget(self, index: int) -> None:
         """Remove the thing `index`, which is no longer there: it was picked up or rescued."""

@@ -88,6 +88,7 @@ class Openings:
         self.count = max(1, *(len(row) for row in rows))
         self.inner = any(leaves(s) for s in specs)  # whether an inner wall has a door
         self.plan = _plan(specs, rows, self.count, device)
+        self.force = torch.zeros(len(specs), self.count, device=device)  # at the last look, towards the second side [N]
         self.state: OpeningState = OpeningState.allocate({"E": len(specs), "O": self.count}, device)
         self._walls, self._spans = walls, walls.doorway[..., 1:3].clone()
         self._index = _in_walls(specs, walls.doorway, device)
@@ -100,6 +101,7 @@ class Openings:
     def begin(self, rows: Tensor) -> None:
         """Put the openings of the environments `rows`, indices [R], as their scenes have them at frame 0."""
         self.state.clear(rows)
+        self.force[rows] = 0.0
         self.state.open[rows], self.state.hold[rows] = self.plan.share[rows], self.plan.resistance[rows]
         self.apply()
 
@@ -109,7 +111,7 @@ class Openings:
         self.apply()
 
     def set_open(self, rows: Tensor, opening: Tensor | int, share: Tensor | float) -> None:
-        """Open doors to a `share` of their width, 0 to 1, [R] or one for all, in the environments `rows`, indices [R].
+        """Open doors and windows to a `share` of their width, 0 to 1, [R] or one for all, in the environments `rows`, indices [R].
 
         `opening` is the number along O, [R] or one for all. What has no leaf (any more) stays as it is. Raises
         ValueError for numbers out of range that need no look at a tensor.
@@ -119,7 +121,8 @@ class Openings:
         if not isinstance(share, Tensor) and not 0.0 <= share <= 1.0:
             raise ValueError(f"share must be from 0 to 1, got {share}")
         held = self.state.open[rows, opening]
-        movable = self.plan.door[rows, opening] & ~self.state.broken[rows, opening]
+        leaf = self.plan.door[rows, opening] | self.plan.window[rows, opening]
+        movable = leaf & ~self.state.broken[rows, opening]
         wanted = torch.as_tensor(share, dtype=held.dtype, device=held.device).clamp(0.0, 1.0)
         self.state.open[rows, opening] = torch.where(movable, wanted, held)
         self.apply()
@@ -146,6 +149,7 @@ class Openings:
             return
         plan, state = self.plan, self.state
         force = torch.stack([s.force for s in strains]).sum(0)
+        self.force.copy_(torch.where(due[:, None], force, self.force))
         ageing = torch.stack([s.ageing for s in strains]).sum(0)
         shattered = torch.stack([s.shattered for s in strains]).any(0) & plan.window
         state.hold.copy_(torch.where(due[:, None], (state.hold - ageing * dt).clamp(min=0.0), state.hold))

@@ -8,7 +8,7 @@ of the batch. Hazards see only this class: they know nothing of SAPIEN, and thei
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 
 import torch
@@ -16,6 +16,7 @@ from torch import Tensor
 
 from hazard_ms.kernels.launch import Launches
 from hazard_ms.simulation.chance import Chance
+from hazard_ms.simulation.equipment import Equipment
 from hazard_ms.simulation.handles import Handles
 from hazard_ms.simulation.jet import Jet
 from hazard_ms.simulation.openings import Openings
@@ -74,6 +75,7 @@ class World:
     agent_heading: Tensor
     handles: Handles | None = field(default=None, repr=False)
     jet: Jet | None = None  # of the extinguisher that the agent uses, where there are any
+    equipment: Equipment | None = None  # what the agent can pick up and use, in tasks with mitigations
     agent_build: Build | None = None  # mass, width, drag area and friction of the agent's robot
     fields: dict[str, Callable[[Tensor], Tensor]] = field(default_factory=dict, repr=False)
     launches: Launches = field(default_factory=Launches, repr=False)  # prepared launches of its hazards' kernels
@@ -188,6 +190,16 @@ class World:
         """A numeric attribute of the catalogue (temperatures in [C]) of every thing, float32 [E, B]; 0 for padding."""
         of_each = torch.tensor([float(getattr(c, attribute)) for c in CATEGORIES.values()], device=self.device)
         return torch.where(self.exists, of_each[self.category.clamp(min=0)], 0.0)
+
+    def equip(self, categories: Collection[str]) -> None:
+        """Let agents pick up and use the bodies of these `categories` that are no targets."""
+        self.equipment = Equipment(self, categories)
+        self.jet = self.equipment.jet
+
+    @property
+    def takeable(self) -> Tensor:
+        """What a hand takes, bool [E, B]: targets, and tools."""
+        return self.target if self.equipment is None else self.equipment.takes
 
     def index(self, env: int, name: str) -> int:
         """Index along B of the thing called `name` in scene `env`. Raises ValueError if no thing has that name."""

@@ -1,11 +1,16 @@
-"""The six actions of the benchmark as generators of low-level actions, by verb."""
+"""The six actions of the benchmark, and mitigations, as generators of low-level actions, by verb."""
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
+from hazard_ms.registry import load
+from hazard_ms.registry.mitigations import MITIGATIONS
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Result
+from hazard_ms.skills.mitigations.putting import put_down
 from hazard_ms.skills.motor.grasping import pick_up
 from hazard_ms.skills.motor.motion import turn_by, wrap
 from hazard_ms.skills.motor.stowing import drop
@@ -40,12 +45,17 @@ def stop(stage: Stage) -> Skill:
 
 def skill(stage: Stage, action: Action) -> Skill:
     """The generator that does `action`. Raises ValueError if it names a thing that the scene does not have."""
+    if action.verb in MITIGATIONS:
+        return cast(Skill, load(MITIGATIONS[action.verb].skill)(stage, action.target))
     index = None if action.target is None else stage.labeller.index(action.target)
     if action.verb == EXPLORE:
         return explore(stage)
     if action.verb == STOP:
         return stop(stage)
     if action.verb == DROP:
+        tools = stage.world.equipment
+        if tools is not None and stage.held >= 0 and bool(tools.tool[0, stage.held]):
+            return put_down(stage)
         return drop(stage, index)
     assert index is not None  # Action sees to it
     if action.verb == PICK_UP:

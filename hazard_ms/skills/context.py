@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hazard_ms.episode.grasp import Hand, distance_to_boxes, graspable
 from hazard_ms.robots.robot import Robot
 from hazard_ms.sensing.detection.labeller import Labeller
+from hazard_ms.sensing.door_memory import DoorMemory
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.simulation.world import World
 from hazard_ms.skills.decision import Result
@@ -28,6 +29,10 @@ class Rescuer(Protocol):
     world: World
     hand: Hand
 
+    @property
+    def control_timestep(self) -> float:
+        """Duration of a frame [s]."""
+
 
 class Stage:
     """One episode of one environment as skills see it.
@@ -44,6 +49,8 @@ class Stage:
         """
         self.env = env
         self.labeller = labeller or Labeller(env.world)
+        self.doors = DoorMemory(env.world)  # openings that are known; none is until a look enters it
+        self.maps = [seen]  # all maps that are to forget what moves
         self.seen = seen
         self.look = look
         self.bumps: list[tuple[float, float, int]] = []  # x, y [m], frame

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.registry.mitigations import MITIGATIONS
 from hazard_ms.sensing.detection.labeller import Labeller
+from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.target_table import Target
 
@@ -19,7 +21,7 @@ NEED_TARGET = (WALK_TO, WALK_ONE_STEP, PICK_UP)
 
 @dataclass(frozen=True)
 class Action:
-    """A verb and the name of the thing that it is done to.
+    """A verb and the name of the thing that it is done to: one of VERBS, or a registered mitigation.
 
     `drop` takes a container, or None: the bag, or the ground. Raises ValueError for an unknown verb, and for a target
     that the verb does not take.
@@ -29,11 +31,12 @@ class Action:
     target: str | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.verb, str) or self.verb not in VERBS:
+        mitigates = isinstance(self.verb, str) and self.verb in MITIGATIONS
+        if not mitigates and (not isinstance(self.verb, str) or self.verb not in VERBS):
             raise ValueError(f"verb must be one of {', '.join(VERBS)}, got {self.verb!r}")
         if self.target is not None and not isinstance(self.target, str):
             raise ValueError(f"the target of {self.verb} must be the name of a thing, or None, got {self.target!r}")
-        if self.verb in NEED_TARGET and self.target is None:
+        if (mitigates or self.verb in NEED_TARGET) and self.target is None:
             raise ValueError(f"the target of {self.verb} must be the name of a thing, got None")
 
     def __str__(self) -> str:
@@ -63,6 +66,17 @@ class Images:
 
 
 @dataclass(frozen=True)
+class Tool:
+    """A thing that an agent can pick up and use, but need not rescue."""
+
+    name: str
+    category: str
+    kind: str  # of an extinguisher, a key of `hazard_ms.spec.extinguishers.EXTINGUISHERS`; else empty
+    left: float  # share of an extinguisher's charge that is left, as its gauge shows; else 1
+    held: bool
+
+
+@dataclass(frozen=True)
 class Decision:
     """All that an agent knows when it must choose its next action. World frame, metres, radians."""
 
@@ -79,6 +93,9 @@ class Decision:
     names: tuple[str, ...]  # of the things that `map.objects` and the segmentation refer to by index
     last_action: Action | None = None
     last_result: Result | None = None
+    # of tasks with mitigations, else empty
+    openings: tuple[KnownOpening, ...] = ()  # doors, windows and doorways that were seen, as last seen
+    tools: tuple[Tool, ...] = ()  # things that can be picked up to be used, wherever they are
 
     @property
     def walked_up_to(self) -> str | None:

@@ -20,18 +20,9 @@ from hazard_ms.sensing.semantic_map import SemanticMap, cells_for
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.brief import Brief, brief_of
 from hazard_ms.skills.context import LowLevel, Skill, Stage
-from hazard_ms.skills.decision import (
-    DROP,
-    EXPLORE,
-    PICK_UP,
-    STOP,
-    Action,
-    Decision,
-    Images,
-    Result,
-    available,
-)
+from hazard_ms.skills.decision import PICK_UP, STOP, Action, Decision, Images, Result, available
 from hazard_ms.skills.failures import EPISODE_OVER, NOT_A_TARGET, REFUSED
+from hazard_ms.skills.mitigations.offers import check, offered, tools
 
 
 class SkillEnv:
@@ -126,6 +117,7 @@ class SkillEnv:
         self._seen = SemanticMap(start, self._labeller.loose, cells=cells, hazards=hazards)
         self.maps = [self._seen]
         self.stage = Stage(self.base, self._seen, self.look, self._labeller)
+        self.stage.maps = self.maps
         self._images: Images | None = None
         self._last: tuple[Action | None, Result | None] = (None, None)
         self._reward, self._over = 0.0, False
@@ -144,7 +136,7 @@ class SkillEnv:
             raise ValueError("the episode must be running, but it is over: call reset first")
         if not isinstance(action, Action):
             raise ValueError(f"an action must be an Action(verb, target), got {action!r}")
-        self._check(action)
+        check(action, self.stage, self.base.task.mitigations)
         self._reward, doing = 0.0, skill(self.stage, action)
         result = self.run(doing)
         if action.verb == PICK_UP and action.target is not None:
@@ -164,13 +156,6 @@ class SkillEnv:
             self.look(self.colours)
         info["result"] = result
         return self.decision(), self._reward, terminated, truncated, info
-
-    def _check(self, action: Action) -> None:
-        if action.verb in (EXPLORE, STOP) and action.target is not None:
-            raise ValueError(f"the target of {action.verb} must be None, got {action.target!r}")
-        if action.verb == DROP and action.target not in (None, *self._labeller.containers):
-            allowed = ", ".join(["None", *self._labeller.containers])
-            raise ValueError(f"the target of drop must be one of {allowed}, got {action.target!r}")
 
     def close(self) -> None:
         """Close the environment."""
@@ -218,6 +203,8 @@ class SkillEnv:
         view = labeller.view(rgb, true, self.frame)
         gone, damaged = labeller.unmapped(), labeller.damaged(base.episode.damage.damaged[0].cpu().numpy())
         where = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))
+        if base.task.mitigations:
+            self.stage.doors.look(view, self.frame, self.maps)
         for seen in self.maps:
             for index in gone:
                 seen.forget(index)
@@ -231,7 +218,7 @@ class SkillEnv:
         """All that an agent may know now; the map is a copy that cannot be written to."""
         labeller = self._labeller
         x, y, heading = self.stage.robot.base()
-        targets = labeller.targets(self._seen.seen_damaged)
+        targets, verbs = labeller.targets(self._seen.seen_damaged), self.base.task.mitigations
         return Decision(
             frame=self.frame,
             max_frames=self.max_frames,
@@ -242,8 +229,10 @@ class SkillEnv:
             containers=labeller.containers,
             map=self._seen.frozen(),
             images=self._images,
-            available=available(labeller, self._seen.objects, targets),
+            available=available(labeller, self._seen.objects, targets) + (offered(self.stage, verbs) if verbs else ()),
             names=labeller.names,
             last_action=self._last[0],
             last_result=self._last[1],
+            openings=self.stage.doors.rows() if verbs else (),
+            tools=tools(self.stage) if verbs else (),
         )

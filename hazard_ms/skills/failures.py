@@ -16,6 +16,19 @@ CART_UNREACHABLE = "cart_unreachable"  # the cart is not within reach
 NOT_RESCUED = "not_rescued"  # let go, but it did not end in the bag or the cart
 EPISODE_OVER = "episode_over"  # the time limit came first
 
+# Of mitigations (hazard_ms.registry.mitigations)
+TOO_HEAVY = "too_heavy"  # more than the arm can carry
+NO_LEAF = "no_leaf"  # a doorway, or a window or an outer door that robots cannot move
+BROKEN = "broken"  # the leaf or the pane is gone
+HELD_SHUT = "held_shut"  # water or air presses the leaf shut harder than the arm pulls
+HELD_OPEN = "held_open"  # the same the other way
+IN_THE_SWING = "in_the_swing"  # something stands where the leaf would turn
+NO_EXTINGUISHER = "no_extinguisher"  # none is in the hand
+EMPTY = "empty"  # the extinguisher ran out
+NO_LINE_OF_SIGHT = "no_line_of_sight"  # a wall is between the nozzle and the flames wherever the robot gets
+TOO_HOT = "too_hot"  # it cannot come near enough without being destroyed
+STILL_BURNING = "still_burning"  # the jet reached the flames, but does not put them out
+
 FAILURES = (
     UNKNOWN,
     NO_PATH,

@@ -41,4 +41,6 @@ EXTINGUISHERS = {
     "water": Extinguisher("water", 6.0, 33.0, 6.0, 0.06, 0.25, True, float("inf")),
     "powder": Extinguisher("ABC powder", 2.0, 12.0, 4.5, 0.12, 0.24, False, 0.04),
     "co2": Extinguisher("carbon dioxide", 2.0, 9.0, 2.0, 0.2, 0.0, False, 0.21),
+    # 2.5 lb powder: 8 to 10 s, 9 to 15 ft; it weighs 2 kg, which an arm of G1 carries
+    "small_powder": Extinguisher("ABC powder", 1.0, 9.0, 3.7, 0.12, 0.24, False, 0.04),
 }

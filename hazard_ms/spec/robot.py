@@ -34,15 +34,21 @@ class Build:
     stoops: tuple[tuple[float, float], ...] = ()  # other places where bending or crouching can bring the shoulder [m]
     stance: float = math.inf  # least width of the ground between its wheels or soles [m]; infinite: it never falls over
     drag_height: float = 0.5  # height above the floor at which drag in air acts on it [m]
+    payload: float = math.inf  # that the stretched arm carries [kg]; infinite: it is not known
     rising: float = math.inf  # time in which it stands up again after a fall [s]; infinite: it stays down
 
     def __post_init__(self) -> None:
         for name in ("mass", "width", "drag_area", "friction"):
             if not 0.0 < getattr(self, name) < math.inf:
                 raise ValueError(f"{name} must be a positive number, got {getattr(self, name)!r}")
-        for name in ("stance", "drag_height", "rising"):
+        for name in ("stance", "drag_height", "payload", "rising"):
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"{name} must be positive, got {getattr(self, name)!r}")
+
+    @property
+    def pull(self) -> float:
+        """Force with which the stretched arm pulls or pushes a handle [N]: the weight of its payload."""
+        return 9.81 * self.payload
 
     def upright_moment(self, weight: float) -> float:
         """The largest moment [N m] about an edge of its stance that it withstands with `weight` [N] on the ground.

@@ -75,6 +75,8 @@ class Task:
     max_frames: int = 1500
     # (Situation, environments that begin, [R]) -> None: puts robots elsewhere than their scenes say; None: it does not
     arrange: Callable[[Any, Any], None] | None = None
+    # verbs of `hazard_ms.registry.mitigations` that its agents have, beyond the six of the benchmark
+    mitigations: tuple[str, ...] = ()
 
     @property
     def all_scenes(self) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.scenes import floor
 from hazard_ms.scenes.schema import to_json
 from hazard_ms.scenes.splits import scene
+from hazard_ms.simulation import hinges
 
 FLAT = scene("flat_a/00")
 HOLES = tuple(dataclasses.replace(o, kind="door") if o.kind == "doorway" else o for o in FLAT.room.openings)
@@ -54,12 +56,30 @@ def test_a_closed_door_stops_bodies_and_an_open_or_broken_one_does_not(env: Any)
     env.world.openings.state.broken[0, NUMBER] = False
 
 
-def test_a_leaf_slides_as_far_as_its_door_is_open(env: Any) -> None:
+def test_a_leaf_hangs_at_the_lower_end_and_turns_as_far_as_its_door_is_open(env: Any) -> None:
+    """A leaf that is open by 1 - cos 60 degrees stands at 60 degrees, to the west; its handle moves with it."""
     wall, opening = FLAT.room.partitions[0], HOLES[NUMBER]
-    for share in (0.0, 0.25, 1.0):
+    assert wall.axis == "y"
+    low, half = opening.centre - opening.width / 2, opening.width / 2
+    for share, degrees in ((0.0, 0.0), (0.5, 60.0), (1.0, 90.0)):
         env.world.openings.set_open(ONE, NUMBER, share)
-        place = [wall.at, opening.centre - share * opening.width, opening.height / 2]
-        assert env.leaves.places()[0].tolist() == pytest.approx(place, abs=1e-5)
+        env.leaves.move()
+        turn = math.radians(degrees)
+        place = [wall.at - half * math.sin(turn), low + half * math.cos(turn), opening.height / 2]
+        places, turns = env.leaves.poses()
+        assert places[0].tolist() == pytest.approx(place, abs=1e-5)
+        assert turns[0].tolist() == pytest.approx([math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2)], abs=1e-5)
+    far = opening.width - 0.07
+    handle = hinges.handle(ROOM, opening, math.pi / 2)
+    assert handle.tolist() == pytest.approx([wall.at - far, low, 1.0], abs=1e-6)
+    (shape,) = [s for s in leaf_shapes(env) if min(s.half_size) < 0.02 and max(s.half_size) < 0.1]
+    assert shape.local_pose.p.tolist() == pytest.approx([0.0, half - 0.07, 1.0 - opening.height / 2], abs=1e-5)
+
+
+def leaf_shapes(env: Any) -> list[Any]:
+    """Collision shapes of the leaf of the door."""
+    (leaf,) = [e for e in env.scene.sub_scenes[0].entities if e.name.endswith(f"leaf_{NUMBER}")]
+    return list(leaf.find_component_by_type(sapien.physx.PhysxRigidDynamicComponent).collision_shapes)
 
 
 def test_states_hold_doors_and_put_them_back(env: Any) -> None:

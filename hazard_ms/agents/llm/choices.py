@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from hazard_ms.agents.base import distance, known, open_targets
-from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, VERBS, WALK_TO, Action, Decision
 from hazard_ms.skills.options.landmarks import Landmark, landmarks
 
 LETTERS = "ABCDEFGHIJKLMNOPQRST"
@@ -15,6 +15,7 @@ MOVES = (MACRO, FULL)
 PLACES = 4  # to search that are offered at most [ours]
 ARM = 2.2  # distance from which a pick-up may begin [m], as for `planner` [ours]
 FETCH, PICK, BRING, PUT, SEARCH, LOOK, END = "fetch", "pick up", "bring to", "put into", "search at", "look", "stop"
+PUT_DOWN = "put down"  # a tool
 BAG = "bag"  # the thing that `put into` names where the robot carries its safe place
 
 Move = tuple[str, str | None, Action]  # a word of the above, the thing it is for, and what is done
@@ -47,12 +48,14 @@ def forced(decision: Decision) -> Action | None:
 
     What was walked up to is picked up; what is held goes into the bag, or into the cart that was walked up to.
     """
-    arrived = decision.walked_up_to
+    arrived, tools = decision.walked_up_to, [tool.name for tool in decision.tools]
+    if decision.held in tools:
+        return None
     if decision.held is not None:
         if not decision.containers:
             return Action(DROP)
         return Action(DROP, arrived) if arrived in decision.containers else None
-    return Action(PICK_UP, arrived) if arrived in open_targets(decision) else None
+    return Action(PICK_UP, arrived) if arrived in (*open_targets(decision), *tools) else None
 
 
 def menu(
@@ -77,8 +80,10 @@ def menu(
     if last is None or last.verb != EXPLORE or not (targets or places):
         rest.append((LOOK, None, Action(EXPLORE)))
     rest.append((END, None, Action(STOP)))
-    named: list[Move] = []
-    if decision.held is not None:
+    named = _mitigations(decision)
+    if decision.held in [tool.name for tool in decision.tools]:
+        named.append((PUT_DOWN, decision.held, Action(DROP)))
+    elif decision.held is not None:
         named += [(BRING, name, Action(WALK_TO, name)) for name in _by_index(decision, carts)]
         named += _drops(decision, carts) if moves == FULL else []
     else:
@@ -91,6 +96,18 @@ def menu(
     letters = zip(LETTERS, offered, strict=False)
     shown = tuple(m for m in marks if m.name in places)
     return Menu(tuple(Choice(letter, *each) for letter, each in letters), shown)
+
+
+def _mitigations(decision: Decision) -> list[Move]:
+    """What can be done about the hazard itself, and the tools that can be fetched; empty in most tasks."""
+    tools = {tool.name for tool in decision.tools}
+    made: list[Move] = []
+    for action in decision.available:
+        if action.verb not in VERBS:
+            made.append((action.verb.replace("_", " "), action.target, action))
+        elif action.verb == PICK_UP and action.target in tools:
+            made.append((FETCH, action.target, Action(WALK_TO, action.target)))
+    return made
 
 
 def _drops(decision: Decision, carts: Iterable[str]) -> list[Move]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.agents.llm.scene_text import Block, as_text, shortened
 from hazard_ms.agents.search.outlook import skill_frames
+from hazard_ms.registry.mitigations import MITIGATIONS
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.brief import Brief
 
@@ -58,6 +59,7 @@ def system_text(brief: Brief, macro: bool) -> str:
         pick=round(times.pick),
         look=round(times.explore),
         macro=macro,
+        mitigations=[(verb.replace("_", " "), MITIGATIONS[verb].text) for verb in brief.mitigations],
     )
 
 

@@ -77,6 +77,7 @@ def block(
             for mark in sorted(menu.places, key=lambda mark: decision.index(mark.name))
         ),
     ]
+    told |= _mitigation(decision, menu, names)
     told["options"] = {
         choice.letter: choice.move if choice.thing is None else f"{choice.move} {names.get(choice.thing, choice.thing)}"
         for choice in menu.choices
@@ -84,6 +85,22 @@ def block(
     if histories:
         told["seen_before"] = _histories(decision, memory, names)
     return told
+
+
+def _mitigation(decision: Decision, menu: Menu, names: dict[str, str]) -> Block:
+    """Doors and tools in tables; empty in tasks without mitigations."""
+    made: Block = {}
+    if decision.openings:
+        x, y = decision.agent_position
+        rows = [
+            [o.name, _metres(math.hypot(o.position[0] - x, o.position[1] - y)), round(100 * o.open), int(o.broken)]
+            for o in decision.openings
+        ]
+        made["doors"] = _without_zeros([["door", "metres", "percent_open", "broken"], *rows], ("broken",))
+    if decision.tools:
+        tools = [[menu.letter(FETCH, t.name), names[t.name], t.kind, round(100 * t.left)] for t in decision.tools]
+        made["tools"] = [["option", "tool", "kind", "percent_left"], *tools]
+    return made
 
 
 def as_text(told: Block) -> str:

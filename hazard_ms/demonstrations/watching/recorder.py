@@ -82,11 +82,11 @@ class Recorder(Watcher):
         self._subtask = self._subtasks.setdefault(text, len(self._subtasks))
         self.option_starts = label.starts
         self._prompts.append(prompt(self._brief, seen, label.menu))
-        target = -1 if action.target is None else self._env.base.world.index(0, action.target)
+        target = -1 if action.target is None else _names(self._env).index(action.target)
         _put(
             self._decisions,
             frame=decision.frame,
-            verb=VERBS.index(action.verb),
+            verb=_verbs(self._env).index(action.verb),
             target=target,
             features=self._encoder.encode(seen, label.menu),
             mask=label.menu.mask,
@@ -157,12 +157,21 @@ def _described(env: SkillEnv) -> dict[str, Any]:
         "control_mode": base.agent.control_mode,
         "joints": [joint.name for joint in base.agent.robot.active_joints],
         "fps": float(base.control_freq),
-        "things": list(base.world.names[0]),
+        "things": _names(env),
         "targets": [target.name for target in brief.targets],
-        "verbs": list(VERBS),
+        "verbs": _verbs(env),
         "seeds": {"episode": int(base.world.chance.seed[0]), "agent": brief.random_seed},
         "reward_mode": base.reward_mode,
     }
+
+
+def _verbs(env: SkillEnv) -> list[str]:
+    return [*VERBS, *env.base.task.mitigations]
+
+
+def _names(env: SkillEnv) -> list[str]:
+    """Names of the things, and behind them, in tasks with mitigations, those of doors and windows."""
+    return [*env.base.world.names[0], *(env.stage.doors.names if env.base.task.mitigations else ())]
 
 
 def _put(arrays: dict[str, list[Any]], **entries: Any) -> None:

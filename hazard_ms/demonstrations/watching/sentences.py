@@ -21,4 +21,4 @@ def sentence(action: Action, decision: Decision) -> str:
         EXPLORE: "look around",
         STOP: "stop",
     }
-    return words[action.verb]
+    return words.get(action.verb) or f"{action.verb.replace('_', ' ')} {action.target}"

@@ -14,9 +14,10 @@ from typing import Any, ClassVar
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.base import Hazard, Level, State, none_set
+from hazard_ms.hazards.base import State, none_set
 from hazard_ms.hazards.fire import coupling, floor, heat, spread
-from hazard_ms.hazards.fire.declared import TELLS, TEMPERATURE, ignites
+from hazard_ms.hazards.fire.burning import Burning
+from hazard_ms.hazards.fire.declared import TELLS, ignites
 from hazard_ms.hazards.fire.fire_state import BURNING, BURNT, NORMAL, FireState, lit, some_flames
 from hazard_ms.hazards.fire.kernels import Heat, temperature_at
 from hazard_ms.hazards.walls import Partitions
@@ -27,15 +28,12 @@ from hazard_ms.spec import Quantity
 
 
 @dataclass(frozen=True)
-class Fire(Hazard):
+class Fire(Burning):
     """A fire with these parameters; the defaults are those of the preset `paper`."""
 
-    name: ClassVar[str] = "fire"
     state_type: ClassVar[type[State]] = FireState
-    level: ClassVar[Level] = TEMPERATURE
     tells: ClassVar[dict[str, Quantity]] = TELLS
     signals: ClassVar[str] = "hazard_ms.sensing.senses.of_fire:FireSignals"
-    uses: ClassVar[tuple[str, ...]] = ("water", "air")
 
     room_temperature: float = 20.0  # [C] [HAZARD fire/fire_utils.py:16]
     flame_temperature: float = 600.0  # temperature of flames and of burning things [C] [HAZARD fire/fire_utils.py:17]
@@ -148,8 +146,9 @@ class Fire(Hazard):
             return
         light(state, slice(None), enlisted(state, aim, kept), frame + 1)
 
-    def damaged(self, state: FireState, world: World) -> Tensor:
-        return state.status != NORMAL
+    def smother(self, state: FireState, world: World, things: Tensor) -> None:
+        state.status.masked_fill_(things & (state.status == BURNING), NORMAL)
+        state.temperature.masked_fill_(things, self.room_temperature)
 
     @torch.inference_mode()
     def image(self, state: FireState, world: World, points: Tensor) -> Tensor:

@@ -63,12 +63,15 @@ def pick_up(stage: Stage, index: int) -> Skill:
 def _refusal(stage: Stage, index: int, thing: int) -> str:
     """The reason why a pick-up of `index`, which is `thing` along B, cannot begin; empty if it can."""
     told = next((target for target in stage.labeller.targets() if target.index == index), None)
+    tool = told is None and thing >= 0 and bool(stage.world.takeable[0, thing])
     if stage.held >= 0:
         return failures.ALREADY_HOLDING
-    if told is None:
+    if told is None and not tool:
         return failures.NOT_A_TARGET
-    if told.rescued:
+    if told is not None and told.rescued:
         return failures.ALREADY_RESCUED
+    if tool and float(stage.world.mass[0, thing]) > stage.robot.build.payload:
+        return failures.TOO_HEAVY
     if not known(stage, index):
         return failures.UNKNOWN
     place = stage.position(thing) if thing >= 0 else stage.seen.objects[index].position
@@ -76,7 +79,7 @@ def _refusal(stage: Stage, index: int, thing: int) -> str:
         return failures.TOO_FAR
     if thing < 0:  # what really lies there is found out within reach alone
         return failures.UNREACHABLE
-    if not bool(stage.world.target[0, thing]):
+    if not bool(stage.world.takeable[0, thing]):
         return failures.NOT_A_TARGET
     return failures.ALREADY_RESCUED if bool(stage.world.safe[0, thing]) else ""
 

@@ -68,7 +68,7 @@ def test_a_jet_is_a_cone_that_ends_at_its_reach() -> None:
 
 def test_wrong_extinguishers_and_aims_are_refused() -> None:
     jet = Jet.closed(1)
-    with pytest.raises(ValueError, match=r"extinguisher must be one of water, powder, co2, got 'sand'"):
+    with pytest.raises(ValueError, match=r"extinguisher must be one of water, powder, co2, small_powder, got 'sand'"):
         jet.open(ROW, "sand", point(0.0, 0.0, 0.0), point(1.0, 0.0, 0.0))
     with pytest.raises(ValueError, match="towards must differ from the place of the nozzle"):
         jet.open(ROW, "water", point(1.0, 0.0, 0.0), point(1.0, 0.0, 0.0))

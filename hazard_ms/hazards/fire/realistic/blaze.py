@@ -24,9 +24,10 @@ from typing import Any, ClassVar
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.base import Hazard, Level, State, none_set
+from hazard_ms.hazards.base import State, none_set
 from hazard_ms.hazards.fire import coupling, spread
-from hazard_ms.hazards.fire.declared import TELLS_OF_BLAZE, TEMPERATURE, ignites
+from hazard_ms.hazards.fire.burning import Burning
+from hazard_ms.hazards.fire.declared import TELLS_OF_BLAZE, ignites
 from hazard_ms.hazards.fire.fire import begin_flames
 from hazard_ms.hazards.fire.fire_state import BURNING, NORMAL, lit
 from hazard_ms.hazards.fire.realistic import (
@@ -54,16 +55,13 @@ UPDATE = 1 / 6  # unit in which pictures count the age of flames on things: 5 fr
 
 
 @dataclass(frozen=True)
-class Blaze(Hazard):
+class Blaze(Burning):
     """A realistic fire with these parameters; the defaults are those of the preset `realistic`."""
 
-    name: ClassVar[str] = "fire"
     state_type: ClassVar[type[State]] = BlazeState
-    level: ClassVar[Level] = TEMPERATURE
     tells: ClassVar[dict[str, Quantity]] = TELLS_OF_BLAZE
     signals: ClassVar[str] = "hazard_ms.sensing.senses.of_fire:BlazeSignals"
     fills: ClassVar[bool] = True  # with smoke
-    uses: ClassVar[tuple[str, ...]] = ("water", "air")
 
     room_temperature: float = 20.0  # [C] [docs/physics.md 4.4]
     # temperature of burning things, and the highest of plumes and jets: 800 K above the room [C] [M: McCaffrey, flame
@@ -212,8 +210,12 @@ class Blaze(Hazard):
         heat = self._exposure(state, world, self._fires(state, world), leaves.faces(world))
         return leaves.strain(state, world, *heat, self.room_temperature, self.time_scale)
 
-    def damaged(self, state: BlazeState, world: World) -> Tensor:
-        return state.status != NORMAL
+    def smother(self, state: BlazeState, world: World, things: Tensor) -> None:
+        state.coated.masked_fill_(things, 1.0)
+
+    @property
+    def clock(self) -> float:
+        return self.time_scale
 
     def image(self, state: BlazeState, world: World, points: Tensor) -> Tensor:
         """Temperature [C], [E, P], that plate thermometers at `points` [m], [E, P, 3], world frame, would show."""

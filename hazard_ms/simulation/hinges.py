@@ -1,0 +1,97 @@
+"""Doors that turn: where the leaf of a door in an inner wall is, where its handle is, and what it passes over.
+
+    share = 1 - cos(angle)    what a leaf leaves open of the width, seen along the wall's normal
+    F = F_0 + max(0, P) w / (2 (w - d))    at the handle, d from the free edge [NFPA 92, 4.4.2.2]
+
+P is the force of water and air on the leaf against its turn. A leaf in an inner wall hangs at the lower end of its opening along the wall, in the middle of its thickness, and turns into the first side:
+to the south or the west. Angles are 0 where it is shut and a quarter turn where it is open.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.scenes.shell import LEAF
+from hazard_ms.scenes.walls import WALLS, on_wall, runs_along_x, thickness_of
+from hazard_ms.spec import Opening, Room
+
+HANDLE_HEIGHT = 1.0  # [m] ADA 404.2.7: 34 to 48 in, 0.86 to 1.22 m
+END, SPACING = 0.05, 0.02  # of the points below a leaf: from its ends, and between them [m] [ours]
+HANDLE_EDGE = 0.07  # of the handle's middle from the free edge of the leaf [m] [NFPA 92: 0.07 m, as is usual]
+# Force at the handle of an inner door without any pressure [N] [ADA 404.2.9: at most 5 lbf]
+REST_FORCE = 22.2
+LOWEST = 0.1  # height of the handle of a window above its lower edge, at least [m] [ours]
+
+
+def angle(share: float) -> float:
+    """Angle of a leaf [rad] that leaves `share` of the width open."""
+    return math.acos(min(1.0, max(0.0, 1.0 - share)))
+
+
+def share(angle: float) -> float:
+    """Share of the width that a leaf at this `angle` [rad] leaves open."""
+    return 1.0 - math.cos(angle)
+
+
+def hinge(room: Room, o: Opening) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """The place of the hinge on the floor [m], and the directions of the shut leaf and of its swing, [2] each."""
+    start = on_wall(room, o.wall, o.centre - o.width / 2, 0.0, thickness_of(room, o.wall) / 2)
+    along = np.array([1.0, 0.0] if runs_along_x(room, o.wall) else [0.0, 1.0])
+    return np.array(start[:2]), along, -along[::-1]
+
+
+def on_leaf(room: Room, o: Opening, angle: float, far: float) -> NDArray[np.float64]:
+    """The place on the floor [m], [2], below what is `far` [m] from the hinge on a leaf at this `angle` [rad]."""
+    start, along, out = hinge(room, o)
+    return start + far * (math.cos(angle) * along + math.sin(angle) * out)
+
+
+def inner(o: Opening) -> bool:
+    """Whether it is in an inner wall: others do not turn into the room."""
+    return o.wall not in WALLS
+
+
+def spots(room: Room, o: Opening, shares: Sequence[float]) -> NDArray[np.float64]:
+    """Points at half its height in an opening [m], [S, 3], at `shares` of its width from its middle, world frame."""
+    deep, high = thickness_of(room, o.wall) / 2, o.sill + o.height / 2
+    return np.array([on_wall(room, o.wall, o.centre + share * o.width, high, deep) for share in shares])
+
+
+def handle_force(pressing: float, width: float) -> float:
+    """Force [N] at the handle of a leaf of `width` [m] on which `pressing` [N] acts against its turn."""
+    return REST_FORCE + max(0.0, pressing) * width / (2.0 * (width - HANDLE_EDGE))
+
+
+def handle(room: Room, o: Opening, angle: float) -> NDArray[np.float64]:
+    """The middle of the handle of a leaf at this `angle` [rad], or of a window [m], [3], world frame."""
+    if not inner(o):
+        along = o.centre + o.width / 2 - HANDLE_EDGE
+        return np.array(on_wall(room, o.wall, along, max(HANDLE_HEIGHT, o.sill + LOWEST), 0.0))
+    return np.array([*on_leaf(room, o, angle, o.width - HANDLE_EDGE), o.sill + HANDLE_HEIGHT])
+
+
+def under_leaf(room: Room, o: Opening, angle: float) -> NDArray[np.float64]:
+    """Points on the floor below a leaf at this `angle` [rad], without its ends [m], [P, 2]."""
+    return np.array([on_leaf(room, o, angle, far) for far in np.arange(END, o.width - END, SPACING)])
+
+
+def in_swing(
+    room: Room, o: Opening, first: float, last: float, points: NDArray[np.float64], radius: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Whether discs around `points` [m], [N, 2], of `radius` [m], [N], meet a leaf that turns from `first` to `last`.
+
+    Angles in [rad], in either order.
+    """
+    start, along, out = hinge(room, o)
+    offset = points - start
+    a, b = offset @ along, offset @ out
+    far, at = np.hypot(a, b), np.arctan2(b, a)
+    nearest = np.clip(at, min(first, last), max(first, last))
+    reach = np.minimum(o.width, np.maximum(0.0, far * np.cos(at - nearest)))
+    gap = np.hypot(a - reach * np.cos(nearest), b - reach * np.sin(nearest))
+    inside = (at >= min(first, last)) & (at <= max(first, last)) & (far <= o.width)
+    return inside | (gap < radius + LEAF / 2)

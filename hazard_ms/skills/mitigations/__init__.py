@@ -1,0 +1,1 @@
+"""Mitigations: skills with which agents act on hazards themselves; by verb: hazard_ms.registry.mitigations."""

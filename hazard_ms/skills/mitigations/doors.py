@@ -1,0 +1,204 @@
+"""The skills `open` and `shut`: the hand takes the handle, and the leaf turns, assisted as a grasp is.
+
+The robot walks to where its arm is long enough for the handle and brings its hand there. Then it steps out of the
+leaf's way, if it stands in it, and the leaf turns over its time; the hand follows as far as the arm gets.
+
+Where the leaf needs more force at the handle (hazard_ms.simulation.hinges) than the arm's pull (Build.pull: 59 N for Fetch, 29 N for G1), it
+is held. Limits: latches are not locked; leaves of outer doors and windows are not drawn
+open; the force is checked before and during the turn, but the leaf is not pressed back.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.simulation import hinges
+from hazard_ms.simulation.openings import EVERY
+from hazard_ms.skills import failures
+from hazard_ms.skills.context import Skill, Stage
+from hazard_ms.skills.decision import Result
+from hazard_ms.skills.mitigations.approach import approach
+from hazard_ms.skills.mitigations.leaf import Leaf
+from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, follow, go, lacking, never, posture_for
+from hazard_ms.skills.motor.grasping import APPROACH_FRAMES
+from hazard_ms.skills.motor.motion import drive
+from hazard_ms.skills.motor.navigation import Ways
+from hazard_ms.skills.motor.routes import quickest
+from hazard_ms.skills.motor.surface import Leg, Place, Surface
+from hazard_ms.spec.robot import GRASP_REACH
+
+# Times of a quarter turn [s]: doors that move by themselves take 4 s to open, and 3 s to shut from 90 to 10 degrees and
+# 1.5 s from there, at least [ANSI/BHMA A156.19, 4.1.2 and 4.2]: leaves of 45 kg then have no more than 1.69 J
+OPENING_TIME, SHUTTING_TIME = 4.0, 4.5
+WINDOW_SHARE = 0.9  # how far a window opens: a pane that is wholly out is broken [ours]
+SHARES = (0.85, 0.65)  # of the arm's span: distances from the handle at which it stands, in turn [ours]
+OFF_FACE = 0.08  # of the place for the hand from the middle of the leaf [m] [ours]
+ASIDE = 0.05  # gap that the base leaves to a leaf that turns [m] [ours]
+RINGS, DIRECTIONS = (0.3, 0.6, 0.9, 1.2, 1.6), 16  # where it looks for a place aside: distances [m], number of ways
+FOLLOW_EVERY = 3  # frames from one posture of the hand at the handle to the next [ours]
+AROUND = 0.25  # of the handle, within which the arm may come to the leaf [m] [ours]
+
+
+def shut_ones(stage: Stage) -> tuple[str, ...]:
+    """Names of the doors and windows that are known to be shut, or not wholly open."""
+    rows = stage.doors.rows() if stage.held < 0 else ()
+    return tuple(o.name for o in rows if o.kind != "doorway" and not o.broken and o.open < _most(o.kind))
+
+
+def open_ones(stage: Stage) -> tuple[str, ...]:
+    """Names of the doors and windows that are known to be open, at least a little."""
+    rows = stage.doors.rows() if stage.held < 0 else ()
+    return tuple(o.name for o in rows if o.kind != "doorway" and not o.broken and o.open > 0.0)
+
+
+def open_door(stage: Stage, name: str) -> Skill:
+    """Open the door or window called `name` as far as it goes."""
+    return (yield from _turn(stage, name, True))
+
+
+def shut_door(stage: Stage, name: str) -> Skill:
+    """Shut the door or window called `name`."""
+    return (yield from _turn(stage, name, False))
+
+
+def _turn(stage: Stage, name: str, opening: bool) -> Skill:
+    known = stage.doors.find(name)
+    if known is None:
+        return Result(False, failures.UNKNOWN)
+    if stage.held >= 0:
+        return Result(False, failures.ALREADY_HOLDING)
+    if known.kind == "doorway":
+        return Result(False, failures.NO_LEAF)
+    leaf = Leaf(stage.world, known.number)
+    goal = hinges.angle(_most(known.kind)) if opening else 0.0
+    home = leaf.side(*stage.robot.base()[:2])
+    nearest, farthest = stage.robot.build.span(float(leaf.handle()[2]))
+    used, reason = 0, failures.UNREACHABLE
+    for share in SHARES:
+        walked = yield from approach(stage, leaf.handle(), max(nearest, share * farthest), farthest + GRASP_REACH)
+        used += walked.frames
+        if not walked.ok:
+            return Result(False, walked.reason, used)
+        stage.doors.enter(known.number, stage.frame, stage.maps)  # it stands before it now
+        if leaf.broken or abs(leaf.angle - goal) < 1e-3:
+            return Result(not leaf.broken, failures.BROKEN if leaf.broken else "", used)
+        taken = yield from _take(stage, leaf.handle())
+        used += taken.frames
+        if taken.ok:
+            reason = ""
+            break
+        used += (yield from fold(stage, _place(leaf.handle()))).frames
+    if not reason and leaf.force(opening) > stage.robot.build.pull:
+        reason = failures.HELD_SHUT if opening else failures.HELD_OPEN
+    if not reason:
+        turned = yield from _lead(stage, leaf, goal, opening, home)
+        reason, used = turned.reason, used + turned.frames
+        stage.doors.enter(known.number, stage.frame, stage.maps)
+    if taken.ok:
+        used += (yield from fold(stage, _place(leaf.handle()))).frames
+    return Result(not reason, reason, used)
+
+
+def _most(kind: str) -> float:
+    return WINDOW_SHARE if kind == "window" else 1.0
+
+
+def _place(handle: NDArray[np.float64]) -> Place:
+    return Place(handle, AROUND, 0.0, float(handle[2]) + AROUND)
+
+
+def _take(stage: Stage, handle: NDArray[np.float64]) -> Skill:
+    """Bring the hand to the `handle`, [3] [m]; it fails where it does not get within a grasp's reach."""
+    stage.robot.use_hand(handle)
+    x, y, _ = stage.robot.base()
+    towards = np.array([x - handle[0], y - handle[1], 0.0])
+    aim = handle + OFF_FACE * towards / max(float(np.hypot(*towards[:2])), 1e-6)
+
+    def there() -> bool:
+        return float(np.linalg.norm(stage.robot.hand() - handle)) < 0.9 * GRASP_REACH
+
+    posture = posture_for(stage, aim)
+    if posture.error > GRASP_REACH:
+        return Result(False, failures.UNREACHABLE)
+    route = quickest(stage, [Leg(posture.arm, 0.0)], Surface(stage, _place(handle)), lacking(stage))
+    moved = yield from follow(stage, route, there)
+    used = moved.frames
+    if not there():
+        used += (yield from go(stage, posture.arm, REACH_FRAMES, there)).frames
+    return Result(there(), frames=used)
+
+
+def _lead(stage: Stage, leaf: Leaf, goal: float, opening: bool, home: float) -> Skill:
+    """Step aside, and let the `leaf` turn to the angle `goal` [rad] over its time."""
+    first = leaf.angle
+    aside = yield from _step_aside(stage, leaf, goal, home)
+    if not aside.ok:
+        return aside
+    used, tucked = aside.frames, aside.frames > 0
+    rate = 1.0 / stage.env.control_timestep
+    whole = OPENING_TIME if opening else SHUTTING_TIME
+    steps = max(1, math.ceil(whole * rate * abs(goal - first) / (math.pi / 2)))
+    arm = stage.robot.tucked if tucked else stage.robot.arm()
+    for step in range(1, steps + 1):
+        angle = first + (goal - first) * step / steps
+        if leaf.broken:
+            return Result(False, failures.BROKEN, used)
+        if step % EVERY == 1 and leaf.force(opening) > stage.robot.build.pull:
+            return Result(False, failures.HELD_SHUT if opening else failures.HELD_OPEN, used)
+        if _obstructed(stage, leaf, leaf.angle, angle):
+            return Result(False, failures.IN_THE_SWING, used)
+        leaf.turn_to(angle)
+        if not tucked and step % FOLLOW_EVERY == 0:
+            posture = posture_for(stage, leaf.handle())
+            arm = posture.arm if posture.error < GRASP_REACH else arm
+        yield stage.act(arm=arm)
+        used += 1
+    return Result(True, frames=used)
+
+
+def _step_aside(stage: Stage, leaf: Leaf, goal: float, home: float) -> Skill:
+    """Drive to the nearest place out of the way of the `leaf`, on the side `home`; not at all if it is out already."""
+    x, y, _ = stage.robot.base()
+    radius = np.array([stage.robot.build.radius + ASIDE])
+    if not leaf.meets(leaf.angle, goal, np.array([[x, y]]), radius):
+        return Result(True)
+    around = np.arange(DIRECTIONS) * 2.0 * np.pi / DIRECTIONS
+    spots = [np.array([x + far * np.cos(a), y + far * np.sin(a)]) for far in RINGS for a in around]
+    free = [
+        (float(at[0]), float(at[1]))
+        for at in spots
+        if leaf.side(*at) * home > 0.0 and not leaf.meets(leaf.angle, goal, at[None], radius)
+    ]
+    if not free:
+        return Result(False, failures.IN_THE_SWING)
+    seen = stage.seen
+    ways = Ways(stage.obstacles(), seen.explored, seen.cell, seen.origin, (x, y), free, float(radius[0]) - ASIDE)
+    paths = [ways.path(goal_at, 0.0, seen.cell) for goal_at in free]
+    reached = [path for path in paths if path is not None and path.short <= seen.cell and len(path.points)]
+    if not reached:
+        return Result(False, failures.IN_THE_SWING)
+    best = min(reached, key=lambda path: path.length)
+    folded = yield from go(stage, stage.robot.tucked, REACH_FRAMES, never, 0.3)
+    moved = yield from drive(stage, best.points, APPROACH_FRAMES)
+    return Result(moved.ok, moved.reason, folded.frames + moved.frames)
+
+
+def _obstructed(stage: Stage, leaf: Leaf, first: float, last: float) -> bool:
+    """Whether the robot, furniture, or a body too heavy to be pushed aside is in the way from `first` to `last`."""
+    if not leaf.inner:
+        return False
+    world = stage.world
+    x, y, _ = stage.robot.base()
+    if leaf.meets(first, last, np.array([[x, y]]), np.array([stage.robot.build.radius])):
+        return True
+    pushed = (stage.robot.build.pull - hinges.REST_FORCE) / (world.robot.friction * 9.81)  # mass that the leaf pushes [kg]
+    there = world.exists[0] & ~world.away[0] & ~world.held[0] & (~world.movable[0] | (world.mass[0] > pushed))
+    low = world.position[0, :, 2] - world.extent[0, :, 2] / 2
+    there &= (low < leaf.o.sill + leaf.o.height) & (world.extent[0, :, 2] + low > leaf.o.sill + 0.02)
+    rows = there.nonzero()[:, 0]
+    points = world.position[0, rows, :2].cpu().numpy().astype(np.float64)
+    half = world.extent[0, rows, :2].amin(1).cpu().numpy().astype(np.float64) / 2
+    return len(points) > 0 and leaf.meets(first, last, points, half)

@@ -1,0 +1,57 @@
+"""A door or window as a robot meets it: how far it is open, how hard it goes, and what it would meet."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.simulation import hinges
+from hazard_ms.simulation.world import World
+from hazard_ms.spec import Opening
+
+
+class Leaf:
+    """One door or window of the first environment."""
+
+    def __init__(self, world: World, number: int) -> None:
+        """Take the opening `number` along O of `world`."""
+        self.number, self._openings = number, world.openings
+        self.room = world.specs[0].room
+        self.o: Opening = self.room.openings[number]
+        self.inner = hinges.inner(self.o)  # its leaf turns on its hinges; others turn outwards
+
+    @property
+    def broken(self) -> bool:
+        """Whether its leaf or pane is gone."""
+        return bool(self._openings.state.broken[0, self.number])
+
+    @property
+    def angle(self) -> float:
+        """How far it is open now [rad]."""
+        return hinges.angle(float(self._openings.share[0, self.number]))
+
+    def turn_to(self, angle: float) -> None:
+        """Open it to this `angle` [rad]."""
+        rows = self._openings.state.open.new_zeros(1).long()
+        self._openings.set_open(rows, self.number, hinges.share(angle))
+
+    def handle(self) -> NDArray[np.float64]:
+        """The middle of its handle now [m], [3], world frame."""
+        return hinges.handle(self.room, self.o, self.angle)
+
+    def force(self, opening: bool) -> float:
+        """Force that it takes at the handle to open it, or to shut it [N]."""
+        pressing = float(self._openings.force[0, self.number]) * (1.0 if self.inner else -1.0)
+        return hinges.handle_force(pressing if opening else -pressing, self.o.width)
+
+    def meets(self, first: float, last: float, points: NDArray[np.float64], radius: NDArray[np.float64]) -> bool:
+        """Whether it would meet a disc when it turns between these angles [rad].
+
+        Discs are around `points` [m], [N, 2], world frame, with `radius` [m], [N].
+        """
+        return self.inner and bool(hinges.in_swing(self.room, self.o, first, last, points, radius).any())
+
+    def side(self, x: float, y: float) -> float:
+        """On which side of its wall a place [m] is, and how far [m]: above 0 that into which it turns."""
+        start, _, out = hinges.hinge(self.room, self.o)
+        return float((np.array([x, y]) - start) @ out)

@@ -25,6 +25,7 @@ GRASP = 0.8 * GRASP_REACH  # the hand shuts this close to the thing [m]
 CLEAR = 0.05  # the hand aims this far off the thing, so that it does not push it away [m]
 GETS_THERE = GRASP - CLEAR  # position error of a posture at which the hand gets close enough to the thing [m]
 STAND_OFF = 0.85  # share of the arm's span at which the base stands for a pick-up
+HAND_HEIGHT = 0.06  # of the middle of the hand above a board at least, where the hand goes in between two [m] [ours]
 OVER = 0.25  # the hand comes down from above on things higher than this [m]
 TURNS = tuple(np.deg2rad([0.0, 30.0, -30.0, 60.0, -60.0]).tolist())  # of the base before it reaches [rad] [ours]
 LEAST = 25.0  # a route that is at most this much longer than what it takes to turn is not bettered [frames] [ours]
@@ -58,8 +59,9 @@ def aims(
     towards = towards / max(float(np.linalg.norm(towards)), 1e-6)
     top = middle + np.array([0.0, 0.0, float(half.min() if half[2] > 0.2 else half[2]) + CLEAR])
     near = middle + towards * (float(half[:2].min()) + CLEAR)
-    if outward is not None and outward.any():
-        return [middle + outward * (float(half[:2].min()) + CLEAR), near]
+    if outward is not None and outward.any():  # the hand is thick: it must not scrape over the board
+        above = np.array([0.0, 0.0, max(HAND_HEIGHT - float(half[2]), 0.0)])
+        return [middle + above + outward * (float(half[:2].min()) + CLEAR), near + above]
     return [top, near]
 
 

@@ -18,10 +18,12 @@ from tests.worlds.arena import Arena
 CELL, WEST, SOUTH = 0.1, -2.0, -1.5
 VALUES = dict(x=0.2, y=0.1, ahead_x=0.6, ahead_y=0.8, radius=0.3, own=0.4, west=WEST, south=SOUTH, cell=CELL, gap=0.06)
 PLACE = dict(place_x=0.7, place_y=0.6, place_radius=0.1, bottom=0.5, slope=0.7, top=0.8)
+OPEN = dict(out_x=0.0, out_y=0.0, depth=0.0, half_width=0.0, roof=0.0)
+SHELF = dict(out_x=0.8, out_y=-0.6, depth=0.5, half_width=0.2, roof=0.9)
 SHARES = (0.0, 0.33, 0.67)
 
 
-def in_something(point: np.ndarray, ahead: float, heights: np.ndarray) -> bool:
+def in_something(point: np.ndarray, ahead: float, heights: np.ndarray, opening: dict[str, float]) -> bool:
     """Whether a point in the base's frame is below what the arm must keep above there."""
     base = np.array([0.2 + ahead * 0.6, 0.1 + ahead * 0.8])
     x, y = base + (0.6 * point[0] - 0.8 * point[1], 0.8 * point[0] + 0.6 * point[1])
@@ -34,20 +36,26 @@ def in_something(point: np.ndarray, ahead: float, heights: np.ndarray) -> bool:
     low = height + 0.06
     if height < 0.8 or beside < 0.06:
         low = min(low, 0.5 + 0.7 * max(beside, 0.0))
+    out = np.array([opening["out_x"], opening["out_y"]])
+    along, across = out @ (x - 0.7, y - 0.6), out @ (y - 0.6, 0.7 - x)
+    wide = opening["half_width"]
+    if -wide < along < opening["depth"] and abs(across) < wide and point[2] < opening["roof"]:
+        low = min(low, 0.5 + min(0.7 * max(beside, 0.0), 0.06))  # the board, and what the arm keeps above it
     return bool(point[2] < low)
 
 
-def test_points_along_arms_are_counted_as_one_by_one() -> None:
+@pytest.mark.parametrize("opening", [OPEN, SHELF])
+def test_points_along_arms_are_counted_as_one_by_one(opening: dict[str, float]) -> None:
     rng = np.random.default_rng(0)
     heights = rng.choice([0.0, 0.3, 0.7, 1.5], (30, 40)).astype(np.float32)
-    counter = Counter(ground(**VALUES, **PLACE), SHARES, heights)
+    counter = Counter(ground(**VALUES, **PLACE, **opening), SHARES, heights)
     for number in (1, 7, 400, 3):  # more than there is room for at first, and fewer again
         places = rng.uniform([-0.5, -1.5, 0.0], [3.0, 1.5, 1.6], (number, 4, 3))
         ahead = rng.uniform(-0.5, 0.5, number)
         expected = []
         for joints, far in zip(places, ahead, strict=True):
             points = [a + s * (b - a) for a, b in zip(joints[:-1], joints[1:], strict=True) for s in SHARES]
-            expected.append(sum(in_something(point, far, heights) for point in (*points, joints[-1])))
+            expected.append(sum(in_something(point, far, heights, opening) for point in (*points, joints[-1])))
         assert counter.touched(places, ahead).tolist() == expected
         assert number < 7 or len(set(expected)) > 2, "nothing to tell apart"
 

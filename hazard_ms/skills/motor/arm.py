@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.failures import BLOCKED, MAX_FRAMES, UNREACHABLE
-from hazard_ms.skills.motor.kinematics import Posture, lifted, solve
+from hazard_ms.skills.motor.kinematics import Posture, shifted, solve
 from hazard_ms.skills.motor.motion import BACK_OFF, CLOSE, finite, wrap
 from hazard_ms.skills.motor.routes import Route, quickest
 from hazard_ms.skills.motor.surface import Leg, Place, Surface
@@ -22,32 +22,44 @@ REACH_FRAMES = 60  # budget of one movement of the arm [frames]
 ADVANCE = 0.06  # least decrease of the joint gap that counts as progress, or of the way left by as many frames [rad]
 STALLED_FRAMES = 4  # frames without progress after which something must be in the way
 HOVER = 0.1  # height above a thing from which the hand comes down on it [m] [ours]
+WITHDRAWN = 0.2  # distance before a thing in furniture from which the hand goes in to it [m] [ours]
 SPARE = 0.1  # how much more room than that of its elbow an arm may need, as the map makes furniture wider [m] [ours]
 LEG_ROOM = 0.4  # lower furniture does not hinder the unfolding arm [m]
 
 
-def postures(stage: Stage, point: NDArray[np.float64]) -> Iterator[Posture]:
-    """Postures with the hand at `point`, [3] [m], world frame: one for each direction that fingers may point in."""
-    shoulder = stage.robot.shoulder()
-    level = point[:2] - shoulder[:2]
+def postures(stage: Stage, point: NDArray[np.float64], inward: NDArray[np.float64] | None = None) -> Iterator[Posture]:
+    """Postures with the hand at `point`, [3] [m], world frame: one for each direction that fingers may point in.
+
+    They point away from the shoulder, or `inward`, [2].
+    """
+    level = point[:2] - stage.robot.shoulder()[:2] if inward is None else inward
     level = level / max(float(np.hypot(*level)), 1e-6)
     for down in stage.robot.pointing:
         yield solve(stage.robot, point, np.array([*(np.cos(down) * level), -np.sin(down)]))
 
 
-def posture_for(stage: Stage, point: NDArray[np.float64]) -> Posture:
-    """A posture with the hand at `point`, [3] [m], world frame.
+def posture_for(stage: Stage, point: NDArray[np.float64], inward: NDArray[np.float64] | None = None) -> Posture:
+    """A posture with the hand at `point`, [3] [m], world frame; `inward` as for `postures`.
 
     The fingers point in the first direction that works, else in that which brings the hand nearest.
     """
     best: Posture | None = None
-    for found in postures(stage, point):
+    for found in postures(stage, point, inward):
         if best is None or found.error < best.error:
             best = found
         if best.error < REACHED_ERROR:
             break
     assert best is not None
     return best
+
+
+def before(stage: Stage, arm: NDArray[np.float64], surface: Surface, height: float = HOVER) -> NDArray[np.float64]:
+    """The joints [rad], [J], with the hand `height` [m] above where it is at `arm` [rad], [J].
+
+    Where there is furniture around the place of `surface`, the hand is before it instead.
+    """
+    out = WITHDRAWN * surface.outward if surface.out.any() else np.array([0.0, 0.0, height])
+    return shifted(stage.robot, arm, out)
 
 
 def reach_for(stage: Stage, point: tuple[float, float, float] | NDArray[np.float64]) -> Skill:
@@ -118,8 +130,8 @@ def fold(stage: Stage, place: Place) -> Skill:
     """Fold the arm beside the torso with what the hand holds, away from the thing that stood at `place`."""
     tucked, back = stage.robot.tucked, lacking(stage)
     goals = [Leg(tucked, ahead) for ahead in {0.0, -back}]
-    above = lifted(stage.robot, stage.robot.arm(), HOVER)
-    route = quickest(stage, goals, Surface(stage, place), back, above, leaving=True)
+    surface = Surface(stage, place)
+    route = quickest(stage, goals, surface, back, before(stage, stage.robot.arm(), surface), leaving=True)
     moved = yield from follow(stage, route, close=CARRIED)
     if moved.ok:
         return moved

@@ -11,15 +11,14 @@ from hazard_ms.episode.grasp import GRASP_REACH
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import LowLevel, Skill, Stage
 from hazard_ms.skills.decision import Result
-from hazard_ms.skills.motor.arm import HOVER, fold, follow, go, posture_for
+from hazard_ms.skills.motor.arm import before, fold, follow, go, posture_for
 from hazard_ms.skills.motor.drift import DRIFT_FRAMES, Drift
-from hazard_ms.skills.motor.kinematics import lifted
 from hazard_ms.skills.motor.motion import drive, turn_by, turn_to
 from hazard_ms.skills.motor.navigation import Path
 from hazard_ms.skills.motor.reaching import GRASP, STAND_OFF, Way, aims, arm_way_where_it_will_be
 from hazard_ms.skills.motor.routes import CLOSELY
 from hazard_ms.skills.motor.standing import better_place
-from hazard_ms.skills.motor.surface import NEARLY, place_of
+from hazard_ms.skills.motor.surface import NEARLY, Surface, place_of
 from hazard_ms.skills.motor.walking import known, way_to
 
 LIMIT = 2.5  # greatest distance from the shoulder to the thing at which a pick-up begins (docs/benchmark.md 3) [m]
@@ -190,12 +189,13 @@ def _grasp(stage: Stage, index: int, way: Way, drift: Drift) -> Skill:
     used = moved.frames
     near = stage.gap(index) < (ASTRAY if moved.ok else NEAR)
     if stage.would_take() != index and near and (moved.ok or used <= ONCE_MORE):
-        goal = stage.position(index) if moved.ok else aims(stage, stage.position(index), index)[0]
-        arm = posture_for(stage, goal).arm
-        if not moved.ok:  # it touched something, or the thing moved: up, and once more from above
-            raised = lifted(stage.robot, stage.robot.arm(), FREE)
+        surface = Surface(stage, place_of(stage, index))
+        goal = stage.position(index) if moved.ok else aims(stage, stage.position(index), index, surface.outward)[0]
+        arm = posture_for(stage, goal, surface.inward).arm
+        if not moved.ok:  # it touched something, or the thing moved: up, or out, and once more from there
+            raised = before(stage, stage.robot.arm(), surface, FREE)
             used += (yield from go(stage, raised, AGAIN_FRAMES, close, CLOSELY)).frames
-            used += (yield from go(stage, lifted(stage.robot, arm, HOVER), AGAIN_FRAMES, close, NEARLY)).frames
+            used += (yield from go(stage, before(stage, arm, surface), AGAIN_FRAMES, close, NEARLY)).frames
         used += (yield from go(stage, arm, AGAIN_FRAMES, close)).frames
     if stage.would_take() == index:
         used += (yield from _shut(stage, index, arm)).frames

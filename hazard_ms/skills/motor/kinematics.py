@@ -53,8 +53,13 @@ def solve(robot: Robot, point: NDArray[np.float64], pointing: NDArray[np.float64
 
 def lifted(robot: Robot, arm: NDArray[np.float64], height: float) -> NDArray[np.float64]:
     """The joints [rad], [..., J], near `arm` that bring the hand `height` [m] higher, its fingers pointing alike."""
+    return shifted(robot, arm, np.array([0.0, 0.0, height]))
+
+
+def shifted(robot: Robot, arm: NDArray[np.float64], shift: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The joints [rad], [..., J], near `arm` that move the hand by `shift` [m], [3], its fingers pointing alike."""
     hand, turn, _ = robot.kinematics(arm)
-    return _descend(robot, arm, hand + np.array([0.0, 0.0, height]), turn[:, 0], robot.arm_limits).arm
+    return _descend(robot, arm, hand + shift, turn[:, 0], robot.arm_limits).arm
 
 
 def _facing(robot: Robot, start: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from hazard_ms.episode.grasp import GRASP_REACH
 from hazard_ms.skills.context import Stage
-from hazard_ms.skills.motor.arm import HOVER, lacking, postures
+from hazard_ms.skills.motor.arm import before, lacking, postures
 from hazard_ms.skills.motor.drift import Drift
-from hazard_ms.skills.motor.kinematics import Posture, lifted
+from hazard_ms.skills.motor.kinematics import Posture
 from hazard_ms.skills.motor.motion import turned
 from hazard_ms.skills.motor.navigation import LOW
 from hazard_ms.skills.motor.routes import HIT_COST, Route, quickest
@@ -25,6 +25,7 @@ GRASP = 0.8 * GRASP_REACH  # the hand shuts this close to the thing [m]
 CLEAR = 0.05  # the hand aims this far off the thing, so that it does not push it away [m]
 GETS_THERE = GRASP - CLEAR  # position error of a posture at which the hand gets close enough to the thing [m]
 STAND_OFF = 0.85  # share of the arm's span at which the base stands for a pick-up
+HAND_HEIGHT = 0.06  # of the middle of the hand above a board at least, where the hand goes in between two [m] [ours]
 OVER = 0.25  # the hand comes down from above on things higher than this [m]
 TURNS = tuple(np.deg2rad([0.0, 30.0, -30.0, 60.0, -60.0]).tolist())  # of the base before it reaches [rad] [ours]
 LEAST = 25.0  # a route that is at most this much longer than what it takes to turn is not bettered [frames] [ours]
@@ -45,17 +46,23 @@ class Way:
     cost: float  # these, and what touching things is likely to cost [frames]
 
 
-def aims(stage: Stage, middle: NDArray[np.float64], index: int) -> list[NDArray[np.float64]]:
+def aims(
+    stage: Stage, middle: NDArray[np.float64], index: int, outward: NDArray[np.float64] | None = None
+) -> list[NDArray[np.float64]]:
     """Points, [3] [m], for the hand if the middle of the thing `index` were at `middle` [m], [3], world frame.
 
-    Above the thing, and before it as seen from the shoulder; a little off its box.
+    Above the thing, and before it as seen from the shoulder; a little off its box. Where furniture is around it, they
+    are before it in the direction `outward`, [3], and as seen from the shoulder; None or 0: nothing is.
     """
     half = stage.world.extent[0, index].cpu().numpy().astype(np.float64) / 2
     towards = stage.robot.shoulder() - middle
     towards = towards / max(float(np.linalg.norm(towards)), 1e-6)
     top = middle + np.array([0.0, 0.0, float(half.min() if half[2] > 0.2 else half[2]) + CLEAR])
-    before = middle + towards * (float(half[:2].min()) + CLEAR)
-    return [top, before]
+    near = middle + towards * (float(half[:2].min()) + CLEAR)
+    if outward is not None and outward.any():  # the hand is thick: it must not scrape over the board
+        above = np.array([0.0, 0.0, max(HAND_HEIGHT - float(half[2]), 0.0)])
+        return [middle + above + outward * (float(half[:2].min()) + CLEAR), near + above]
+    return [top, near]
 
 
 def arm_way_where_it_will_be(stage: Stage, index: int, tried: set[int], drift: Drift) -> Way | None:
@@ -81,7 +88,7 @@ def arm_way(
         seen = turned(middle, (x, y), -turn)  # where the thing would be before a base that did not turn
         turning = abs(turn) / stage.robot.build.turn_step
         for ahead in standings(stage, middle) if turn == 0.0 else [0.0]:
-            for aim in aims(stage, seen, index):
+            for aim in aims(stage, seen, index, surface.outward):
                 if best is not None and best.route.hits == 0 and best.frames <= turning + LEAST:
                     return best
                 skipped = {n - number for n in tried}
@@ -108,9 +115,9 @@ def routes(
     """
     heading = stage.robot.base()[2]
     moved = ahead * np.array([np.cos(heading), np.sin(heading), 0.0])
-    for number, posture in enumerate(postures(stage, aim - moved), start=1):
+    for number, posture in enumerate(postures(stage, aim - moved, surface.inward), start=1):
         if number not in skipped and posture.error <= GETS_THERE:
-            above = lifted(stage.robot, posture.arm, HOVER) if surface.place.middle[2] > OVER else None
+            above = before(stage, posture.arm, surface) if surface.place.middle[2] > OVER else None
             yield number, quickest(stage, [Leg(posture.arm, ahead)], surface, back, above, hit_cost=hit_cost)
 
 

@@ -45,7 +45,7 @@ def better_place(stage: Stage, index: int, worth: float, hits: int, apart: float
         surface = Surface(stage, place, move.turn, at)
         # where the thing would be before a base that stayed where it is
         seen = turned(place.middle + np.array([x - at[0], y - at[1], 0.0]), (x, y), -move.turn)
-        for aim in aims(stage, seen, index):
+        for aim in aims(stage, seen, index, surface.outward):
             for _, route in routes(stage, aim, surface, 0.0):
                 if route.hits <= hits and move.frames + route.cost < worth:
                     best, worth = move.path, move.frames + route.cost

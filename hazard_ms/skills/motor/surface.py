@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from hazard_ms.skills.context import Stage
+from hazard_ms.skills.motor.motion import turned
 from hazard_ms.skills.motor.roadmap import Paths
 from hazard_ms.skills.motor.touching import Counter, ground
 
@@ -20,6 +21,13 @@ ARM_RADIUS = 0.06  # distance that the middle of the arm keeps above things; Fet
 BETWEEN = (0.0, 0.33, 0.67)  # points of each link that are checked, as shares of its length [-] [ours]
 OWN_HEIGHT = 0.3  # the arm keeps above this over its own base [m] [ours]
 WINDOW = 2.0  # distance from the base within which the map is looked at [m] [ours]
+COVER = (
+    0.15  # distance from the middle of a thing within which most of the map is higher than what covers it [m] [ours]
+)
+DEEPEST = 0.7  # greatest distance from a thing in furniture to the floor before that [m] [ours]
+OPENING = 0.1  # room beside a thing in furniture that its opening leaves for the middle of the arm [m] [ours]
+OVERHEAD = 0.05  # room above it that it leaves [m] [ours]
+HEADROOM = 0.16  # and above the board that it stands on: boards are 0.22 m apart, or farther [m] [ours]
 SLOPE = 0.7  # of the cone around the thing within which the hand comes down to what it stands on [-] [ours]
 
 
@@ -60,12 +68,14 @@ class Surface:
         """
         self._stage = stage
         self.place = place
+        self.turn = turn
         self._x, self._y, heading = stage.robot.base()
         if at is not None:
             self._x, self._y = at.tolist()
         self._ahead = np.array([np.cos(heading + turn), np.sin(heading + turn)])
-        self._origin, height = self._window()
-        self._counter = Counter(self._around(), BETWEEN, np.ascontiguousarray(height))
+        self._origin, self._height = self._window()
+        self.out, self._depth = self._opening()
+        self._counter = Counter(self._around(), BETWEEN, np.ascontiguousarray(self._height))
         self._paths: dict[tuple[float, bytes], Paths] = {}
         self._known: dict[tuple[float, bytes, float, bytes], int] = {}  # hits of legs that were checked before
 
@@ -105,7 +115,40 @@ class Surface:
             bottom=place.bottom,
             slope=SLOPE,
             top=place.top + ARM_RADIUS,
+            out_x=float(self.out[0]),
+            out_y=float(self.out[1]),
+            depth=self._depth,
+            half_width=place.radius + OPENING,
+            roof=max(place.top + OVERHEAD, place.bottom + HEADROOM),
         )
+
+    @property
+    def outward(self) -> NDArray[np.float64]:
+        """The direction, [3], out of the furniture around the place, as it is to a base that did not turn; 0: open."""
+        return turned(np.array([*self.out, 0.0]), (0.0, 0.0), -self.turn)
+
+    @property
+    def inward(self) -> NDArray[np.float64] | None:
+        """The direction, [2], into that furniture, as it is to a base that did not turn; None where there is none."""
+        return -self.outward[:2] if self.out.any() else None
+
+    def _opening(self) -> tuple[NDArray[np.float64], float]:
+        """The direction, [2], from the place to where the furniture around it is open, and how far it reaches [m].
+
+        The map has one height for each cell: that of a shelf's top board. What lies below it was seen, so the shelf is
+        open, and most likely so towards the nearest low floor. The distance is 0 for a place in the open.
+        """
+        middle, cell = self.place.middle[:2], self._stage.seen.cell
+        rows, columns = np.indices(self._height.shape)
+        away = self._origin + (np.stack([columns, rows], -1) + 0.5) * cell - middle
+        far = np.hypot(*np.moveaxis(away, -1, 0))
+        around = self._height[far < COVER]
+        low = (self._height < self.place.bottom - ARM_RADIUS) & (far < DEEPEST)
+        if not len(around) or np.median(around) <= self.place.top + ARM_RADIUS or not low.any():
+            return np.zeros(2), 0.0
+        nearest = float(far[low].min())
+        out = away[low & (far <= nearest + cell)].mean(axis=0)
+        return np.asarray(out / max(float(np.hypot(*out)), 1e-9)), nearest + cell
 
     def hits(self, legs: Sequence[Leg], enough: float = np.inf) -> int:
         """The number of checked points of a route over `legs`, the first of which is its start, that lie in something.

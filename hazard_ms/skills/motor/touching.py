@@ -44,6 +44,11 @@ class Ground:
     bottom: wp.float64  # height on which the thing at the place stands [m]
     slope: wp.float64  # of the cone around it, within which the hand comes down [-]
     top: wp.float64  # height up to which it may be stood on [m]
+    out_x: wp.float64  # direction from the place to where furniture around it is open [-]
+    out_y: wp.float64
+    depth: wp.float64  # distance from the place up to which it is so; 0 for a place in the open [m]
+    half_width: wp.float64  # of the opening [m]
+    roof: wp.float64  # height up to which it is so [m]
 
 
 @wp.func
@@ -65,7 +70,12 @@ def lies_in(ground: Ground, heights: wp.array2d(dtype=wp.float32), ahead: wp.flo
     if column >= 0 and row >= 0 and column < heights.shape[1] and row < heights.shape[0]:
         height = heights[row, column]
     raised = wp.float64(height + wp.float32(ground.gap))
-    beside = distance(x - ground.place_x, y - ground.place_y) - ground.place_radius
+    east, north = x - ground.place_x, y - ground.place_y
+    beside = distance(east, north) - ground.place_radius
+    along, across = east * ground.out_x + north * ground.out_y, north * ground.out_x - east * ground.out_y
+    if along < ground.depth and wp.max(-along, wp.abs(across)) < ground.half_width and point[2] < ground.roof:
+        # between the boards of a shelf
+        raised = wp.min(raised, ground.bottom + wp.min(ground.gap, ground.slope * wp.max(beside, wp.float64(0.0))))
     if height < wp.float32(ground.top) or beside < ground.gap:  # neither a wall nor the back of a chair
         raised = wp.min(raised, ground.bottom + ground.slope * wp.max(beside, wp.float64(0.0)))
     return point[2] < raised

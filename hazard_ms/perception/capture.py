@@ -23,6 +23,7 @@ from hazard_ms.perception import coco, layout
 from hazard_ms.perception.card import card, licences
 from hazard_ms.perception.options import CaptureOptions
 from hazard_ms.perception.scene import capture_scene
+from hazard_ms.perception.spare import spare_names
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.foreign.files import sha256_of
 from hazard_ms.tasks import task_of
@@ -65,14 +66,14 @@ def capture(options: CaptureOptions) -> int:
 
 
 def _scenes(options: CaptureOptions) -> tuple[str, ...]:
-    """Names of the scenes: those that `options` name, or all of the split.
+    """Names of the scenes: those that `options` name, or all of the split and the spare ones.
 
     Raises ValueError for a split that the task does not have, and for scenes that are not in it.
     """
     env = options.env
     task = task_of(env.env_id, env.physics, env.hazards or None, env.severity)
     one_of(options.env.split, task.splits, "split")
-    known = tuple(task.scenes(options.env.split))
+    known = (*task.scenes(options.env.split), *spare_names(task.scenes(options.env.split), options.spare))
     for scene in options.scenes:
         one_of(scene, known, f"a scene of the split {env.split!r}")
     return tuple(dict.fromkeys(options.scenes)) or known

@@ -16,6 +16,7 @@ ANGLE = 1.2  # usual field of view of a picture [rad] [ours]
 FOV = 68.755  # the same, rounded [degrees]
 NARROWEST, WIDEST = 10.0, 150.0  # of them [degrees] [ours]
 MOST_SAMPLES = 65536  # samples per pixel [ours]
+SPARED, MOST_SPARE = "train", 10_000  # split that may have spare scenes, and of each place how many [ours]
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,8 @@ class CaptureOptions:
     """Pictures of each scene."""
     scenes: tuple[str, ...] = ()
     """Names of scenes; all of the split if not given."""
+    spare: int = 0
+    """Scenes of each place beyond those of the split train, numbered from 25 on; they belong to no split."""
     size: int = 512
     """Width and height of a picture in pixels."""
     fov: float = FOV
@@ -60,6 +63,9 @@ class CaptureOptions:
 
         self.env.check()
         whole(self.per_scene, 1, MOST, "per_scene")
+        whole(self.spare, 0, MOST_SPARE, "spare")
+        if self.spare and self.env.split != SPARED:
+            raise ValueError(f"spare must be 0 in the split {self.env.split}, got {self.spare}: they are for {SPARED}")
         whole(self.size, SMALLEST, LARGEST, "size")
         if not NARROWEST <= self.fov <= WIDEST:
             raise ValueError(f"fov must be from {NARROWEST:g} to {WIDEST:g} degrees, got {self.fov!r}")

@@ -37,10 +37,12 @@ from hazard_ms.perception.layout import (
     text_of,
 )
 from hazard_ms.perception.options import VARIED, CaptureOptions
+from hazard_ms.perception.spare import file_of, number_of
 from hazard_ms.perception.states import Watch, attributes, stirred
 from hazard_ms.perception.viewpoints import viewpoints
 from hazard_ms.sensing.camera import NOTHING, STRUCTURE, points_of_depth
 from hazard_ms.simulation.drawing.lighting import DRAWN
+from hazard_ms.tasks import task_of
 
 POSES = 8  # pictures of a stop [ours]
 WATCHED_EVERY = 10  # frames, after which what is wet is noted: the flood of the original rises as often
@@ -67,19 +69,21 @@ class Taken(NamedTuple):
 def capture_scene(options: CaptureOptions, scene: str, folder: Path, alive: Callable[[], None]) -> None:
     """Take all pictures of `scene` and write them into `folder`, which is empty; call `alive` at every stop.
 
-    Raises ValueError for a scene that is not of the split, where nothing draws, and where the simulation breaks.
+    Raises ValueError for a scene that is neither of the split nor a spare one, where nothing draws, and where the
+    simulation breaks.
     """
     for name in (*ENDINGS, *([THERMAL] if options.thermal else [])):
         (folder / name).mkdir()
     key = zlib.crc32(f"{options.env.env_id} {options.env.split} {scene}".encode())
     seed = int(np.random.default_rng([key, options.seed]).integers(2**31))
-    episode = options.episode(scene, seed)
-    env: Any = gym.make(episode.env_id, obs_mode="none", **episode.settings).unwrapped
+    task = task_of(options.env.env_id, options.env.physics, options.env.hazards or None, options.env.severity)
+    number = number_of(scene, task.scenes(options.env.split))
+    with file_of(scene, task.scenes(options.env.split)) as played:
+        episode = options.episode(played, seed)
+        env: Any = gym.make(episode.env_id, obs_mode="none", **episode.settings).unwrapped
     try:
-        if scene not in env.choice.scenes:
-            raise ValueError(f"scenes must be of the split {options.env.split!r}, got {scene!r}")
         env.reset(seed=seed, options=episode.reset_options)
-        first = env.choice.scenes.index(scene) * IMAGES_EACH + 1
+        first = number * IMAGES_EACH + 1
         images, rows = [], []
         for image, found in _pictures(env, options, key, folder, first, alive):
             images.append({**image, "scene": scene, "room": room_of(scene), "split": options.env.split, "seed": seed})

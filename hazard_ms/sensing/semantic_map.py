@@ -53,15 +53,17 @@ class SemanticMap:
         cell: float = MAP_CELL,
         cells: int = FEWEST_CELLS,
         hazards: int = 1,
+        ceiling: float = CEILING,
     ) -> None:
         """Begin a map of K = `hazards` hazards with `cells` x `cells` cells of edge `cell` [m].
 
         `centre` [m] is the agent's start; `loose` [B] tells which things can be moved, whose old traces are wiped when
-        they are seen elsewhere. Raises ValueError for a map without cells.
+        they are seen elsewhere; points at the height `ceiling` [m] or higher are dropped. Raises ValueError for a map
+        without cells.
         """
         if cell <= 0.0 or cells < 1:
             raise ValueError(f"cell and cells must be positive, got {cell} m and {cells}")
-        self.cell = cell
+        self.cell, self.ceiling = cell, ceiling
         self.origin = np.round(np.asarray(centre, dtype=np.float64) / cell).astype(np.int64) * cell - cells // 2 * cell
         self.loose = np.asarray(loose, dtype=bool)
         self._stood = ~self.loose  # at the start: a copy, since furniture may float off
@@ -164,7 +166,7 @@ class SemanticMap:
     def _stamp(self, index: int, seen: Sighting) -> None:
         """Mark the cell of a thing, which may be smaller than the spacing of the pixels that mark cells."""
         y, x = self.cell_of(seen.position)
-        if 0 <= y < len(self.explored) and 0 <= x < len(self.explored) and seen.top < CEILING:
+        if 0 <= y < len(self.explored) and 0 <= x < len(self.explored) and seen.top < self.ceiling:
             self.object_id[y, x] = index
             self._light[y, x] = max(float(self._light[y, x]), seen.top)
 
@@ -180,7 +182,7 @@ class SemanticMap:
         points = view.points(row, column)
         x, y = np.floor((points[:, :2] - self.origin) / self.cell).astype(np.int64).T
         size = len(self.explored)
-        keep = (view.depth[row, column] > 0.0) & (points[:, 2] < CEILING) & (label != AGENT)
+        keep = (view.depth[row, column] > 0.0) & (points[:, 2] < self.ceiling) & (label != AGENT)
         keep &= (x >= 0) & (x < size) & (y >= 0) & (y < size)
         if view.labels is None:
             keep &= np.hypot(points[:, 0] - agent[0], points[:, 1] - agent[1]) > OWN_RADIUS

@@ -123,7 +123,8 @@ class SkillEnv:
         cells, hazards = cells_for(self.base.specs[0].room.size), len(self.base.task.hazards)
         carts = [t.name for t in self.base.specs[0].things if t.category in self.base.task.safe_place.containers]
         self._labeller = self._perception.labeller(world, carts)
-        self._seen = SemanticMap(start, self._labeller.loose, cells=cells, hazards=hazards)
+        ceiling = self.base.task.map_ceiling
+        self._seen = SemanticMap(start, self._labeller.loose, cells=cells, hazards=hazards, ceiling=ceiling)
         self.maps = [self._seen]
         self.stage = Stage(self.base, self._seen, self.look, self._labeller)
         self._images: Images | None = None

@@ -73,9 +73,7 @@ class Task:
     splits: tuple[str, ...] = ("train", "test")
     name: str = ""  # "HazardFire-v1"; filled in by the registry, as is the next
     max_frames: int = 1500
-    map_ceiling: float = (
-        2.5  # points at this height or higher are left out of agents' maps [m] (HAZARD utils/model.py:282)
-    )
+    map_ceiling: float = 2.5  # height from which agents' maps leave points out [m] (HAZARD utils/model.py:282)
     # (Situation, environments that begin, [R]) -> None: puts robots elsewhere than their scenes say; None: it does not
     arrange: Callable[[Any, Any], None] | None = None
 

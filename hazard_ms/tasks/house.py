@@ -15,8 +15,8 @@ from hazard_ms.spec.catalogue import MOST_VALUE
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks.rescue import rescue
 
-# Height at which maps of homes end [m] [ours]: under the lintels of doors, 2.03 m with their lining, which would count as
-# obstacles in the doorway, and above all furniture
+# Height at which maps of homes end [m] [ours]: under the lintels of doors, 2.03 m with their lining, which would count
+# as obstacles in the doorway, and above almost all of the furniture
 MAP_CEILING = 1.95
 
 

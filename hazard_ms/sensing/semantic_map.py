@@ -26,6 +26,7 @@ CEILING = 2.5  # points at this height or higher are dropped [m] (HAZARD utils/m
 # Columns of the image that mark cells: with a field of view of 120 degrees one per 0.1 m at 4 m. Rows see the floor at
 # a flat angle, so all rows of the lower half are used, where the floor is, and GRID / 2 of the upper half.
 GRID = 128
+LINTELS = 1.95  # the same where doors divide a place [m] [ours]: lintels, 2.03 m high, would block them in the map
 EYESHOT = 4.0  # distance around a scene's area up to which things are remembered [m] [ours]
 FRESH = 30  # frames for which the traces of furniture that floats are kept [ours]
 OWN_RADIUS = 0.45  # radius of the robot with its arm tucked: without labels, points within it are dropped [m]

@@ -42,6 +42,7 @@ class Brief:
     radius: float  # of the robot's base [m]
     random_seed: int  # seed of the agent's own randomness, derived one-way from that of the episode
     damaged_share: float = DAMAGED_SHARE  # of its value that a target counts when it is rescued damaged
+    several_rooms: bool = False  # whether doors divide the place
 
 
 def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
@@ -58,6 +59,7 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
         robot=robot_name(base.agent.uid),
         radius=base.agent.build.radius,
         random_seed=random_seed(int(base.world.chance.seed[0])),
+        several_rooms=base.task.several_rooms,
     )
 
 

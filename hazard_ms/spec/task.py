@@ -73,7 +73,7 @@ class Task:
     splits: tuple[str, ...] = ("train", "test")
     name: str = ""  # "HazardFire-v1"; filled in by the registry, as is the next
     max_frames: int = 1500
-    map_ceiling: float = 2.5  # height from which agents' maps leave points out [m] (HAZARD utils/model.py:282)
+    several_rooms: bool = False  # doors divide the place: maps end below their lintels, and agents count on walls
     # (Situation, environments that begin, [R]) -> None: puts robots elsewhere than their scenes say; None: it does not
     arrange: Callable[[Any, Any], None] | None = None
 

@@ -15,10 +15,6 @@ from hazard_ms.spec.catalogue import MOST_VALUE
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks.rescue import rescue
 
-# Height at which maps of homes end [m] [ours]: under the lintels of doors, 2.03 m with their lining, which would count
-# as obstacles in the doorway, and above almost all of the furniture
-MAP_CEILING = 1.95
-
 
 def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
     """The task HazardHouseFire-v1 with the physics of a preset. Raises ValueError for unknown names."""
@@ -31,4 +27,4 @@ def hazard_house_flood(physics: str = "paper", severity: str = USUAL) -> Task:
 
 
 def _in_homes(hazards: Sequence[Hazard]) -> Task:
-    return dataclasses.replace(rescue(hazards, "house", MOST_VALUE), map_ceiling=MAP_CEILING)
+    return dataclasses.replace(rescue(hazards, "house", MOST_VALUE), several_rooms=True)

@@ -6,7 +6,9 @@ The predicted value is halved where the target is damaged, or where a hazard thr
 the hazard's level continued along the straight line through the last two sightings. A target that failed repeatedly
 gets a growing cost and is given up at last, so no path is tried for ever. Values count by the belief that the thing is
 what it seems to be, 1 with the truth. A pick-up that met no target does not count as a failure: it ends the belief.
-Searching: walk to the landmark with the most unexplored floor around it, then look around there.
+Searching: walk to the landmark with the most unexplored floor around it, then look around there. Where walls divide
+the place, distances are those of the ways round them, things to which none leads are left out, and landmarks are places
+from which floor that was not seen yet comes into sight.
 """
 
 from __future__ import annotations
@@ -14,6 +16,8 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.agents.base import Agent, distance, known, open_targets
+from hazard_ms.agents.search.lookouts import lookouts
+from hazard_ms.agents.search.stands import stands
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
@@ -49,6 +53,8 @@ class Greedy(Agent):
         self._hazards, self._damaged_share = brief.hazards, brief.damaged_share
         self._failures: dict[str, int] = {}
         self._visits: dict[int, int] = {}
+        self._radius = brief.radius if brief.several_rooms else None  # of the robot where walls count [m]
+        self._looks: list[tuple[float, float]] = []  # where it has looked around [m]
         self._looked_from: tuple[float, float] | None = None  # where it last looked around [m]
         self._look_again = False
         self._landmark: str | None = None  # to which a search is on its way
@@ -62,6 +68,7 @@ class Greedy(Agent):
         self._before = (action, decision.agent_position)
         if action.verb == EXPLORE:
             self._looked_from, self._look_again = decision.agent_position, False
+            self._looks.append(decision.agent_position)
         return action
 
     def _judge(self, decision: Decision) -> None:
@@ -89,11 +96,9 @@ class Greedy(Agent):
         if self._looked_from is None or self._look_again:
             self.note = "look around"
             return Action(EXPLORE)
-        costs = {
-            name: self._cost(decision, name, sighting)
-            for name, sighting in known(decision, open_targets(decision)).items()
-            if self._failures.get(name, 0) < self._give_up
-        }
+        targets = known(decision, open_targets(decision))
+        ways = self._ways(decision, [name for name in targets if self._failures.get(name, 0) < self._give_up])
+        costs = {name: self._cost(decision, name, targets[name], way) for name, way in ways.items()}
         if not costs:
             return self._search(decision)
         arrived = decision.walked_up_to
@@ -115,8 +120,14 @@ class Greedy(Agent):
         self.note = "to the nearest cart"
         return Action(DROP if decision.walked_up_to == nearest else WALK_TO, nearest)
 
-    def _cost(self, decision: Decision, name: str, sighting: Sighting) -> float:
-        way = distance(decision, sighting) + HANDLING
+    def _ways(self, decision: Decision, names: list[str]) -> dict[str, float]:
+        """The distances of known things [m]; where walls count, the lengths of the ways there, if there are any."""
+        if self._radius is None:
+            return {name: distance(decision, decision.map.objects[decision.index(name)]) for name in names}
+        return {name: stand.length for name, stand in stands(decision, names, self._radius).items()}
+
+    def _cost(self, decision: Decision, name: str, sighting: Sighting, way: float) -> float:
+        way += HANDLING
         target = decision.target(name)
         levels, height = _predicted(sighting, decision.frame + way / WALKING), float(sighting.position[2])
         threats = zip(self._hazards, levels, strict=False)  # a level is missing where there was no hazard image
@@ -146,8 +157,14 @@ class Greedy(Agent):
     def _landmarks(self, decision: Decision) -> dict[int, float]:
         """The worth of walking to things in search, by index.
 
-        It is the unexplored floor around them, over the distance and the visits paid.
+        It is the unexplored floor around them, over the distance and the visits paid. Where walls count, it is the
+        share of what was not seen that comes into sight, in the order of `lookouts`.
         """
+        if self._radius is not None:
+            visited = {decision.names[index]: count for index, count in self._visits.items()}
+            avoided = [name for name, count in self._failures.items() if count >= self._give_up]
+            found = lookouts(decision, visited, self._looks, avoided, self._radius)
+            return {decision.index(mark.name): -float(place) for place, mark in enumerate(found)}
         border = frontier(decision.map)
         scores = {}
         for index, sighting in decision.map.objects.items():

@@ -21,6 +21,7 @@ from hazard_ms.episode import rewards, snapshot
 from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
 from hazard_ms.registry import TASKS
+from hazard_ms.registry import affects_agent as acts_on_agent
 from hazard_ms.registry.announce import importable
 from hazard_ms.scenes.choice import SceneChoice, SceneTurns
 from hazard_ms.scenes.files import playing
@@ -59,7 +60,7 @@ class HazardEnv(BuiltEnv):
         physics: str = "paper",
         severity: str = USUAL,
         hazards: Sequence[str] | None = None,
-        affects_agent: bool = False,
+        affects_agent: bool | None = None,
         robot_uids: Any = "fetch",
         deterministic: bool = True,
         scene_every: int = 1,
@@ -77,7 +78,7 @@ class HazardEnv(BuiltEnv):
             physics: Preset of the hazards.
             severity: How strong the hazards of `realistic` are: moderate, severe or extreme.
             hazards: Of HazardCompound-v1: some of the registered hazards.
-            affects_agent: Whether the hazards act on the robot.
+            affects_agent: Whether the hazards act on the robot; None: as the task says, most say no.
             robot_uids: The rescuer, by our name of it or by ManiSkill's; also a tuple of one.
             deterministic: Rebuild the scene for every episode, so that a seed gives the same bits (about 1 s a reset).
             scene_every: With `deterministic=False`, n: every n-th reset without a seed draws a new scene; 0: none does.
@@ -99,7 +100,8 @@ class HazardEnv(BuiltEnv):
         self.choice = SceneChoice(made, split)
         self.task = dataclasses.replace(made, max_frames=TASKS[task].frames(split))
         self._most_frames = self.task.max_frames
-        self.affects_agent = checks.flag(affects_agent, "affects_agent")
+        acts = acts_on_agent(task) if affects_agent is None else affects_agent
+        self.affects_agent = checks.flag(acts, "affects_agent")
         self.deterministic = checks.flag(deterministic, "deterministic")
         self.effects_mode = checks.one_of(effects, EFFECTS, "effects")
         self.lighting = checks.one_of(lighting, LIGHTINGS, "lighting")

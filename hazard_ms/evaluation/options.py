@@ -40,7 +40,7 @@ class EnvOptions:
     robot_uids: Annotated[str, offer(registry.ROBOTS), flag("-r", "--robot-uids", old="robot")] = "fetch"
     """Robot that rescues."""
     affects_agent: bool = False
-    """Let the hazards act on the robot."""
+    """Let the hazards act on the robot, as they always do in homes."""
     lighting: Annotated[str, offer(LIGHTINGS), flag("--lighting", old="light")] = "day"
     """Light of the scene; random is drawn by the seed."""
     effects: Annotated[str, offer(EFFECTS)] = "full"
@@ -72,6 +72,7 @@ class EnvOptions:
         """Keywords of gym.make that change the episode; light and effects only where they are not the usual ones."""
         names = ["split", "physics", *["severity" for _ in self.strength], "robot_uids", "affects_agent"]
         made = {name: getattr(self, name) for name in [*names, *self.unusual("lighting", "effects")]}
+        made["affects_agent"] |= registry.affects_agent(self.env_id)
         return {**made, "hazards": list(self.hazards)} if self.hazards else made
 
     @property
@@ -246,5 +247,4 @@ class SweepOptions:
         setting = [e.env_id, *e.hazards, scenes, e.physics, *e.strength, e.robot_uids] + ["affected"] * e.affects_agent
         setting += [getattr(e, name) for name in e.unusual("lighting", "effects")]
         setting += [f"clock.{e.clock}"] * (e.clock != OFF) + [e.perception] * (e.perception != TRUTH)
-        name = re.sub(r"[^\w.-]+", ".", "-".join([*setting, e.agent]))
-        return self.output / f"{name}-{e.seed:04d}.json"
+        return self.output / (re.sub(r"[^\w.-]+", ".", "-".join([*setting, e.agent])) + f"-{e.seed:04d}.json")

@@ -10,16 +10,14 @@ An entry names what it stands for as text, "package.module:attribute", or holds 
 
 from __future__ import annotations
 
-import hashlib
-import importlib
-import importlib.util
 import re
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from types import MappingProxyType, ModuleType
+from types import MappingProxyType
 from typing import Any, TypeVar
+
+from hazard_ms.registry.loading import load as load
+from hazard_ms.registry.loading import load_plugin as load_plugin
 
 FRAMES = 1500  # of an episode [docs/benchmark.md 1]
 HARD = MappingProxyType({"hard": 900})  # frames of an episode in the split `hard` [ours]
@@ -32,13 +30,15 @@ AGENT_NAME = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)?")
 class TaskEntry:
     """A task: `maker(physics, **options)` gives the `hazard_ms.spec.Task`; episodes last `max_frames` at most.
 
-    `split_frames`: that number for each split in which it differs.
+    `split_frames`: that number for each split in which it differs; `affects_agent`: whether the hazards act on the
+    agent where nobody says whether they shall.
     """
 
     name: str  # the id under which gymnasium knows it, "HazardFire-v1"
     maker: Any
     max_frames: int = FRAMES
     split_frames: tuple[tuple[str, int], ...] = ()
+    affects_agent: bool = False
 
     def frames(self, split: str) -> int:
         """The greatest length of an episode in a split [frames]."""
@@ -93,11 +93,16 @@ _followers: list[tuple[Callable[[Entry], None], Callable[[Entry], None]]] = []
 
 
 def register_task(
-    name: str, maker: Any, max_frames: int = FRAMES, split_frames: Mapping[str, int] | None = None
+    name: str,
+    maker: Any,
+    max_frames: int = FRAMES,
+    split_frames: Mapping[str, int] | None = None,
+    affects_agent: bool = False,
 ) -> None:
     """Add a task, and make it known to gymnasium and ManiSkill.
 
-    `max_frames`: the greatest length of an episode; `split_frames`: that for each split in which it differs.
+    `max_frames`: the greatest length of an episode; `split_frames`: that for each split in which it differs;
+    `affects_agent`: whether the hazards act on the agent unless gym.make says otherwise.
 
     Raises ValueError for a name that no environment can have, one that is taken, and a wrong number of frames.
     """
@@ -105,7 +110,12 @@ def register_task(
     for what, frames in (("max_frames", max_frames), *((f"split_frames[{s!r}]", n) for s, n in others)):
         if isinstance(frames, bool) or not isinstance(frames, int) or frames < 1:
             raise ValueError(f"{what} must be a whole number from 1, got {frames!r}")
-    _add(_tasks, TaskEntry(name, maker, max_frames, others), TASK_NAME, "'Name-v0'")
+    _add(_tasks, TaskEntry(name, maker, max_frames, others, affects_agent), TASK_NAME, "'Name-v0'")
+
+
+def affects_agent(name: str) -> bool:
+    """Whether hazards act on the agent in the task called `name` where nobody says whether they shall."""
+    return name in _tasks and _tasks[name].affects_agent
 
 
 def register_hazard(name: str, maker: Any, looks: Any = None, cases: Any = (), charts: Any = None) -> None:
@@ -149,50 +159,6 @@ def find(table: Mapping[str, _Kind], name: Any, what: str) -> _Kind:
     return table[one_of(name, table, what)]
 
 
-def load(what: Any) -> Any:
-    """The object that `what` names as "package.module:attribute"; anything but text is returned as it is.
-
-    Raises ValueError if there is no such module or attribute.
-    """
-    if not isinstance(what, str):
-        return what
-    module_name, _, attribute = what.partition(":")
-    if not module_name or not attribute:
-        raise ValueError(f"an entry must be package.module:attribute, got {what!r}")
-    try:
-        return getattr(importlib.import_module(module_name), attribute)
-    except ModuleNotFoundError as missing:
-        raise ValueError(f"{what!r} must name a module that can be imported; {missing}") from missing
-    except AttributeError as missing:
-        raise ValueError(f"{what!r} must name an attribute of {module_name}; {missing}") from missing
-
-
-def load_plugin(text: str) -> ModuleType:
-    """Run a third party's module, which registers what it brings: a file "folder/name.py", or "package.module".
-
-    A file is run once, however often it is loaded. Raises ValueError if there is no such file or module.
-    """
-    if not text.endswith(".py"):
-        try:
-            return importlib.import_module(text)
-        except (ModuleNotFoundError, TypeError) as missing:
-            raise ValueError(f"load must be a file NAME.py or a module, got {text!r}: {missing}") from missing
-    path = Path(text).resolve()
-    name = f"hazard_ms_plugin_{path.stem}_{hashlib.sha256(str(path).encode()).hexdigest()[:8]}"
-    if name in sys.modules:
-        return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None or not path.is_file():
-        raise ValueError(f"load must be a file that exists, got {text!r}")
-    module = sys.modules[name] = importlib.util.module_from_spec(spec)
-    try:
-        spec.loader.exec_module(module)
-    except BaseException:
-        del sys.modules[name]
-        raise
-    return module
-
-
 def _add(table: dict[str, Any], entry: Entry, form: re.Pattern[str] = NAME, shown: str = "'name'") -> None:
     if not isinstance(entry.name, str) or not form.fullmatch(entry.name):
         raise ValueError(f"a registered name must look like {shown}, got {entry.name!r}")
@@ -209,6 +175,8 @@ register_task("HazardFire-v1", "hazard_ms.tasks.fire:hazard_fire", FRAMES, HARD)
 register_task("HazardFlood-v1", "hazard_ms.tasks.flood:hazard_flood", FRAMES, HARD)
 register_task("HazardWind-v1", "hazard_ms.tasks.wind:hazard_wind", 3000, {"hard": 1800})
 register_task("HazardCompound-v1", "hazard_ms.tasks.compound:hazard_compound", FRAMES, HARD)
+register_task("HazardHouseFire-v1", "hazard_ms.tasks.house:hazard_house_fire", 3000, affects_agent=True)
+register_task("HazardHouseFlood-v1", "hazard_ms.tasks.house:hazard_house_flood", 3000, affects_agent=True)
 
 register_hazard(
     "fire",

@@ -15,7 +15,7 @@ from hazard_ms.assets.index import asset
 from hazard_ms.scenes.boxes import box_of
 from hazard_ms.scenes.floor import FLOOR_CELL, Grid, boxes_of, cell_of, cells, free_for, halls
 from hazard_ms.spec import Body, Build, SceneSpec, Vec2
-from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.catalogue import value_of
 from hazard_ms.spec.robot import GRASP_REACH
 
 PUSHED_HEIGHT = 0.15  # things up to this height are pushed aside, as the robots' paths have it [m] [ours]
@@ -34,8 +34,8 @@ def reachable(spec: SceneSpec, build: Build) -> tuple[str, ...]:
 
 def share(spec: SceneSpec, names: tuple[str, ...]) -> float:
     """The part of the value of all targets of a scene, 0 to 1, that the targets called `names` have."""
-    whole = sum(CATEGORIES[t.category].value for t in spec.targets)
-    return sum(CATEGORIES[t.category].value for t in spec.targets if t.name in names) / whole
+    whole = sum(value_of(t) for t in spec.targets)
+    return sum(value_of(t) for t in spec.targets if t.name in names) / whole
 
 
 def floor_of(spec: SceneSpec, radius: float) -> Grid:

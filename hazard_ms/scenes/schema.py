@@ -16,7 +16,7 @@ from collections import Counter
 from hazard_ms.scenes.shell import shell
 from hazard_ms.scenes.walls import WALLS
 from hazard_ms.spec import Body, Fixture, SceneSpec
-from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.catalogue import CATEGORIES, LEAST_VALUE, MOST_VALUE
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.foreign import plain
 
@@ -38,9 +38,11 @@ def to_json(spec: SceneSpec) -> str:
     for name in ("second_flood_side", "parameters"):  # few scenes have any
         if not data[name]:
             del data[name]
-    for opening in data["room"]["openings"]:
-        if opening["open"] is None:
-            del opening["open"]
+    if not data["room"]["areas"]:
+        del data["room"]["areas"]
+    for what, name in (*((o, "open") for o in data["room"]["openings"]), *((b, "value") for b in data["bodies"])):
+        if what[name] is None:
+            del what[name]
     return json.dumps(data, indent=1, allow_nan=False) + "\n"
 
 
@@ -76,6 +78,10 @@ def check(spec: SceneSpec) -> None:
         for what, number in (("wind resistance", b.wind_resistance), ("friction", b.friction)):
             if number is not None and number < 0.0:
                 raise ValueError(f"{spec.name}: {what} of {b.name} must be None or at least 0, got {number}")
+        if b.value is not None and not LEAST_VALUE <= b.value <= MOST_VALUE:
+            raise ValueError(
+                f"{spec.name}: value of {b.name} must be None or {LEAST_VALUE:g} to {MOST_VALUE:g}, got {b.value}"
+            )
     for c in spec.target_categories:
         one_of(c, CATEGORIES, f"{spec.name}: target category")
     one_of(spec.flood_side, WALLS, f"{spec.name}: flood_side")
@@ -98,6 +104,9 @@ def _check_room(spec: SceneSpec) -> None:
         if not low <= value <= high:
             raise ValueError(f"{spec.name}: {what} must be {low:g} to {high:g} m, got {value}")
     shell(room)  # refuses openings that do not fit, and unknown materials
+    for a in room.areas:
+        if not all(0.0 <= low < high <= edge for low, high, edge in zip(a.min, a.max, room.size, strict=True)):
+            raise ValueError(f"{spec.name}: area {a.name} must be within the room of {room.size} m, got {a}")
     for what, (x, y) in (("agent start", spec.agent_start.position), *(("fire", f) for f in spec.fires)):
         if not (0.0 <= x <= room.size[0] and 0.0 <= y <= room.size[1]):
             raise ValueError(f"{spec.name}: {what} must be within the room of {room.size} m, got ({x}, {y})")

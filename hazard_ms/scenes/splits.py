@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from hazard_ms.scenes.generate import indoor, outdoor
+from hazard_ms.scenes.generate.house import homes
 from hazard_ms.spec import SceneSpec
 from hazard_ms.spec.checks import one_of
 
@@ -34,6 +35,14 @@ FAMILIES: dict[str, Family] = {
     ),
     "outdoor": Family(
         {"train": ("street", "crossing", "park"), "test": ("parking",), "hard": ("parking_hard",)}, outdoor.make
+    ),
+    "house": Family(
+        {
+            "train": tuple(f"house_{number:02d}" for number in range(1, 41)),
+            "test": ("house_test_1", "house_test_2"),
+            homes.HELD_OUT: ("house_held_out_1", "house_held_out_2"),
+        },
+        homes.make,
     ),
 }
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sapien.render import RenderBodyComponent, RenderShapeBox
 
-from hazard_ms.sensing.semantic_map import CEILING, SemanticMap
+from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.simulation.building import partitions
 from hazard_ms.spec import SceneSpec
 
@@ -28,7 +28,7 @@ FACES = np.array([face for a, b, c, d in SIDES for face in ((a, b, c), (a, c, d)
 def told(seen: SemanticMap, spec: SceneSpec, fixtures: Iterable[Any]) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     """The heights [m] of all that stays in the scene `spec`, and which cells lie in it, [Y, X] each, as in `seen`.
 
-    `fixtures`: their actors. Heights are those of the highest points below CEILING; 0 where nothing stays.
+    `fixtures`: their actors. Heights are those of the highest points below the map's ceiling; 0 where nothing stays.
     """
     y, x = np.mgrid[: len(seen.explored), : len(seen.explored)]
     centre, room = seen.centre_of(y, x), spec.room
@@ -38,11 +38,11 @@ def told(seen: SemanticMap, spec: SceneSpec, fixtures: Iterable[Any]) -> tuple[N
     height: NDArray[np.float32] = np.zeros(within.shape, np.float32)
     if not room.open_air:
         walled = ((centre < half - JUST) | (centre > size - half + JUST)).any(-1)
-        height[within & walled] = np.nextafter(np.float32(min(room.height, CEILING)), np.float32(0.0))
+        height[within & walled] = np.nextafter(np.float32(min(room.height, seen.ceiling)), np.float32(0.0))
     for triangles in (*map(_triangles, partitions(spec)), *(t for f in fixtures for t in _surfaces(f))):
         for points in _points(triangles, seen.cell / SAMPLES):
             column, row = np.floor((points[:, :2] - seen.origin) / seen.cell).astype(np.int64).T
-            kept = (points[:, 2] < CEILING) & (points[:, 2] > 0.0)
+            kept = (points[:, 2] < seen.ceiling) & (points[:, 2] > 0.0)
             kept &= (np.minimum(row, column) >= 0) & (np.maximum(row, column) < len(height))
             np.maximum.at(height, (row[kept], column[kept]), points[kept, 2].astype(np.float32))
     return height, within

@@ -26,6 +26,7 @@ CEILING = 2.5  # points at this height or higher are dropped [m] (HAZARD utils/m
 # Columns of the image that mark cells: with a field of view of 120 degrees one per 0.1 m at 4 m. Rows see the floor at
 # a flat angle, so all rows of the lower half are used, where the floor is, and GRID / 2 of the upper half.
 GRID = 128
+LINTELS = 1.95  # the same where doors divide a place [m] [ours]: lintels, 2.03 m high, would block them in the map
 EYESHOT = 4.0  # distance around a scene's area up to which things are remembered [m] [ours]
 FRESH = 30  # frames for which the traces of furniture that floats are kept [ours]
 OWN_RADIUS = 0.45  # radius of the robot with its arm tucked: without labels, points within it are dropped [m]
@@ -53,15 +54,17 @@ class SemanticMap:
         cell: float = MAP_CELL,
         cells: int = FEWEST_CELLS,
         hazards: int = 1,
+        ceiling: float = CEILING,
     ) -> None:
         """Begin a map of K = `hazards` hazards with `cells` x `cells` cells of edge `cell` [m].
 
         `centre` [m] is the agent's start; `loose` [B] tells which things can be moved, whose old traces are wiped when
-        they are seen elsewhere. Raises ValueError for a map without cells.
+        they are seen elsewhere; points at the height `ceiling` [m] or higher are dropped. Raises ValueError for a map
+        without cells.
         """
         if cell <= 0.0 or cells < 1:
             raise ValueError(f"cell and cells must be positive, got {cell} m and {cells}")
-        self.cell = cell
+        self.cell, self.ceiling = cell, ceiling
         self.origin = np.round(np.asarray(centre, dtype=np.float64) / cell).astype(np.int64) * cell - cells // 2 * cell
         self.loose = np.asarray(loose, dtype=bool)
         self._stood = ~self.loose  # at the start: a copy, since furniture may float off
@@ -164,7 +167,7 @@ class SemanticMap:
     def _stamp(self, index: int, seen: Sighting) -> None:
         """Mark the cell of a thing, which may be smaller than the spacing of the pixels that mark cells."""
         y, x = self.cell_of(seen.position)
-        if 0 <= y < len(self.explored) and 0 <= x < len(self.explored) and seen.top < CEILING:
+        if 0 <= y < len(self.explored) and 0 <= x < len(self.explored) and seen.top < self.ceiling:
             self.object_id[y, x] = index
             self._light[y, x] = max(float(self._light[y, x]), seen.top)
 
@@ -180,7 +183,7 @@ class SemanticMap:
         points = view.points(row, column)
         x, y = np.floor((points[:, :2] - self.origin) / self.cell).astype(np.int64).T
         size = len(self.explored)
-        keep = (view.depth[row, column] > 0.0) & (points[:, 2] < CEILING) & (label != AGENT)
+        keep = (view.depth[row, column] > 0.0) & (points[:, 2] < self.ceiling) & (label != AGENT)
         keep &= (x >= 0) & (x < size) & (y >= 0) & (y < size)
         if view.labels is None:
             keep &= np.hypot(points[:, 0] - agent[0], points[:, 1] - agent[1]) > OWN_RADIUS

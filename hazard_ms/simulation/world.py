@@ -22,7 +22,7 @@ from hazard_ms.simulation.jet import Jet
 from hazard_ms.simulation.openings import Openings
 from hazard_ms.simulation.walls import Walls
 from hazard_ms.spec import Body, Build, SceneSpec
-from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.catalogue import CATEGORIES, value_of
 
 
 @dataclass
@@ -127,7 +127,7 @@ class World:
             world.category[e, :n] = torch.tensor([[*CATEGORIES].index(t.category) for t in row], device=device)
             wanted = [isinstance(t, Body) and t.category in spec.target_categories for t in row]
             world.target[e, :n] = torch.tensor(wanted, device=device)
-            world.value[e, :n] = torch.tensor([float(CATEGORIES[t.category].value) for t in row], device=device)
+            world.value[e, :n] = torch.tensor([value_of(t) for t in row], device=device)
             base = torch.tensor([t.position for t in row], device=device)
             world.position[e, :n] = cls.centre_of(base, world.rotation[e, :n], world.extent[e, :n])
         world.rotation[..., 0] += (~world.exists).float()  # padding: the identity rotation

@@ -43,6 +43,7 @@ class Brief:
     random_seed: int  # seed of the agent's own randomness, derived one-way from that of the episode
     mitigations: tuple[str, ...] = ()  # verbs of the task beyond the six of the benchmark
     damaged_share: float = DAMAGED_SHARE  # of its value that a target counts when it is rescued damaged
+    several_rooms: bool = False  # whether doors divide the place
 
 
 def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
@@ -60,6 +61,7 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
         radius=base.agent.build.radius,
         random_seed=random_seed(int(base.world.chance.seed[0])),
         mitigations=base.task.mitigations,
+        several_rooms=base.task.several_rooms,
     )
 
 

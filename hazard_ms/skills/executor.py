@@ -16,7 +16,7 @@ from hazard_ms.robots import skill_control_mode
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.detection.perception import TRUTH, camera_of
 from hazard_ms.sensing.detection.perception import perception as perception_of
-from hazard_ms.sensing.semantic_map import SemanticMap, cells_for
+from hazard_ms.sensing.semantic_map import CEILING, LINTELS, SemanticMap, cells_for
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.brief import Brief, brief_of
 from hazard_ms.skills.context import LowLevel, Skill, Stage
@@ -114,7 +114,8 @@ class SkillEnv:
         cells, hazards = cells_for(self.base.specs[0].room.size), len(self.base.task.hazards)
         carts = [t.name for t in self.base.specs[0].things if t.category in self.base.task.safe_place.containers]
         self._labeller = self._perception.labeller(world, carts)
-        self._seen = SemanticMap(start, self._labeller.loose, cells=cells, hazards=hazards)
+        ceiling = LINTELS if self.base.task.several_rooms else CEILING
+        self._seen = SemanticMap(start, self._labeller.loose, cells=cells, hazards=hazards, ceiling=ceiling)
         self.maps = [self._seen]
         self.stage = Stage(self.base, self._seen, self.look, self._labeller)
         self.stage.maps = self.maps

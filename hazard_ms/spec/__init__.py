@@ -4,6 +4,7 @@ from hazard_ms.spec.robot import Build
 from hazard_ms.spec.scene import (
     UPRIGHT,
     AgentStart,
+    Area,
     Body,
     Fixture,
     Opening,
@@ -21,6 +22,7 @@ from hazard_ms.spec.task import Bound, Goal, Level, Quantity, SafePlace, Task, T
 __all__ = [
     "UPRIGHT",
     "AgentStart",
+    "Area",
     "Body",
     "Bound",
     "Build",

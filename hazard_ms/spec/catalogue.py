@@ -12,8 +12,10 @@ from dataclasses import dataclass
 
 from hazard_ms.spec import catalogue_original as original
 from hazard_ms.spec.catalogue_rows import FIXTURES, IMMOVABLE, OBJECTS, Row
+from hazard_ms.spec.scene import Body, Fixture
 
 HIGH_VALUE, LOW_VALUE = 5, 1  # HAZARD challenge.py:88
+LEAST_VALUE, MOST_VALUE = 1.0, 20.0  # that a scene may give to a single thing [ours]: of targets in homes
 DAMAGED_SHARE = 0.5  # of its value that a target keeps when it is rescued damaged (docs/benchmark.md 4)
 
 SOURCES = {
@@ -164,3 +166,9 @@ def category(name: str) -> Category:
     if name not in CATEGORIES:
         raise ValueError(f"category must be one of {', '.join(CATEGORIES)}, got {name!r:.100}")
     return CATEGORIES[name]
+
+
+def value_of(thing: Body | Fixture) -> float:
+    """What a thing is worth if it is rescued: its own value where its scene gives one, else its category's."""
+    own = thing.value if isinstance(thing, Body) else None
+    return float(CATEGORIES[thing.category].value if own is None else own)

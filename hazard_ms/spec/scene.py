@@ -28,6 +28,7 @@ class Body:
     mass: float | None = None  # [kg]; None: the asset's
     wind_resistance: float | None = None  # [-]; None: the category's
     friction: float | None = None  # [-] Coulomb; None: the usual one
+    value: float | None = None  # if it is rescued; None: the category's
 
 
 @dataclass(frozen=True)
@@ -83,6 +84,19 @@ class Patch:
 
 
 @dataclass(frozen=True)
+class Area:
+    """A rectangle of the floor with a name: one of the rooms of a home. Nothing follows from it in the simulation."""
+
+    name: str  # what it is for and a number, "kitchen_1"; "hall"
+    min: Vec2  # [m]
+    max: Vec2  # [m]
+
+    def holds(self, place: tuple[float, ...]) -> bool:
+        """Whether a place x, y [m] lies in it."""
+        return all(low <= at <= high for low, at, high in zip(self.min, place, self.max, strict=False))
+
+
+@dataclass(frozen=True)
 class Room:
     """A rectangular room, or a piece of open ground, with its south-west floor corner at the origin."""
 
@@ -95,6 +109,7 @@ class Room:
     patches: tuple[Patch, ...] = ()
     open_air: bool = False  # no walls and no ceiling: the ground goes on
     beyond: float = 0.0  # how far things can be carried over every side of `size`, in the open [m]
+    areas: tuple[Area, ...] = ()  # the rooms of a home
 
 
 @dataclass(frozen=True)

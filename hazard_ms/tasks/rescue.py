@@ -9,6 +9,7 @@ from hazard_ms.episode.safe_places import BAG, CART
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.scenes import splits
 from hazard_ms.spec import Goal, Task, Term
+from hazard_ms.spec.catalogue import HIGH_VALUE
 from hazard_ms.tasks.terms import terms
 
 INFO = (
@@ -27,10 +28,13 @@ RESCUE = Goal(  # it cannot be lost: damaged targets can still be saved, for hal
 )
 
 
-def rescue(hazards: Sequence[Hazard]) -> Task:
-    """The rescue from `hazards`: in rooms and into the bag, or in the open and into carts if one of them needs that."""
+def rescue(hazards: Sequence[Hazard], family: str = "", most_value: float = HIGH_VALUE) -> Task:
+    """The rescue from `hazards`: in rooms and into the bag, or in the open and into carts if one of them needs that.
+
+    `family`: of the scenes; empty: the usual one. `most_value`: highest value of a target.
+    """
     open_air = any(h.open_air for h in hazards)
-    family = "outdoor" if open_air else "indoor"
+    family = family or ("outdoor" if open_air else "indoor")
     place = CART if open_air else BAG
     names = " and ".join(h.name for h in hazards)
     return Task(
@@ -39,7 +43,7 @@ def rescue(hazards: Sequence[Hazard]) -> Task:
         hazards=tuple(hazards),
         goal=RESCUE,
         safe_place=place,
-        observations=terms(hazards),
+        observations=terms(hazards, most_value),
         text=f"Put every target into {place.text} before the {names} can damage it or carry it away.",
         splits=splits.split_names(family),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from functools import partial
@@ -13,11 +14,10 @@ from torch import Tensor
 from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.spec import Term
-from hazard_ms.spec.catalogue import LIMITS
+from hazard_ms.spec.catalogue import HIGH_VALUE, LIMITS
 
 PROPERTIES = ("flammable", "waterproof", "ignition_temperature")  # attributes of the catalogue; the last [C]
 HOTTEST = float(LIMITS["ignition_temperature"][1])  # highest ignition temperature [C]
-MOST_VALUE = 5.0  # highest value of a target (docs/benchmark.md 1)
 TURN = 2.0 * math.pi  # a heading lies between -TURN and TURN, as PhysX wraps the base's joint [rad]
 
 
@@ -73,7 +73,7 @@ AGENT_TERMS = (
     Term("frame", lambda s: s.world.frame[:, None], "frames since the start of the episode", (1,), "frame", low=0.0),
 )
 TARGET_TERMS = (
-    _target("value", lambda s: s.world.value, "what it is worth", low=0.0, high=MOST_VALUE, constant=True),
+    _target("value", lambda s: s.world.value, "what it is worth", low=0.0, high=float(HIGH_VALUE), constant=True),
     _target(
         "properties",
         properties,
@@ -101,8 +101,12 @@ TARGET_TERMS = (
 )
 
 
-def terms(hazards: Sequence[Hazard]) -> tuple[Term, ...]:
-    """The entries about the agent and the targets, and the level of each of `hazards` at the targets."""
+def terms(hazards: Sequence[Hazard], most_value: float = HIGH_VALUE) -> tuple[Term, ...]:
+    """The entries about the agent and the targets, and the level of each of `hazards` at the targets.
+
+    `most_value`: highest value of a target (docs/benchmark.md 1).
+    """
+    value, *others = TARGET_TERMS
     levels = (
         _target(
             h.name,
@@ -114,4 +118,4 @@ def terms(hazards: Sequence[Hazard]) -> tuple[Term, ...]:
         )
         for h in hazards
     )
-    return (*AGENT_TERMS, *TARGET_TERMS, *levels)
+    return (*AGENT_TERMS, dataclasses.replace(value, high=float(most_value)), *others, *levels)

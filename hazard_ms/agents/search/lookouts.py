@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from hazard_ms.agents.search.memory import Place
+from hazard_ms.agents.search.stands import in_sight, stands
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.skills.decision import Decision
 from hazard_ms.skills.options.landmarks import MOST_VISITS, WALKABLE
@@ -22,6 +23,7 @@ HIDDEN = 0.3  # share of the targets not seen yet that a look at all this floor 
 AGAIN = 0.3  # what a look shows from beside where one was, as a share of what it would have shown first [ours]
 BARRED = 0.5  # share of the targets out of sight from a look nearby that were not there either [ours]
 LITTLE = 0.05  # least share of it that a place must show to be worth a search [ours]
+EVERY = 2  # cells of the map, along each side, for which one is looked at where walls count [ours]
 ANEW = 1.5  # distance between places from which things are seen from different sides [m] [ours]
 
 
@@ -35,22 +37,38 @@ class Lookout:
 
 
 def lookouts(
-    decision: Decision, visits: Mapping[str, int], looks: Sequence[Place], avoided: Sequence[str]
+    decision: Decision,
+    visits: Mapping[str, int],
+    looks: Sequence[Place],
+    avoided: Sequence[str],
+    radius: float | None = None,
 ) -> tuple[Lookout, ...]:
     """The best places to search: those where most may be found for their distance, each counting what others leave.
 
     `visits`: how often each thing was walked to in search; `looks`: where the agent has looked around [m]; things in
     `avoided` are left out. Where no place promises anything, they are the nearest things that were not visited.
+    `radius` of the robot [m] where walls divide the place: they hide what is behind them, and ways lead round them.
     """
-    floor, weight = _searchable(decision.map, looks)
     things = _things(decision, [*avoided, *(name for name, count in visits.items() if count >= MOST_VISITS)])
+    if radius is None:
+        floor, weight = _searchable(decision.map, looks)
+    else:
+        floor, weight = _searchable(decision.map, looks, EVERY)
+        ends = stands(decision, [name for name, _ in things], radius)
+        things = [thing for thing in things if thing[0] in ends]
     if not len(floor) or not things:
         return _unvisited(things, visits)
     names, places = [name for name, _ in things], np.array([place for _, place in things])
-    shows = (np.hypot(*np.moveaxis(places[:, None] - floor, -1, 0)) < SIGHT) * (weight / weight.sum())
+    away = np.hypot(*(places - decision.agent_position).T)
+    if radius is None:
+        seen = np.hypot(*np.moveaxis(places[:, None] - floor, -1, 0)) < SIGHT
+    else:
+        seen = np.array([in_sight(decision.map, ends[name].place, floor, SIGHT) for name in names])
+        away = np.array([ends[name].length for name in names])
+    shows = seen * (weight / weight.sum())
     again = np.array([sum(np.hypot(*(place - look)) < ANEW for look in looks) for place in places])
     shows *= (AGAIN**again)[:, None]
-    ease = 1.0 / (1.0 + np.hypot(*(places - decision.agent_position).T))
+    ease = 1.0 / (1.0 + away)
     chosen: list[Lookout] = []
     for _ in range(MOST):
         share = shows.sum(axis=1)
@@ -63,17 +81,22 @@ def lookouts(
     return tuple(chosen) or _unvisited(things, visits)
 
 
-def _searchable(seen: SemanticMap, looks: Sequence[Place]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _searchable(
+    seen: SemanticMap, looks: Sequence[Place], every: int = 0
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The middles of floor [m], [P, 2], and how likely a target that was not seen is there, relative to each other [P].
 
     Floor that was seen counts HIDDEN of that which was not. Each further look from within SIGHT multiplies it by that.
+    With `every`, only one in so many cells along each side, and only looks past which no wall stands.
     """
     unseen = unseen_floor(seen)
     cells = unseen | (seen.explored & (seen.height < WALKABLE))
+    if every:
+        cells &= (np.indices(cells.shape) % every == 0).all(axis=0)
     points, new = seen.centre_of(*np.nonzero(cells)), unseen[cells]
     near = np.zeros(len(points), int)
     for place in looks:
-        near += np.hypot(*(points - place).T) < SIGHT
+        near += in_sight(seen, place, points, SIGHT) if every else np.hypot(*(points - place).T) < SIGHT
     return points, np.where(new, BARRED**near, HIDDEN ** np.maximum(near, 1))
 
 

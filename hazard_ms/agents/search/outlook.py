@@ -117,9 +117,12 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
     missing, worth = float(len(unseen)), sum(t.value for t in unseen)
     if any(doubts):
         missing, worth = _missing(brief, decision, seen, doubts)
+    walls = brief.radius if brief.several_rooms else None
     wanted = missing >= LEAST_MISSING or (held and not carts)
     places = (
-        lookouts(decision, memory.visits, memory.looks, [*given_up, *_failed_ways(failures, seen)]) if wanted else ()
+        lookouts(decision, memory.visits, memory.looks, [*given_up, *_failed_ways(failures, seen)], walls)
+        if wanted
+        else ()
     )
     targets = [*held, *seen]
     frames = _frames(decision, memory, targets, places, carts, weights.loyalty, brief.radius)

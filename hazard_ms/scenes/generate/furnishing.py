@@ -12,7 +12,7 @@ from hazard_ms.scenes.generate.draw import Draw
 from hazard_ms.scenes.generate.layout import Layout, RoomPart
 from hazard_ms.scenes.generate.placement import place
 from hazard_ms.scenes.walls import runs_along_x, wall_length
-from hazard_ms.spec import Fixture, Opening, Partition, Room
+from hazard_ms.spec import Area, Fixture, Opening, Partition, Room
 
 DOORWAY_SIZE = (
     1.2,
@@ -31,13 +31,14 @@ def furnish(layout: Layout, draw: Draw) -> Arrangement:
     for k, part in enumerate(layout.parts):
         bare = Room((round(draw.uniform(*part.width), 1), depth), layout.height, floor, wall)
         ways = [("west", at) for at in doorways[k - 1 : k] if k] + [("east", at) for at in doorways[k : k + 1]]
-        openings = (*_holes(part, bare, draw), *(Opening("doorway", side, at, *DOORWAY_SIZE) for side, at in ways))
+        openings = (*holes(part, bare, draw), *(Opening("doorway", side, at, *DOORWAY_SIZE) for side, at in ways))
         made.append(_furnished(layout, part, replace(bare, openings=openings), draw))
     whole = _joined(made, draw)
     return mirrored(whole, draw.whole(0, 1) == 1, draw.whole(0, 1) == 1) if layout.mirror else whole
 
 
-def _holes(part: RoomPart, room: Room, draw: Draw) -> tuple[Opening, ...]:
+def holes(part: RoomPart, room: Room, draw: Draw) -> tuple[Opening, ...]:
+    """The windows and doors of a part in the outer walls of its own room, as drawn."""
     centres = [round(draw.uniform(*h.reach) * wall_length(room, h.wall), 2) for h in part.holes]
     return tuple(
         Opening(h.kind, h.wall, at, h.width, h.height, h.sill) for h, at in zip(part.holes, centres, strict=True)
@@ -76,10 +77,11 @@ def _joined(parts: list[Arrangement], draw: Draw) -> Arrangement:
             )
             west = round(west + PARTITION_THICKNESS, 4)
     room = replace(first, size=(west, first.size[1]), openings=tuple(openings), partitions=tuple(partitions))
-    return _arranged(room, draw, fixtures)
+    return arranged(room, draw, fixtures)
 
 
-def _arranged(room: Room, draw: Draw, fixtures: list[Fixture]) -> Arrangement:
+def arranged(room: Room, draw: Draw, fixtures: list[Fixture]) -> Arrangement:
+    """A whole room with its pieces, from which others keep clear."""
     occupied = [boxes.box_of(f, asset(f.asset).extent) for f in fixtures]
     return Arrangement(room, draw, fixtures, occupied, [space_before(room, o) for o in room.openings])
 
@@ -92,15 +94,23 @@ def mirrored(made: Arrangement, sideways: bool, lengthways: bool) -> Arrangement
             length = room.size[0] if axis == "x" else room.size[1]
             openings = tuple(_mirrored_opening(room, o, axis, length) for o in room.openings)
             partitions = tuple(p if p.axis == axis else replace(p, at=round(length - p.at, 4)) for p in room.partitions)
-            room = replace(room, openings=openings, partitions=partitions)
+            areas = tuple(_mirrored_area(a, axis, length) for a in room.areas)
+            room = replace(room, openings=openings, partitions=partitions, areas=areas)
             fixtures = [_mirrored_piece(f, axis, length) for f in fixtures]
-    return _arranged(room, made.draw, fixtures)
+    return arranged(room, made.draw, fixtures)
 
 
 def _mirrored_opening(room: Room, o: Opening, axis: str, length: float) -> Opening:
     if runs_along_x(room, o.wall) == (axis == "x"):
         return replace(o, centre=round(length - o.centre, 4))
     return replace(o, wall=OPPOSITE.get(o.wall, o.wall))
+
+
+def _mirrored_area(a: Area, axis: str, length: float) -> Area:
+    ((x0, y0), (x1, y1)) = a.min, a.max
+    if axis == "x":
+        return replace(a, min=(round(length - x1, 4), y0), max=(round(length - x0, 4), y1))
+    return replace(a, min=(x0, round(length - y1, 4)), max=(x1, round(length - y0, 4)))
 
 
 def _mirrored_piece(f: Fixture, axis: str, length: float) -> Fixture:

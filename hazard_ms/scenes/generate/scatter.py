@@ -112,7 +112,7 @@ class Scatter:
             x, y, z = self._floor_point(self.draw) if surface is None else self._point_on(surface, extent)
             position = (round(x, 4), round(y, 4), round(z + RESTING_HEIGHT, 4))
             body = Body(name, category, model, position, boxes.turned(yaw))
-            if self._add(body, boxes.box_of(body, extent), owner, surface):
+            if self.add(body, boxes.box_of(body, extent), owner, surface):
                 return True
         return False
 
@@ -133,7 +133,7 @@ class Scatter:
                 there = replace(body, position=position, rotation=boxes.turned(draw.uniform(-math.pi, math.pi)))
                 box = boxes.box_of(there, extent)
                 near = any(float(box.distance(*np.array(middle[:2]))) < radius for middle, radius in clear)
-                if not near and self._add(there, box, -1, None):
+                if not near and self.add(there, box, -1, None):
                     break
             else:
                 self.bodies, self.boxes, self._rows = kept
@@ -170,7 +170,7 @@ class Scatter:
         x, y = surface.point(self.draw.uniform(-spare[0], spare[0]), self.draw.uniform(-spare[1], spare[1]))
         return x, y, surface.z
 
-    def _add(self, body: Body, box: Box, owner: int, surface: Surface | None) -> bool:
+    def add(self, body: Body, box: Box, owner: int, surface: Surface | None) -> bool:
         """Keep the thing if it touches nothing, stands firmly, can be reached and leaves the robot its ways."""
         others = self._rows if owner < 0 else np.delete(self._rows, owner, axis=0)
         w, d = self.size

@@ -1,0 +1,159 @@
+"""Whole scenes of homes: plans, objects, targets and their values, extinguishers, hazards and the rescuer's start.
+
+The scenes of the split `held_out` are drawn from a hash of their names (`seed_of`), so that no change to the names or
+the number of the others can bring one of them into another split; `tests/scenes/test_houses.py` pins what they are.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+
+from hazard_ms.assets.index import asset
+from hazard_ms.scenes import boxes
+from hazard_ms.scenes.floor import Grid, cells, doorways, free_for, take
+from hazard_ms.scenes.generate.arrangement import MIN_GAP, RESTING_HEIGHT, NoPlaceError, models_of
+from hazard_ms.scenes.generate.draw import STREAM, Draw
+from hazard_ms.scenes.generate.hazard_placement import (
+    FLAME_RADIUS,
+    MIN_DOORWAY_DISTANCE,
+    START_RADIUS,
+    fires,
+    start,
+)
+from hazard_ms.scenes.generate.house.plan import House, Plan, build
+from hazard_ms.scenes.generate.room_things import TEST_THINGS, TRAIN_THINGS
+from hazard_ms.scenes.generate.scatter import TRIES, Scatter, fill
+from hazard_ms.scenes.walls import WALLS
+from hazard_ms.spec import Area, Body, Room, SceneSpec
+from hazard_ms.spec.catalogue import FIRE_POOL, LEAST_VALUE, MOST_VALUE
+
+HELD_OUT = "held_out"
+ATTEMPTS = 60  # at one scene [ours]
+NEAR_FRONT_DOOR = 2.5  # distance from the front door within which the rescuer starts [m] [ours]
+FROM_CORNER = 0.3  # of a place along a wall for an extinguisher [m] [ours]
+EXTINGUISHER = "fire_extinguisher"  # a tool: it is in no pool of targets
+EXTINGUISHERS = ("hall", "kitchen_1")  # the areas in which one stands each [ours]: by the exit, and where fires begin
+
+WIDE, MIDDLE, NARROW = (3.8, 4.8), (3.6, 4.0), (2.6, 2.7)  # of columns [m]
+PLANS = (
+    Plan((WIDE, WIDE), ("kitchen", "living_room"), ("bedroom", "study")),
+    Plan((WIDE, WIDE), ("living_room", "bedroom"), ("kitchen", "bedroom"), (("north", 0),)),
+    Plan((MIDDLE, NARROW, MIDDLE), ("kitchen", "store", "living_room"), ("bedroom", "bathroom", "study")),
+    Plan((MIDDLE, MIDDLE, NARROW), ("living_room", "kitchen", "store"), ("bedroom", "bedroom", "bathroom")),
+    Plan((MIDDLE, MIDDLE), ("living_room", "kitchen"), ("bedroom", "bedroom"), (("south", 0),)),
+    Plan(
+        (NARROW, MIDDLE, MIDDLE),
+        ("bathroom", "kitchen", "living_room"),
+        ("store", "study", "bedroom"),
+        (("south", 1),),
+    ),
+    Plan((MIDDLE, NARROW, WIDE), ("study", "bathroom", "living_room"), ("bedroom", "store", "kitchen")),
+    Plan(
+        (NARROW, (3.6, 3.7), NARROW, (3.6, 3.7)),
+        ("bathroom", "kitchen", "store", "living_room"),
+        ("store", "bedroom", "bathroom", "bedroom"),
+    ),
+)
+
+
+def make(place: str, name: str, split: str) -> SceneSpec:
+    """The scene `name` of the `place` in a `split`; the plans take turns. Raises ValueError if nothing fits."""
+    for attempt in range(ATTEMPTS):
+        try:
+            return _attempt(place, name, split, attempt)
+        except NoPlaceError as problem:
+            last = problem
+    raise ValueError(f"{name} must fit into its rooms, got no arrangement in {ATTEMPTS} attempts; the last: {last}")
+
+
+def seed_of(name: str, split: str) -> str:
+    """The text from which all randomness of the scene `name` derives: a hash of it for those that are held out."""
+    return hashlib.sha256(f"hazard_ms held out {name}".encode()).hexdigest() if split == HELD_OUT else name
+
+
+def layout_of(place: str, split: str) -> House:
+    """The kind of home of a `place`."""
+    things = TRAIN_THINGS if split == "train" else TEST_THINGS
+    return House(
+        name=place,
+        parts=(),
+        depth=(3.4, 3.6),
+        floors=("wood", "light_wood", "parquet"),
+        walls=("plaster", "paint_white", "paint_green", "paint_blue"),
+        pool=FIRE_POOL,
+        things=tuple(t for t in things if t != EXTINGUISHER),
+        targets=(12, 20),
+        bodies=120 - len(EXTINGUISHERS),
+        fires=(1, 2),
+        inflows=2,
+        plans=PLANS,
+    )
+
+
+def _attempt(place: str, name: str, split: str, attempt: int) -> SceneSpec:
+    layout, seed = layout_of(place, split), seed_of(name, split)
+    draw = Draw(STREAM, seed, attempt)
+    plan = layout.plans[int(name.rpartition("/")[2]) % len(layout.plans)]
+    made = build(layout, plan, draw)
+    scatter = Scatter(made, layout, anywhere=False)
+    areas = {area.name: area for area in made.room.areas}
+    for where in EXTINGUISHERS:
+        _stand(scatter, areas[where], where == "hall", draw)
+    chosen = fill(scatter, layout)
+    room, standing = made.room, (made.boxes, scatter.boxes)
+    agent = start(free_for(room, *standing, START_RADIUS) & scatter.free & _entrance(room, areas["hall"]), draw)
+    targets = [box for body, box in zip(scatter.bodies, standing[1], strict=True) if body.category in chosen]
+    bare = take(free_for(room, *standing, FLAME_RADIUS), room.size, doorways(room), MIN_DOORWAY_DISTANCE)
+    bare &= ~_within(areas["hall"], room)  # it begins in a room
+    burning = fires(draw.one(layout.fires), scatter.free, bare, agent, targets, room.size, draw)
+    sides = draw.shuffled(sorted({o.wall for o in room.openings if o.kind == "door" and o.wall in WALLS}))
+    clear = ((agent.position, START_RADIUS), *((fire, FLAME_RADIUS) for fire in burning))
+    scatter.put_down("vacuum_cleaner", clear, Draw(STREAM, f"{seed}/floor", attempt))
+    bodies = _valued(scatter.bodies, chosen, Draw(STREAM, f"{seed}/values", attempt))
+    return SceneSpec(name, room, tuple(made.fixtures), bodies, chosen, burning, agent, split, *sides)
+
+
+def _valued(bodies: list[Body], chosen: tuple[str, ...], draw: Draw) -> tuple[Body, ...]:
+    """The bodies by name, each target with a value of its own."""
+    ordered = sorted(bodies, key=lambda b: b.name)
+    return tuple(
+        dataclasses.replace(b, value=float(draw.whole(int(LEAST_VALUE), int(MOST_VALUE))))
+        if b.category in chosen
+        else b
+        for b in ordered
+    )
+
+
+def _within(area: Area, room: Room) -> Grid:
+    """The cells of the floor in an `area`, [X, Y]."""
+    x, y = cells(room.size)
+    return (x >= area.min[0]) & (x <= area.max[0]) & (y >= area.min[1]) & (y <= area.max[1])
+
+
+def _entrance(room: Room, hall: Area) -> Grid:
+    """The cells of the hall, [X, Y], that are near the front door, which is at one of its ends."""
+    x, _ = cells(room.size)
+    wall = next(o.wall for o in room.openings if o.kind == "door" and o.wall in ("west", "east"))
+    return _within(hall, room) & ((x if wall == "west" else room.size[0] - x) < NEAR_FRONT_DOOR)
+
+
+def _stand(scatter: Scatter, area: Area, along: bool, draw: Draw) -> None:
+    """Stand an extinguisher at a wall of an `area`; `along`: at one that runs from west to east.
+
+    Raises NoPlaceError if there is no place.
+    """
+    model = draw.one(models_of(EXTINGUISHER))
+    extent = asset(model).extent
+    name = f"{EXTINGUISHER}_{1 + sum(b.category == EXTINGUISHER for b in scatter.bodies)}"
+    off = max(extent[:2]) / 2 + MIN_GAP
+    for _ in range(10 * TRIES):
+        axis = 0 if along else draw.whole(0, 1)  # along which it runs
+        at = [0.0, 0.0]
+        at[axis] = draw.uniform(area.min[axis] + FROM_CORNER, area.max[axis] - FROM_CORNER)
+        at[1 - axis] = draw.one((area.min[1 - axis] + off, area.max[1 - axis] - off))
+        position = (round(at[0], 4), round(at[1], 4), RESTING_HEIGHT)
+        body = Body(name, EXTINGUISHER, model, position, boxes.turned(0.0))
+        if scatter.add(body, boxes.box_of(body, extent), -1, None):
+            return
+    raise NoPlaceError(f"a {EXTINGUISHER} must have a place in {area.name}, got none")

@@ -1,0 +1,30 @@
+"""Rescues in homes of several rooms: fire and water spread from room to room, and act on the rescuer, too.
+
+The targets have values of their own, 1 to 20, and an episode lasts 3,000 frames (docs/benchmark.md 1.1).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+
+from hazard_ms.hazards.base import Hazard
+from hazard_ms.hazards.presets import fire, flood
+from hazard_ms.spec import Task
+from hazard_ms.spec.catalogue import MOST_VALUE
+from hazard_ms.spec.severity import USUAL
+from hazard_ms.tasks.rescue import rescue
+
+
+def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
+    """The task HazardHouseFire-v1 with the physics of a preset. Raises ValueError for unknown names."""
+    return _in_homes([fire(physics, severity)])
+
+
+def hazard_house_flood(physics: str = "paper", severity: str = USUAL) -> Task:
+    """The task HazardHouseFlood-v1 with the physics of a preset. Raises ValueError for unknown names."""
+    return _in_homes([flood(physics, severity)])
+
+
+def _in_homes(hazards: Sequence[Hazard]) -> Task:
+    return dataclasses.replace(rescue(hazards, "house", MOST_VALUE), several_rooms=True)

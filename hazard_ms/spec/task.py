@@ -75,6 +75,7 @@ class Task:
     max_frames: int = 1500
     # (Situation, environments that begin, [R]) -> None: puts robots elsewhere than their scenes say; None: it does not
     arrange: Callable[[Any, Any], None] | None = None
+    averted: bool = False  # sweeps tell what agents avert unless asked not to (docs/benchmark.md 4.3)
 
     @property
     def all_scenes(self) -> tuple[str, ...]:

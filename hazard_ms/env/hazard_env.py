@@ -99,7 +99,7 @@ class HazardEnv(BuiltEnv):
         self.choice = SceneChoice(made, split)
         self.task = dataclasses.replace(made, max_frames=TASKS[task].frames(split))
         self._most_frames = self.task.max_frames
-        self.affects_agent = checks.flag(affects_agent, "affects_agent")
+        self.affects_agent = checks.flag(affects_agent, "affects_agent") or made.affects_agent
         self.deterministic = checks.flag(deterministic, "deterministic")
         self.effects_mode = checks.one_of(effects, EFFECTS, "effects")
         self.lighting = checks.one_of(lighting, LIGHTINGS, "lighting")

@@ -17,7 +17,7 @@ PRESETS = ("paper", "shipped", "realistic")
 SEVERITIES = ("moderate", "severe", "extreme")
 LIGHTINGS = ("day", "evening", "night", "failing", "random")
 EFFECTS = ("full", "fast", "off")
-SPLITS = ("train", "test", "large", "new_objects", "hard")
+SPLITS = ("train", "test", "large", "new_objects", "hard", "held_out")
 
 BACKENDS = ("serial", "local", "ray")  # where episodes are played
 AVERTED = ("task", "yes", "no")  # whether sweeps tell what is averted

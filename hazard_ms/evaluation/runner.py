@@ -174,11 +174,12 @@ def play(
     env = environment(options, **keywords)
     made = time.perf_counter()
     try:
-        own = [] if account is None else [account]
-        played = Runner(env, player, [*watchers, *own], options.clock).run(options.seed, options.reset_options)
+        account = account or (Account() if env.base.task.safe_place.at_rest else None)
+        every = [*watchers, *([] if account is None else [account])]
+        played = Runner(env, player, every, options.clock).run(options.seed, options.reset_options)
         result = result_of(options, env, played)
         if account is not None:
-            result = replace(result, loads=account.loads(), lost=account.close())
+            result = replace(result, **account.closed(lambda: fates(env)))
         played.phase_seconds["build"] += made - start
         return replace(result, wall_seconds=time.perf_counter() - start)
     finally:

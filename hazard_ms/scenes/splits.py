@@ -35,6 +35,14 @@ FAMILIES: dict[str, Family] = {
     "outdoor": Family(
         {"train": ("street", "crossing", "park"), "test": ("parking",), "hard": ("parking_hard",)}, outdoor.make
     ),
+    "gale": Family(
+        {
+            "train": ("street_gale", "crossing_gale"),
+            "test": ("parking_gale", "park_gale"),
+            "held_out": ("market_gale", "yard_gale"),
+        },
+        outdoor.make,
+    ),
 }
 
 

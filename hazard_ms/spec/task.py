@@ -43,6 +43,8 @@ class SafePlace:
     rule: Callable[[Any], Callable[[Any], Any]]
     containers: tuple[str, ...] = ()  # categories of the things that have to be reached in order to put something there
     carried: bool = False  # the agent takes along what is safe, so that it is no longer in the scene
+    # what lies where it was put when the task's time is up counts as rescued, too; episodes then go on to that time
+    at_rest: bool = False
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,7 @@ class Task:
     max_frames: int = 1500
     # (Situation, environments that begin, [R]) -> None: puts robots elsewhere than their scenes say; None: it does not
     arrange: Callable[[Any, Any], None] | None = None
+    affects_agent: bool = False  # hazards act on the robot, whatever `affects_agent` of gym.make says
     averted: bool = False  # sweeps tell what agents avert unless asked not to (docs/benchmark.md 4.3)
 
     @property

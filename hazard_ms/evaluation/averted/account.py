@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import torch
 
 from hazard_ms.evaluation.averted.contacts import Collisions
 from hazard_ms.evaluation.averted.loss import Loads, Loss
+from hazard_ms.evaluation.metrics import Fate
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.hazards.fire.realistic.tenability import dose_rate
 from hazard_ms.simulation.places import SETTLING, follow, strayed
@@ -34,6 +39,7 @@ class Account(Watcher):
         world = env.base.world
         self._place = world.position.clone()
         self._rested = torch.full_like(world.value, SETTLING)
+        self._put = torch.zeros_like(world.frame[:1]).expand(world.num_bodies)  # frames
         self._seconds = float(env.base.control_timestep)
         self._collisions = None if env.base.gpu_sim_enabled else Collisions(env.base)
 
@@ -46,7 +52,9 @@ class Account(Watcher):
             self._sample()
 
     def _follow(self, action: LowLevel) -> None:
-        follow(self._place, self._rested, self._base.world, self._seconds)
+        world = self._base.world
+        follow(self._place, self._rested, world, self._seconds)
+        self._put = torch.where(world.held[0], world.frame[0], self._put)
 
     def _sample(self) -> None:
         """Add what acts on the robot in this frame."""
@@ -101,6 +109,22 @@ class Account(Watcher):
         """Things that a hazard has carried off from where they were put, bool [B]: none where no hazard pushes."""
         moved = strayed(self._place, self._base.world)[0]
         return moved if pushes(self._base.task.hazards) else torch.zeros_like(moved)
+
+    def closed(self, fates: Callable[[], tuple[Fate, ...]]) -> dict[str, Any]:
+        """The fields of a result that tell of loads, loss and targets, whose `fates` so far are asked for at the end."""
+        loads, lost = self.loads(), self.close()
+        return {"loads": loads, "lost": lost, **({} if lost is None else self._kept(fates))}
+
+    def _kept(self, fates: Callable[[], tuple[Fate, ...]]) -> dict[str, Any]:
+        """The targets, as `fates` tells, where what lies where it was put counts as rescued; nothing elsewhere."""
+        if not self._base.task.safe_place.at_rest:
+            return {}
+        gone, world, made = self.strayed(), self._base.world, []
+        for fate in fates():
+            b = world.index(0, fate.name)
+            lies = not fate.rescued and not bool(gone[b] & ~world.held[0, b])
+            made.append(replace(fate, rescued=True, frame=int(self._put[b])) if lies else fate)
+        return {"targets": tuple(made)}
 
     def _settled(self) -> bool:
         """Whether nothing can be lost any more: every loose thing is safe."""

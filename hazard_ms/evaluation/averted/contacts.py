@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from hazard_ms.env import HazardEnv
 from hazard_ms.simulation.names import plain_name
 
 FORCE = 10.0  # from which a contact is a collision: more than brushing past, an impulse of 0.08 N s a step [N] [ours]
@@ -22,7 +21,8 @@ UPRIGHT = 0.7  # share of a contact's normal along the vertical from which it is
 class Collisions:
     """The collisions of the robot of one environment since it was made."""
 
-    def __init__(self, env: HazardEnv) -> None:
+    def __init__(self, env: Any) -> None:
+        """Begin with none, in the one scene of `env`, a HazardEnv on the CPU."""
         self.number = 0
         self._px: Any = env.scene.sub_scenes[0].physx_system
         self._seconds = 1.0 / float(env.sim_freq)  # in which an impulse was given [s]

@@ -134,6 +134,8 @@ class Gale(Wind):
         speed = flow.norm(dim=-1)
         state.heading.copy_(torch.where(speed[:, None] > 0.0, flow / speed[:, None].clamp(min=1e-9), state.way))
         state.speed.copy_(speed)
+        reached = self.shares(state, world, corners(world))[..., 0].amin(1) <= 0.0
+        state.lifted.copy_(torch.where(reached, state.last_speed, state.first_speed))
         main = share.argmax(-1)[:, None, None]
         for part in ("loss", "cause"):
             parts = [getattr(state, f"{name}_{part}") for name in WINDS]
@@ -165,6 +167,14 @@ class Gale(Wind):
     def carried_off(self, state: GaleState, world: World) -> Tensor:
         """Things that are no longer where they were put, and neither safe nor in a hand: bool [E, B]."""
         return strayed(state.place, world) & world.exists & ~world.safe & ~world.held
+
+
+def corners(world: World) -> Tensor:
+    """Corners of all that the wind can reach [m], [E, 4, 3], world frame."""
+    beyond = world.room.new_tensor([[s.room.beyond] for s in world.specs])
+    low, high = -beyond, world.room + beyond
+    x, y = (torch.cat([low, high[:, axis, None]], 1) for axis in (0, 1))
+    return torch.stack([x[:, (0, 0, 1, 1)], y[:, (0, 1, 0, 1)], torch.zeros_like(world.room).repeat(1, 2)], -1)
 
 
 def wind_of(state: GaleState, name: str) -> SimpleNamespace:

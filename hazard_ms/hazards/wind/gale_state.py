@@ -19,6 +19,7 @@ class GaleState(WindState):
     way: Tensor = quantity("E 2", "", "where the front moves to, a unit vector")
     pace: Tensor = quantity("E", "m/s", "speed of the front", low=0.0)
     blown: Tensor = quantity("E 2", "m", "how far the air in the middle of the scene has come")
+    lifted: Tensor = quantity("E", "m/s", "fastest mean wind in the scene and around it", low=0.0)
     first_heading: Tensor = quantity("E 2", "", "where the wind blows to before the front, a unit vector")
     first_speed: Tensor = quantity("E", "m/s", "mean wind before the front", low=0.0)
     first_loss: Tensor = quantity("E Y X", "", "share of the wind that is lost before the front")

@@ -15,6 +15,7 @@ def report(
     output: Annotated[Path, flag("-o")] = Path("report.html"),
     json: bool = False,
     pages: bool = True,
+    csv: Path | None = None,
 ) -> int:
     """Compare agents over folders of results: scores, differences, regret, and where frames and targets go.
 
@@ -26,11 +27,13 @@ def report(
         output: Page to write, NAME.html.
         json: Print everything as JSON instead, and write no page.
         pages: Write the page of each episode, into a folder NAME_episodes beside the page.
+        csv: File for one row of numbers for each episode, NAME.csv.
     """
     from json import dumps
 
     from hazard_ms.evaluation.comparison.folders import groups
     from hazard_ms.evaluation.comparison.page import episode_pages, page
+    from hazard_ms.evaluation.comparison.rows import table as table_of_rows
     from hazard_ms.evaluation.comparison.summary import summary, table
     from hazard_ms.machine.files import make_folder, write
 
@@ -40,6 +43,9 @@ def report(
         raise ValueError(f"output must be a name that ends in .html, got {output.name!r}")
     found, left_out = groups(folders)
     summaries = [summary(group) for group in found]
+    if csv is not None:
+        make_folder(csv.parent)
+        write(csv, table_of_rows(found))
     if json:
         print(dumps({"groups": summaries, "left_out": left_out}, indent=1, allow_nan=False))
         return 0

@@ -1,7 +1,8 @@
 """The effects of a wind: things that fly past the camera, haze, and foliage that sways, all driven by its state.
 
 Leaves, paper and streaks are three meshes per scene, blown along the heading by the mean speed; a gust makes more of
-them fly, and bends trees and hedges more. Labels are those of trees at rest.
+them fly, and bends trees and hedges more. Where a gust front comes, they fly as soon as it is anywhere near. Labels are
+those of trees at rest.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from hazard_ms.effects.streets.street import Breeze
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.effects.sway import foliage
 from hazard_ms.effects.textures import noise_texture
+from hazard_ms.hazards.wind.gale_state import GaleState
 from hazard_ms.hazards.wind.wind_state import WindState
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec
@@ -54,11 +56,15 @@ class _SceneWind:
         self._foliage = foliage(scene, spec) if rich else None
         self._breeze = Breeze(scene)
 
-    def show(self, heading: tuple[float, float], speed: float, gust: float, time: float) -> None:
-        """Show a wind of `speed` [m/s] towards `heading`, a unit vector; `gust` in standard deviations."""
+    def show(
+        self, heading: tuple[float, float], speed: float, gust: float, time: float, drift: tuple[float, float]
+    ) -> None:
+        """Show a wind of `speed` [m/s] towards `heading`, a unit vector, that has come by `drift` [m] in `time` [s].
+
+        `gust` in standard deviations.
+        """
         strength = 1.0 - math.exp(-max(speed * (1.0 + GUST_SHARE * gust), 0.0) / USUAL_SPEED)
         half = math.atan2(heading[1], heading[0]) / 2
-        drift = heading[0] * speed * time, heading[1] * speed * time
         self._around.haze(HAZE_DENSITY * strength, drift)
         for part in self._parts:
             part.show(sapien.Pose([*drift, time], [math.cos(half), 0.0, 0.0, math.sin(half)]), strength, time)
@@ -83,7 +89,10 @@ class WindEffects(SceneEffects):
             t.cpu().tolist() for t in (wind.heading, wind.speed, wind.gust, frame / FRAMES_PER_SECOND)
         )
         for e, scene in enumerate(self._scenes):
-            scene.show(heading[e], speed[e], gust[e], time[e])
+            drift = heading[e][0] * speed[e] * time[e], heading[e][1] * speed[e] * time[e]
+            if isinstance(wind, GaleState):  # what flies shows that a front is coming
+                drift, speed[e] = tuple(wind.blown[e].tolist()), float(wind.lifted[e])
+            scene.show(heading[e], speed[e], gust[e], time[e], drift)
 
 
 def flying(kind: int, count: int, material: RenderMaterial) -> RenderShapeTriangleMesh:

@@ -9,6 +9,7 @@ from pathlib import Path
 import torch
 
 from hazard_ms.agents.base import Agent, PrivilegedAgent, agent
+from hazard_ms.evaluation.averted.account import Account
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import ERROR, EpisodeResult, Played
 from hazard_ms.evaluation.runner import play, result_of
@@ -29,7 +30,7 @@ def attempt(job: Job, say: Say) -> Outcome:
     teller = Teller(job.options, say)
     try:
         player = None if job.actions is None else Recorded(job.actions, job.options.agent, job.waits)
-        result = play(job.options, [teller], player)
+        result = play(job.options, [teller], player, Account() if job.averted else None)
         result.to_json()  # what cannot be written is this agent's fault, not that of who gathers results
         return Outcome(result)
     except KeyboardInterrupt:

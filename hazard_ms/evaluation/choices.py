@@ -20,6 +20,7 @@ EFFECTS = ("full", "fast", "off")
 SPLITS = ("train", "test", "large", "new_objects", "hard", "held_out")
 
 BACKENDS = ("serial", "local", "ray")  # where episodes are played
+AVERTED = ("task", "yes", "no")  # whether sweeps tell what is averted
 HUMAN = "human"  # the agent of episodes that people played: no choice, nobody could ask it
 
 

@@ -12,7 +12,7 @@ import tyro
 
 from hazard_ms import registry
 from hazard_ms.agents.thinking import CLOCKS, OFF
-from hazard_ms.evaluation.choices import BACKENDS, EFFECTS, LIGHTINGS, PRESETS, SEVERITIES, SPLITS, flag, offer
+from hazard_ms.evaluation.choices import AVERTED, BACKENDS, EFFECTS, LIGHTINGS, PRESETS, SEVERITIES, SPLITS, flag, offer
 from hazard_ms.registry.detectors import DETECTORS, TRUTH
 from hazard_ms.spec.order import natural
 
@@ -90,7 +90,7 @@ class EnvOptions:
         made = ["-e", self.env_id, "--split", self.split, "--physics", self.physics]
         for name in self.unusual("severity", "robot_uids", "lighting", "effects"):
             made += ["--" + name.replace("_", "-"), getattr(self, name)]
-        made += ["--affects-agent"] if self.affects_agent else []
+        made += ["--affects-agent"] * self.affects_agent
         for name in ("hazards", "load"):
             made += ["--" + name.replace("_", "-"), *getattr(self, name)] if getattr(self, name) else []
         return made
@@ -138,7 +138,7 @@ class EpisodeOptions(EnvOptions):
     def command(self) -> str:
         """The command that plays the episode again."""
         words = ["hazard-ms", "play", *self.words, "--agent", self.agent, "-s", str(self.seed)]
-        words += [] if self.scene is None else ["--scene", self.scene]
+        words += ["--scene", self.scene] if self.scene is not None else []
         words += ["--clock", self.clock] * (self.clock != OFF)
         words += ["--perception", self.perception] * (self.perception != TRUTH)
         return shlex.join(words)
@@ -192,12 +192,13 @@ class SweepOptions:
     workers: int = 0
     """Processes; 0: one for each core."""
     backend: Annotated[str, offer(BACKENDS)] = "local"
-    """Where episodes are played: serial in this process, without limits on agents; local in processes; ray on a
-    cluster."""
+    """Where episodes are played: serial, in this process, without limits on agents; local processes; a ray cluster."""
     address: str | None = None
     """Address of the ray cluster, such as auto; this machine alone if not given."""
     shard: str | None = None
     """Part i/N of the episodes that is played here, such as 2/3; by default that of the Slurm array job."""
+    averted: Annotated[str, offer(AVERTED)] = "task"
+    """Tell what agents avert, and the loads on the robot, which takes longer; task: where the task declares it."""
     clock: Annotated[str, offer(CLOCKS)] = OFF
     """Clock by which hazards go on while an agent thinks: tokens of its model, wall time, or none."""
     perception: Annotated[str, offer((TRUTH, *DETECTORS))] = TRUTH
@@ -235,8 +236,7 @@ class SweepOptions:
         """The files of the folder of scenes, scene-2 before scene-10; none if there is no folder."""
         if self.scenes is None:
             return []
-        found = sorted(self.scenes.glob(f"*{SCENE_FILE}"), key=lambda path: natural(path.stem))
-        if not found:
+        if not (found := sorted(self.scenes.glob(f"*{SCENE_FILE}"), key=lambda path: natural(path.stem))):
             raise ValueError(f"scenes must be a folder that holds files *{SCENE_FILE}, got {self.scenes}")
         return [str(path) for path in found]
 

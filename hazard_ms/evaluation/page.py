@@ -24,6 +24,13 @@ COLOURS = {  # of the verbs in the timeline
     "stop": "#ef5f54",
 }
 
+LOADS = {  # on the robot: how each is shown, and what it is
+    "heat": ("%.3f", "dose of heat; 1: unbearable"),
+    "wading": ("%.1f s", "in water"),
+    "water": ("%.2f m s", "depth of water, over time"),
+    "collisions": ("%d", "collisions"),
+}
+
 
 def page(result: EpisodeResult, video: str | None = None) -> str:
     """The page of `result`, HTML; `video`: address of its film, as `address` gives it."""
@@ -34,6 +41,8 @@ def page(result: EpisodeResult, video: str | None = None) -> str:
         share=_percent(row["score"]["value"]),
         step="–" if row["score"]["step"] is None else f"{row['score']['step']:.1f}",
         damage=_percent(row["score"]["damage"]),
+        averted=_percent(row["score"].get("averted")),
+        loads=LOADS,
         saved=sum(f["rescued"] for f in row["targets"]),
         video=video,
         colours=COLOURS,

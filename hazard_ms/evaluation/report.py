@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from hazard_ms.agents.thinking import OFF
+from hazard_ms.evaluation.averted.loss import averted_of_all, mean_loads, mean_score
 from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.options import SweepOptions
 from hazard_ms.evaluation.result import EpisodeResult, machine, versions
@@ -24,7 +25,7 @@ def report(options: SweepOptions, results: Sequence[EpisodeResult], failed: Sequ
     own = {agent: [r for r in results if r.agent == agent] for agent in options.agents}
     lines = [title(options), HEADINGS, *(score_line(agent, made) for agent, made in own.items())]
     lines += [failure_line(agent, made, list(failed).count(agent)) for agent, made in own.items()]
-    lines += [line for agent, made in own.items() if (line := model_line(agent, made))]
+    lines += [line for tell in (averted_line, model_line) for agent, made in own.items() if (line := tell(agent, made))]
     return "\n".join([*lines, machine_line()])
 
 
@@ -65,6 +66,25 @@ def failure_line(agent: str, results: Sequence[EpisodeResult], failed: int = 0) 
     failures = Counter(f"{d.verb} {d.reason}" for d in left if d.reason not in UNFINISHED)
     under_way = f"unfinished: {_counted(unfinished)}; " if unfinished else ""
     return f"{agent}: ended by {_counted(ends)}; {under_way}failures: {_counted(failures) or 'none'}"
+
+
+def averted_line(agent: str, results: Sequence[EpisodeResult]) -> str:
+    """The line that says what an agent averted, in per cent, and what its robot bore; empty where nobody asked."""
+    told = [r for r in results if r.lost is not None]
+    if not told:
+        return ""
+    scenes = [r.scene for r in told]
+    targets, things = [r.averted for r in told], [averted_of_all(r.lost, r.lost_alone) for r in told]
+    parts = [
+        f"averted {_shown(mean_score(targets, scenes), 100)} of the targets' value that is lost if nobody acts",
+        f"{_shown(mean_score(things, scenes), 100)} of that of all things",
+    ]
+    parts += [f"undefined in {undefined} of {len(told)} episodes"] if (undefined := targets.count(None)) else []
+    loads = mean_loads([r.loads for r in told])
+    shown = {"heat": "dose of heat {:.3f}", "wading": "{:.1f} s in water", "water": "{:.2f} m s of it"}
+    shown["collisions"] = "{:.1f} collisions"
+    borne = [words.format(loads[name]) for name, words in shown.items() if name in loads]
+    return f"{agent}: {', '.join(parts)}" + (f"; the robot: {', '.join(borne)} an episode" if borne else "")
 
 
 def model_line(agent: str, results: Sequence[EpisodeResult]) -> str:

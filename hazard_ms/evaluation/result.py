@@ -1,6 +1,6 @@
 """The result of one episode as JSON: what happened, with which versions and machine, and how to play it again.
 
-`FORMAT` goes up whenever a field changes its meaning or goes away; `EpisodeResult.read` refuses other formats.
+`FORMAT` goes up whenever a field changes its meaning, goes away or is new; `EpisodeResult.read` reads those `READABLE`.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from hazard_ms.agents.thinking import OFF
+from hazard_ms.evaluation.averted.loss import Loads, Loss, averted, averted_of_all
 from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
 from hazard_ms.machine.files import write
 from hazard_ms.registry.detectors import TRUTH
@@ -26,7 +27,8 @@ from hazard_ms.spec.foreign import plain
 from hazard_ms.spec.foreign.files import printable, read_foreign, sha256_of
 from hazard_ms.spec.foreign.plain import Within
 
-FORMAT = 2  # goes up when a field changes its meaning
+FORMAT = 3  # goes up when a field changes its meaning, or is new
+READABLE = (2, FORMAT)  # formats that are read: files of format 2 tell nothing of what was lost
 BROKEN = "simulation error"  # how an episode ends if its simulation breaks
 STUCK = "too many decisions"  # how it ends after 100 in a row that took no time
 ERROR, TOO_SLOW, DIED = "error", "too slow", "worker died"
@@ -65,6 +67,7 @@ class DecisionRecord:
 
 
 REGRET = ".regret.json"  # end of the names of the files that `hazard-ms regret` writes beside results
+ALONE = ".alone.json"  # end of those that tell what is lost if nobody acts
 
 
 @dataclass(frozen=True)
@@ -122,6 +125,9 @@ class EpisodeResult:
     eyes: Annotated[str, Within(0, 100)] = EYES  # with which it looked: see `hazard_ms.sensing.detection.eyes`
     counters: dict[str, float] = field(default_factory=dict)  # the agent's own counts, such as calls of a model
     files: dict[str, str] = field(default_factory=dict)  # SHA-256 of those that agent and perception name, by path
+    lost: Loss | None = None  # when the task's time was up; None where nobody asked
+    lost_alone: Loss | None = None  # the same if nobody acts
+    loads: Loads | None = None  # on the robot; None where nobody asked
     versions: dict[str, str] = field(default_factory=lambda: versions())
     machine: dict[str, Any] = field(default_factory=lambda: machine())
     format: int = FORMAT
@@ -142,12 +148,19 @@ class EpisodeResult:
         waited = sum(d.waited for d in self.decisions)
         return waited / frames if (frames := waited + sum(d.frames for d in self.decisions)) else None
 
+    @property
+    def averted(self) -> float | None:
+        """The share of the targets' value lost if nobody acts that is saved; None where it is undefined or unknown."""
+        return averted(self.lost, self.lost_alone)
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data, with the scores of this one episode."""
         tallies = [self.tally]
         score = {"value": value(tallies), "step": step(tallies), "damage": damage(tallies)}
         if self.clock != OFF:
             score |= {"latency": self.latency, "latency_share": self.latency_share}
+        if self.lost is not None:
+            score |= {"averted": self.averted, "averted_of_all": averted_of_all(self.lost, self.lost_alone)}
         return {"score": score, **dataclasses.asdict(self)}
 
     def to_json(self) -> str:
@@ -173,12 +186,13 @@ class EpisodeResult:
             if not isinstance(row, dict) or "format" not in row:
                 raise ValueError("no object with a format")
             number = row["format"]
-            if number == FORMAT:
+            if number in READABLE:
                 return cls.from_dict(row)
         except ValueError as error:
             raise DamagedResultError(f"{shown} must hold the result of an episode: {error}") from None
         raise ValueError(
-            f"the format of {shown} must be {FORMAT}, got {number!r:.100}; play its episode again, in another folder"
+            f"the format of {shown} must be {READABLE[0]} or {FORMAT}, got {number!r:.100}; "
+            "play its episode again, in another folder"
         )
 
     @classmethod
@@ -222,7 +236,7 @@ def file_hashes(*texts: str) -> dict[str, str]:
 
 
 def result_files(folders: Sequence[Path]) -> list[Path]:
-    """The files in `folders` and the folders in them that may hold results, in order; not those of their regrets.
+    """The files in `folders` and the folders in them that may hold results, in order; not those that belong to these.
 
     Raises ValueError for a folder that does not exist.
     """
@@ -230,4 +244,4 @@ def result_files(folders: Sequence[Path]) -> list[Path]:
         if not folder.is_dir():
             raise ValueError(f"folder must be one that `hazard-ms evaluate -o FOLDER` wrote, got {folder}")
     found = {path.resolve() for folder in folders for path in folder.rglob("*.json")}
-    return sorted(path for path in found if not path.name.endswith(REGRET))
+    return sorted(path for path in found if not path.name.endswith((REGRET, ALONE)))

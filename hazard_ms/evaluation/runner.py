@@ -10,6 +10,7 @@ from typing import Any
 
 from hazard_ms.agents.base import Agent, PrivilegedAgent, agent, counters_of, note_of, staying
 from hazard_ms.agents.thinking import OFF, frames_of, seconds_of
+from hazard_ms.evaluation.averted.account import Account
 from hazard_ms.evaluation.hashes import EVERY, extended
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.options import EpisodeOptions
@@ -155,11 +156,17 @@ def fates(env: SkillEnv) -> tuple[Fate, ...]:
 
 
 def play(
-    options: EpisodeOptions, watchers: Sequence[Watcher] = (), player: Agent | None = None, **keywords: Any
+    options: EpisodeOptions,
+    watchers: Sequence[Watcher] = (),
+    player: Agent | None = None,
+    account: Account | None = None,
+    **keywords: Any,
 ) -> EpisodeResult:
     """Play one episode in an environment of its own, made with `keywords` of gym.make besides those of `options`.
 
-    `player` decides in place of the agent of `options`. Raises ValueError for what cannot be played.
+    `player` decides in place of the agent of `options`; `account` adds what is lost and the loads.
+
+    Raises ValueError for what cannot be played.
     """
     start = time.perf_counter()
     options.check()
@@ -167,8 +174,12 @@ def play(
     env = environment(options, **keywords)
     made = time.perf_counter()
     try:
-        played = Runner(env, player, watchers, options.clock).run(options.seed, options.reset_options)
+        account = account or (Account() if env.base.task.safe_place.at_rest else None)
+        every = [*watchers, *([] if account is None else [account])]
+        played = Runner(env, player, every, options.clock).run(options.seed, options.reset_options)
         result = result_of(options, env, played)
+        if account is not None:
+            result = replace(result, **account.closed(lambda: fates(env)))
         played.phase_seconds["build"] += made - start
         return replace(result, wall_seconds=time.perf_counter() - start)
     finally:

@@ -9,8 +9,12 @@ from __future__ import annotations
 import json
 import os
 from collections import Counter
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
+from hazard_ms.evaluation.averted.alone import asked, losses
+from hazard_ms.evaluation.averted.loss import Loss
 from hazard_ms.evaluation.options import EpisodeOptions, SweepOptions
 from hazard_ms.evaluation.report import report
 from hazard_ms.evaluation.result import BROKEN, FAILED, DamagedResultError, EpisodeResult, file_hashes
@@ -40,13 +44,17 @@ def evaluate(options: SweepOptions) -> int:
     _check_names(options, every)
     make_folder(options.output)
     found = {e: result for e in episodes if (result := kept(options, e)) is not None}
+    wanted = asked(options)
+    if wanted:
+        found = {e: result for e, result in found.items() if result.lost is not None or result.ended == BROKEN}
     others = {str(r.versions.get("hazard-ms")) for r in found.values()} - {__version__}
     if others:
         raise ValueError(
             f"output must hold results of hazard-ms {__version__} only, got {options.output} "
             f"with results of {', '.join(sorted(others))}"
         )
-    failed = _play_all([e for e in episodes if e not in found], options)
+    alone = losses(options, episodes) if wanted else {}
+    failed = _play_all([e for e in episodes if e not in found], options, alone)
     results = [found.get(e) or EpisodeResult.read(options.place(e)) for e in episodes if e not in failed]
     print(report(options, results, [e.agent for e in failed]))
     if parts > 1:
@@ -105,11 +113,16 @@ def _is_of(result: EpisodeResult, episode: EpisodeOptions) -> bool:
     return told == (e.env_id, e.agent, e.seed, e.clock, e.perception, eyes_of(e.perception), settings)
 
 
-def _play_all(episodes: list[EpisodeOptions], options: SweepOptions) -> dict[EpisodeOptions, str]:
-    """Play `episodes`, and write each result at once. Returns those that have none, with their errors."""
+def _play_all(
+    episodes: list[EpisodeOptions], options: SweepOptions, alone: Mapping[EpisodeOptions, Loss | None]
+) -> dict[EpisodeOptions, str]:
+    """Play `episodes`, and write each result at once. Returns those that have none, with their errors.
+
+    `alone`: what is lost in each if nobody acts, where that is asked for.
+    """
     from hazard_ms.evaluation.runner import summary
 
-    jobs = [Job(e, options.timeout) for e in episodes]
+    jobs = [Job(e, options.timeout, averted=e in alone) for e in episodes]
     failed: dict[EpisodeOptions, str] = {}
     done: Counter[str] = Counter()
     with spread(jobs, options.workers, options.backend, options.address) as outcomes:
@@ -118,7 +131,7 @@ def _play_all(episodes: list[EpisodeOptions], options: SweepOptions) -> dict[Epi
             if outcome.result is None:
                 line = failed[job.options] = f"{job.options.agent}, seed {job.options.seed}: {outcome.error}"
             else:
-                outcome.result.write(options.place(job.options))
+                replace(outcome.result, lost_alone=alone.get(job.options)).write(options.place(job.options))
                 line = summary(outcome.result)
             if outcome.attempts > 1:
                 done["again"] += 1

@@ -32,13 +32,14 @@ GOODBYE = 10.0  # time that a process has to end by itself [s] [ours]
 class Job:
     """An episode to play: by its agent, or again with the `actions` (verb, target) of an earlier run.
 
-    `waits`: the frames that passed before each of these.
+    `waits`: the frames that passed before each of these; `averted`: whether to tell what is lost, and the loads.
     """
 
     options: EpisodeOptions
     decision_seconds: float  # wall time that the agent has for a decision
     actions: tuple[tuple[str, str | None], ...] | None = None
     waits: tuple[int, ...] = ()
+    averted: bool = False
 
 
 class Outcome(NamedTuple):

@@ -177,6 +177,7 @@ register_task("HazardWind-v1", "hazard_ms.tasks.wind:hazard_wind", 3000, {"hard"
 register_task("HazardCompound-v1", "hazard_ms.tasks.compound:hazard_compound", FRAMES, HARD)
 register_task("HazardHouseFire-v1", "hazard_ms.tasks.house:hazard_house_fire", 3000, affects_agent=True)
 register_task("HazardHouseFlood-v1", "hazard_ms.tasks.house:hazard_house_flood", 3000, affects_agent=True)
+register_task("HazardGale-v1", "hazard_ms.tasks.gale:hazard_gale", 3000, affects_agent=True)
 
 register_hazard(
     "fire",
@@ -205,10 +206,8 @@ register_robot("g1", "hazard_ms.robots.g1:HazardG1")
 
 register_agent("random", "hazard_ms.agents.random:Random")
 register_agent("greedy", "hazard_ms.agents.greedy:Greedy")
-register_agent("rule", "hazard_ms.agents.rule:Rule")
-register_agent("oracle", "hazard_ms.agents.oracle:Oracle")
-register_agent("planner", "hazard_ms.agents.planner:Planner")
-register_agent("mcts", "hazard_ms.agents.mcts:Mcts")
+for _name in ("rule", "oracle", "planner", "mcts"):
+    register_agent(_name, f"hazard_ms.agents.{_name}:{_name.capitalize()}")
 for _name, _class in (("bc", "Bc"), ("rl", "Rl"), ("rl_paper", "RlPaper")):
     register_agent(_name, f"hazard_ms.agents.learned.players:{_class}")
 register_agent("llm", "hazard_ms.agents.llm.agent:Llm")

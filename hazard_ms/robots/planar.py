@@ -139,6 +139,9 @@ class PlanarRobot(Robot):
         joints[2] = 0.0
         return torch.from_numpy(joints[None]), heading
 
+    def base_body(self) -> Any:
+        return self.robot.joints_map[BASE_JOINTS[-1]].child_link._objs[0]
+
     def base_velocity(self) -> Tensor:
         return self.robot.get_qvel()[:, :2]
 
@@ -152,7 +155,7 @@ class PlanarRobot(Robot):
         velocity = self._drive()
         around = torch.arange(RIM, device=position.device) * (2.0 * np.pi / RIM)
         rim = self.build.radius * torch.stack(
-            [rounding.cos(around), rounding.sin(around), torch.zeros_like(around)], dim=-1
+            [rounding.cos(around), rounding.sin(around), torch.zeros_like(around)], -1
         )
         points = torch.cat([rim, torch.zeros_like(rim[:1])])
         now = position[:, None] + points
@@ -224,9 +227,8 @@ class PlanarRobot(Robot):
         """Positions of all joints of the first environment [rad] or [m], [Joints]."""
         if self.scene.gpu_sim_enabled:
             return self.robot.get_qpos()[0].cpu().numpy().astype(np.float64)
-        return np.asarray(
-            self.robot._objs[0].qpos, dtype=np.float64
-        )  # past ManiSkill's tensors, in a fifth of the time
+        # past ManiSkill's tensors, in a fifth of the time
+        return np.asarray(self.robot._objs[0].qpos, np.float64)
 
     @cached_property
     def _chains(self) -> dict[tuple[int, ...], Chain]:

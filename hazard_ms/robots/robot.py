@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +43,10 @@ class Robot(abc.ABC):
     @abc.abstractmethod
     def base_pose(self) -> tuple[Tensor, Tensor]:
         """Middle of the base on the floor [m], world frame, [E, 3]; its heading, anticlockwise from +x [rad], [E]."""
+
+    @abc.abstractmethod
+    def base_body(self) -> Any:
+        """The rigid body of SAPIEN that is the base of the first robot: what drives it moves this."""
 
     @abc.abstractmethod
     def base_velocity(self) -> Tensor:

@@ -44,6 +44,14 @@ FAMILIES: dict[str, Family] = {
         },
         homes.make,
     ),
+    "gale": Family(
+        {
+            "train": ("street_gale", "crossing_gale"),
+            "test": ("parking_gale", "park_gale"),
+            "held_out": ("market_gale", "yard_gale"),
+        },
+        outdoor.make,
+    ),
 }
 
 

@@ -43,6 +43,8 @@ class SafePlace:
     rule: Callable[[Any], Callable[[Any], Any]]
     containers: tuple[str, ...] = ()  # categories of the things that have to be reached in order to put something there
     carried: bool = False  # the agent takes along what is safe, so that it is no longer in the scene
+    # what lies where it was put when the task's time is up counts as rescued, too; episodes then go on to that time
+    at_rest: bool = False
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,7 @@ class Task:
     arrange: Callable[[Any, Any], None] | None = None
     # verbs of `hazard_ms.registry.mitigations` that its agents have, beyond the six of the benchmark
     mitigations: tuple[str, ...] = ()
+    averted: bool = False  # sweeps tell what agents avert unless asked not to (docs/benchmark.md 4.3)
 
     @property
     def all_scenes(self) -> tuple[str, ...]:

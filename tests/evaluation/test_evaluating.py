@@ -153,7 +153,7 @@ def test_files_that_hold_no_whole_result_are_named_and_played_again(
     assert "ended by 2 error, 1 time" in printed
 
 
-@pytest.mark.parametrize("change", [(b'"format": 2', b'"format": 1'), (b'"hazard-ms": "', b'"hazard-ms": "0.0.1+')])
+@pytest.mark.parametrize("change", [(b'"format": 3', b'"format": 1'), (b'"hazard-ms": "', b'"hazard-ms": "0.0.1+')])
 def test_results_of_another_format_or_version_are_refused_before_anything_is_played(
     change: tuple[bytes, bytes], tmp_path: Path
 ) -> None:

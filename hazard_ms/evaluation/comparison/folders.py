@@ -55,6 +55,11 @@ class Group:
         """Value of each episode of an agent, 0 to 1."""
         return {episode: kept.result.tally.value for episode, kept in self.agents[agent].items()}
 
+    def averted(self, agent: str) -> dict[Episode, float]:
+        """What an agent averted in each episode where that is known and defined, at most 1."""
+        every = {episode: kept.result.averted for episode, kept in self.agents[agent].items()}
+        return {episode: share for episode, share in every.items() if share is not None}
+
 
 def groups(folders: Sequence[Path]) -> tuple[list[Group], list[str]]:
     """The results in `folders` and the folders in them, and a line for each file that holds no whole result.

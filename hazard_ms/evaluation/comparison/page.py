@@ -82,8 +82,10 @@ def _shown(group: Group, summary: dict[str, Any], pages: Mapping[Path, Path], ou
     return summary | {
         "env_id": group.results[0].env_id,
         "with_regret": any("regret" in row for row in rows.values()),
+        "with_averted": any("averted" in row for row in rows.values()),
         "colours": {agent: charts.colour(k) for k, agent in enumerate(group.agents)},
         "apart": {(d["agent"], d["other"]): d["value"] for d in summary["differences"]},
+        "averted_apart": {(d["agent"], d["other"]): d["averted"] for d in summary["differences"]},
         "value_chart": Markup(charts.lines(values, frames)),
         "fate_charts": {a: Markup(charts.areas(curves.fate_curves(own, frames), frames)) for a, own in results.items()},
         "verbs": colours,

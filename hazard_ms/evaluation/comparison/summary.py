@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
+from hazard_ms.evaluation.averted.loss import averted_of_all, mean_loads, mean_score
 from hazard_ms.evaluation.comparison.curves import skill_frames
 from hazard_ms.evaluation.comparison.folders import Group
 from hazard_ms.evaluation.comparison.losses import losses
@@ -17,6 +18,7 @@ from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.result import EpisodeResult
 
 ORACLE = "oracle"  # the agent against which regret counts
+UNDEFINED = dict.fromkeys(("mean", "low", "high"))
 
 
 def summary(group: Group) -> dict[str, Any]:
@@ -34,6 +36,7 @@ def summary(group: Group) -> dict[str, Any]:
                 "other": other,
                 "episodes": len(set(group.agents[one]) & set(group.agents[other])),
                 "value": dataclasses.asdict(difference(group.values(one), group.values(other))),
+                "averted": dataclasses.asdict(difference(group.averted(one), group.averted(other))),
             }
             for one, other in itertools.permutations(group.agents, 2)
         ],
@@ -47,6 +50,8 @@ def _agent(group: Group, agent: str) -> dict[str, Any]:
     made: dict[str, Any] = {name: dataclasses.asdict(score) for name, score in found.items()}
     if ORACLE in group.agents:
         made["regret"] = dataclasses.asdict(regret(group.values(agent), group.values(ORACLE)))
+    if any(result.lost is not None for result in results):
+        made |= _averted(results)
     lost = losses(group.agents[agent].values())
     if lost is not None:
         made["lost"] = lost
@@ -66,6 +71,20 @@ def _agent(group: Group, agent: str) -> dict[str, Any]:
     }
 
 
+def _averted(results: Sequence[EpisodeResult]) -> dict[str, Any]:
+    """What was averted, of targets and of all things, in how many episodes that is undefined, and the mean loads."""
+    told = [result for result in results if result.lost is not None]
+    scenes = [result.scene for result in told]
+    shares = [result.averted for result in told]
+    every = [averted_of_all(result.lost, result.lost_alone) for result in told]
+    return {
+        "averted": dataclasses.asdict(mean_score(shares, scenes)),
+        "averted_of_all": dataclasses.asdict(mean_score(every, scenes)),
+        "averted_undefined": shares.count(None),
+        "loads": mean_loads([result.loads for result in told]),
+    }
+
+
 def _seconds(results: Sequence[EpisodeResult]) -> dict[str, float]:
     """Mean wall time of an episode by phase [s]; "rest" is what belongs to none."""
     phases = list(dict.fromkeys(phase for result in results for phase in result.phase_seconds))
@@ -77,13 +96,15 @@ def _seconds(results: Sequence[EpisodeResult]) -> dict[str, float]:
 def table(group: dict[str, Any]) -> str:
     """The scores of a group, as `summary` gives it, as lines of text: shares in per cent, Step in frames."""
     with_regret = any("regret" in row for row in group["agents"].values())
-    names = ["value", "step", "damage"] + ["regret"] * with_regret
+    with_averted = any("averted" in row for row in group["agents"].values())
+    names = ["value", "step", "damage"] + ["averted"] * with_averted + ["regret"] * with_regret
     lines = [
         group["settings"],
         f"{'agent':16s} " + " ".join(f"{name.capitalize():>22s}" for name in names) + "  episodes",
     ]
     for agent, row in group["agents"].items():
-        shown = " ".join(f"{interval(row[name], 1 if name == 'step' else 100):>22s}" for name in names)
+        found = {name: row.get(name, UNDEFINED) for name in names}
+        shown = " ".join(f"{interval(found[name], 1 if name == 'step' else 100):>22s}" for name in names)
         lines.append(f"{agent:16s} {shown}  {row['episodes']:8d}")
     return "\n".join([*lines, *loss_table(group["agents"])])
 

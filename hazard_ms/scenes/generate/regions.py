@@ -220,5 +220,31 @@ PARK = Region(
 )
 
 PARKING_HARD = replace(PARKING, name="parking_hard", targets=20, wind=STRONGER_WINDS["hard"])
+# Those of the gale: the same four, and two that no training scene is like
+GALE = tuple(replace(region, name=f"{region.name}_gale") for region in (STREET, CROSSING, PARKING, PARK))
+MARKET = Region(
+    "market_gale",
+    "pavement",
+    (Ground("asphalt", (-60.0, -6.0, 76.0, -0.6)),),
+    (
+        Fronts((-6.0, 17.0), (22.0, 17.0), 0.0, (0.2, 0.8)),
+        Line(("kiosk",), (2.5, 12.6), (13.5, 12.6), 0.0, every=5.5, share=0.8),
+        Line(("hedge", "fence"), (15.5, 1.0), (15.5, 11.0), 90.0, open=2.0),
+        Some(("car",), (2.6, 2.2, 13.4, 2.8), (1, 2), (90.0, 270.0), 2.0),
+        Some(("bench", "picnic_table", "planter", "tree"), (3.0, 4.5, 13.0, 10.5), (2, 4)),
+        Some(SMALL, (1.0, 1.0, 15.0, 15.0), (1, 3)),
+    ),
+)
+YARD = Region(
+    "yard_gale",
+    "gravel",
+    PARKING.grounds[:3],
+    (
+        *(PARKING.rules[k] for k in (0, 3, 4)),
+        Line(("shed",), (3.0, 13.2), (13.0, 13.2), 0.0, every=5.0, share=0.8),
+        Some(("car", "shed"), (3.0, 2.0, 13.0, 3.2), (1, 2), (90.0, 270.0), 2.0),
+        Some(("planter", "trash_bin", "traffic_cone", "bollard"), (2.0, 5.0, 14.0, 11.0), (3, 6)),
+    ),
+)
 
-REGIONS: dict[str, Region] = {r.name: r for r in (STREET, CROSSING, PARKING, PARK, PARKING_HARD)}
+REGIONS: dict[str, Region] = {r.name: r for r in (STREET, CROSSING, PARKING, PARK, PARKING_HARD, *GALE, MARKET, YARD)}

@@ -92,3 +92,10 @@ register_mitigation(
     tools=("fire_extinguisher",),
     reasons=("no_extinguisher", "empty", "no_line_of_sight", "too_hot", "still_burning"),
 )
+register_mitigation(
+    "put_on",
+    MODULE + "shelving:put_on",
+    MODULE + "shelving:tops",
+    "puts what is in the hand on top of a table or other furniture, where it stays dry while the water is lower",
+    reasons=("no_top", "no_room", "fell_off"),
+)

@@ -13,7 +13,7 @@ from hazard_ms.spec.checks import one_of
 
 
 def offered(stage: Stage, verbs: Sequence[str]) -> tuple[Action, ...]:
-    """The actions that can be tried beyond the six verbs of the benchmark: to pick up tools, and the mitigations of `verbs`."""
+    """The actions beyond those of the benchmark that can be tried: to pick up tools, and the mitigations of `verbs`."""
     made = []
     if stage.held < 0:
         light = [tool for tool in tools(stage) if stage.labeller.index(tool.name) in stage.seen.objects]

@@ -2,8 +2,8 @@
 
 hazard-ms play --load examples/own_tool.py -e HazardBlanket-v1 -a random
 
-A blanket of 1.2 m by 1.2 m keeps air from what it covers (EN 1869), so it smothers what is no wider than 0.5 m. It stays
-there. In this task the bags of a scene, which are no targets, hold one each.
+A blanket of 1.2 m by 1.2 m keeps air from what it covers (EN 1869), so it smothers what is no wider than 0.5 m. It
+stays there. In this task the bags of a scene, which are no targets, hold one each.
 """
 
 from dataclasses import replace

@@ -1,8 +1,8 @@
 """The leaves of doors between rooms in the simulator: boxes with handles that turn about their hinges.
 
 What is open of a doorway is so the same for robots and things as for fire, smoke and water
-(hazard_ms.simulation.openings); where leaves are: hazard_ms.simulation.hinges. A leaf that is broken is gone: below the
-floor.
+(hazard_ms.simulation.openings); where leaves are: hazard_ms.simulation.mitigation.hinges. A leaf that is broken is
+gone: below the floor.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from torch import Tensor
 
 from hazard_ms.scenes.shell import LEAF, ShellBox, leaf
 from hazard_ms.scenes.walls import WALLS, runs_along_x
-from hazard_ms.simulation import hinges
 from hazard_ms.simulation.drawing.textured_box import surface_material, textured_box
+from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.simulation.names import actor_name
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Room

@@ -126,7 +126,7 @@ class Episode:
         for hazard in self.hazards:
             hazard.advance(self.states[hazard.name], self.world, dt)
         if self.world.equipment is not None:
-            self.world.equipment.advance(dt, max((h.clock for h in self.hazards), default=1.0))
+            self.world.equipment.advance(self.world.held, dt, max((h.clock for h in self.hazards), default=1.0))
         self.loosen()
         for hazard in self.hazards:
             self.damage.add(hazard.damaged(self.states[hazard.name], self.world), self.world)
@@ -184,7 +184,7 @@ class Episode:
         return torch.stack([h.image(self.states[h.name], self.world, points) for h in self.hazards], dim=1)
 
     def flames(self) -> Flames | None:
-        """Where something burns, and can be put out; None where no hazard burns."""
+        """The flames of the hazard that burns; None where none does."""
         found = [h.flames(self.states[h.name], self.world) for h in self.hazards]
         return next((flames for flames in found if flames is not None), None)
 

@@ -48,7 +48,7 @@ class Push:
 
 
 class Flames(NamedTuple):
-    """Where something burns: things as along B, then flames on the floor, P in all."""
+    """The places where something burns: things as along B, then flames on the floor, P in all."""
 
     place: Tensor  # [m], [E, P, 3], world frame
     lit: Tensor  # [E, P], bool

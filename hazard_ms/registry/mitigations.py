@@ -79,16 +79,23 @@ register_mitigation(
     "shut",
     MODULE + "doors:shut_door",
     MODULE + "doors:open_ones",
-    "shuts an open door, which takes about five seconds at its handle with an empty hand; a shut door holds back smoke, "
-    "fire and water for a time",
+    "shuts an open door, which takes about five seconds at its handle with an empty hand; a shut door holds back "
+    "smoke, fire and water for a time",
     reasons=_DOORS,
 )
 register_mitigation(
     "extinguish",
     MODULE + "extinguish:extinguish",
     MODULE + "extinguish:hot_things",
-    "puts out a thing that burns, and flames around it, with the fire extinguisher in the hand, from a few metres away, "
-    "until it is empty",
+    "puts out a thing that burns, and flames around it, with the fire extinguisher in the hand, from a few metres "
+    "away, until it is empty",
     tools=("fire_extinguisher",),
     reasons=("no_extinguisher", "empty", "no_line_of_sight", "too_hot", "still_burning"),
+)
+register_mitigation(
+    "put_on",
+    MODULE + "shelving:put_on",
+    MODULE + "shelving:tops",
+    "puts what is in the hand on top of a table or other furniture, where it stays dry while the water is lower",
+    reasons=("no_top", "no_room", "fell_off"),
 )

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.view import View
-from hazard_ms.simulation.hinges import angle, spots, under_leaf
+from hazard_ms.simulation.mitigation.hinges import angle, spots, under_leaf
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec
 
@@ -66,16 +66,14 @@ class DoorMemory:
         x, y, z = self._spots[number][1].tolist()
         share, broken = float(openings.share[0, number]), bool(openings.state.broken[0, number])
         before = self.known.get(number)
-        self.known[number] = KnownOpening(
-            self.names[number], number, o.kind, (x, y, z), o.width, share, broken, frame
-        )
+        self.known[number] = KnownOpening(self.names[number], number, o.kind, (x, y, z), o.width, share, broken, frame)
         if before is not None and (before.open, before.broken) != (share, broken):
             stood = under_leaf(self._spec.room, o, angle(before.open))
             for seen in maps:
                 seen.clear(stood)
 
     def find(self, name: str) -> KnownOpening | None:
-        """What is known of the opening called `name`; None where it was never seen."""
+        """The memory of the opening called `name`; None where it was never seen."""
         return next((opening for opening in self.known.values() if opening.name == name), None)
 
     def rows(self) -> tuple[KnownOpening, ...]:

@@ -111,10 +111,11 @@ class Openings:
         self.apply()
 
     def set_open(self, rows: Tensor, opening: Tensor | int, share: Tensor | float) -> None:
-        """Open doors and windows to a `share` of their width, 0 to 1, [R] or one for all, in the environments `rows`, indices [R].
+        """Open doors and windows in the environments `rows`, indices [R].
 
-        `opening` is the number along O, [R] or one for all. What has no leaf (any more) stays as it is. Raises
-        ValueError for numbers out of range that need no look at a tensor.
+        They open to a `share` of their width, 0 to 1, [R] or one for all. `opening` is the number along O, [R]
+        or one for all. What has no leaf (any more) stays as it is. Raises ValueError for numbers out of range
+        that need no look at a tensor.
         """
         if isinstance(opening, int) and not 0 <= opening < self.count:
             raise ValueError(f"opening must be from 0 to {self.count - 1}, got {opening}")

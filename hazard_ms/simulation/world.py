@@ -16,9 +16,9 @@ from torch import Tensor
 
 from hazard_ms.kernels.launch import Launches
 from hazard_ms.simulation.chance import Chance
-from hazard_ms.simulation.equipment import Equipment
 from hazard_ms.simulation.handles import Handles
 from hazard_ms.simulation.jet import Jet
+from hazard_ms.simulation.mitigation.equipment import Equipment
 from hazard_ms.simulation.openings import Openings
 from hazard_ms.simulation.walls import Walls
 from hazard_ms.spec import Body, Build, SceneSpec
@@ -193,12 +193,12 @@ class World:
 
     def equip(self, categories: Collection[str]) -> None:
         """Let agents pick up and use the bodies of these `categories` that are no targets."""
-        self.equipment = Equipment(self, categories)
+        self.equipment = Equipment(self.specs, self.target, categories)
         self.jet = self.equipment.jet
 
     @property
     def takeable(self) -> Tensor:
-        """What a hand takes, bool [E, B]: targets, and tools."""
+        """The things that a hand takes, bool [E, B]: targets, and tools."""
         return self.target if self.equipment is None else self.equipment.takes
 
     def index(self, env: int, name: str) -> int:

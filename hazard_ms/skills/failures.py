@@ -27,6 +27,9 @@ NO_EXTINGUISHER = "no_extinguisher"  # none is in the hand
 EMPTY = "empty"  # the extinguisher ran out
 NO_LINE_OF_SIGHT = "no_line_of_sight"  # a wall is between the nozzle and the flames wherever the robot gets
 TOO_HOT = "too_hot"  # it cannot come near enough without being destroyed
+NO_TOP = "no_top"  # nothing can be put there within the arm's reach
+NO_ROOM = "no_room"  # its top is full, or too small
+FELL_OFF = "fell_off"  # let go, but it did not stay there
 STILL_BURNING = "still_burning"  # the jet reached the flames, but does not put them out
 
 FAILURES = (

@@ -17,7 +17,7 @@ import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.scenes import floor
 from hazard_ms.scenes.schema import to_json
 from hazard_ms.scenes.splits import scene
-from hazard_ms.simulation import hinges
+from hazard_ms.simulation.mitigation import hinges
 
 FLAT = scene("flat_a/00")
 HOLES = tuple(dataclasses.replace(o, kind="door") if o.kind == "doorway" else o for o in FLAT.room.openings)

@@ -10,7 +10,7 @@ import pytest
 import torch
 
 from hazard_ms.registry import ROBOTS
-from hazard_ms.simulation import hinges
+from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.skills import failures
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.decision import Action
@@ -33,7 +33,9 @@ def turning(rooms: TwoRooms, action: Action) -> tuple[object, list[float], float
         made = advance(low_level)
         shares.append(rooms.share())
         if len(shares) < 2 or shares[-1] == shares[0]:  # the leaf has not moved yet
-            handle = hinges.handle(rooms.base.specs[0].room, rooms.base.specs[0].room.openings[0], hinges.angle(shares[-1]))
+            handle = hinges.handle(
+                rooms.base.specs[0].room, rooms.base.specs[0].room.openings[0], hinges.angle(shares[-1])
+            )
             nearest.append(float(np.linalg.norm(rooms.stage.robot.hand() - handle)))
         return made
 
@@ -95,7 +97,9 @@ def test_water_holds_a_door_that_opens_into_it_and_not_one_that_is_pushed_along(
         assert (result.ok, result.reason) == (False, failures.HELD_SHUT)
         assert rooms.share() == 0.0
         rooms.world.openings.force[0, 0] = -pressing
-        assert Leaf(rooms.world, 0).force(True) == 22.2 < rooms.stage.robot.build.pull < Leaf(rooms.world, 0).force(False)
+        assert (
+            Leaf(rooms.world, 0).force(True) == 22.2 < rooms.stage.robot.build.pull < Leaf(rooms.world, 0).force(False)
+        )
 
 
 def test_what_stands_in_the_swing_keeps_a_door_shut_and_what_is_light_is_pushed_away() -> None:

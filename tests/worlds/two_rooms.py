@@ -16,7 +16,7 @@ from hazard_ms.registry import ROBOTS
 from hazard_ms.scenes import floor
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
-from hazard_ms.simulation import hinges
+from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition, Room, SceneSpec

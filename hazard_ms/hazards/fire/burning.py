@@ -1,4 +1,4 @@
-"""What the fires of all presets have in common: what is damaged, and where flames are."""
+"""The base of the fires of all presets: what is damaged, and where flames are."""
 
 from __future__ import annotations
 

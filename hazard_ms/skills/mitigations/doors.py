@@ -3,9 +3,9 @@
 The robot walks to where its arm is long enough for the handle and brings its hand there. Then it steps out of the
 leaf's way, if it stands in it, and the leaf turns over its time; the hand follows as far as the arm gets.
 
-Where the leaf needs more force at the handle (hazard_ms.simulation.hinges) than the arm's pull (Build.pull: 59 N for Fetch, 29 N for G1), it
-is held. Limits: latches are not locked; leaves of outer doors and windows are not drawn
-open; the force is checked before and during the turn, but the leaf is not pressed back.
+Where the leaf needs more force at the handle (hazard_ms.simulation.mitigation.hinges) than the arm's pull
+(Build.pull: 59 N for Fetch, 29 N for G1), it is held. Limits: latches are not locked; leaves of outer doors and
+windows are not drawn open; the force is checked before and during the turn, but the leaf is not pressed back.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.simulation import hinges
+from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.simulation.openings import EVERY
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
@@ -194,7 +194,9 @@ def _obstructed(stage: Stage, leaf: Leaf, first: float, last: float) -> bool:
     x, y, _ = stage.robot.base()
     if leaf.meets(first, last, np.array([[x, y]]), np.array([stage.robot.build.radius])):
         return True
-    pushed = (stage.robot.build.pull - hinges.REST_FORCE) / (world.robot.friction * 9.81)  # mass that the leaf pushes [kg]
+    pushed = (stage.robot.build.pull - hinges.REST_FORCE) / (
+        world.robot.friction * 9.81
+    )  # mass that the leaf pushes [kg]
     there = world.exists[0] & ~world.away[0] & ~world.held[0] & (~world.movable[0] | (world.mass[0] > pushed))
     low = world.position[0, :, 2] - world.extent[0, :, 2] / 2
     there &= (low < leaf.o.sill + leaf.o.height) & (world.extent[0, :, 2] + low > leaf.o.sill + 0.02)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.simulation import hinges
+from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening
 
@@ -27,7 +27,7 @@ class Leaf:
 
     @property
     def angle(self) -> float:
-        """How far it is open now [rad]."""
+        """The angle by which it is open now [rad]."""
         return hinges.angle(float(self._openings.share[0, self.number]))
 
     def turn_to(self, angle: float) -> None:
@@ -52,6 +52,6 @@ class Leaf:
         return self.inner and bool(hinges.in_swing(self.room, self.o, first, last, points, radius).any())
 
     def side(self, x: float, y: float) -> float:
-        """On which side of its wall a place [m] is, and how far [m]: above 0 that into which it turns."""
+        """The distance [m] of a place [m] from its wall: above 0 on the side into which it turns."""
         start, _, out = hinges.hinge(self.room, self.o)
         return float((np.array([x, y]) - start) @ out)

@@ -13,7 +13,7 @@ from hazard_ms.spec.checks import one_of
 
 
 def offered(stage: Stage, verbs: Sequence[str]) -> tuple[Action, ...]:
-    """What can be tried beyond the six verbs of the benchmark: to pick up tools, and the mitigations of `verbs`."""
+    """The actions beyond those of the benchmark that can be tried: to pick up tools, and the mitigations of `verbs`."""
     made = []
     if stage.held < 0:
         light = [tool for tool in tools(stage) if stage.labeller.index(tool.name) in stage.seen.objects]
@@ -43,7 +43,7 @@ def _carries(stage: Stage, name: str) -> bool:
 
 
 def check(action: Action, stage: Stage, verbs: Sequence[str]) -> None:
-    """Raise ValueError for a verb that the task of `verbs` does not have, and for a target that its verb cannot have."""
+    """Check that the task of `verbs` has the verb of `action`, and the scene its target. Raises ValueError if not."""
     if action.verb not in VERBS:
         one_of(action.verb, (*VERBS, *verbs), "verb")
         known = (*stage.labeller.names, *stage.doors.names)

@@ -9,15 +9,15 @@ import torch
 
 from hazard_ms.hazards.case import Case, table
 from hazard_ms.hazards.flood.realistic import openings
-from hazard_ms.simulation import hinges
+from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import AgentStart, Body, Opening, Partition, Room, SceneSpec
 from hazard_ms.validation.experiments.fire_room import FAR
 
 INCH_OF_WATER, INCH = 249.1, 0.0254  # [Pa], [m]
 CLOSER, MOST = 26.7, 133.4  # force of the closer, and at most at the handle [N]: 6 and 30 lbf
-# Pressure over a door 7 ft high at which it takes 30 lbf to open it against a closer of 6 lbf, by its width [in]: inches
-# of water [NFPA 92, table A.4.4.2.2]
+# Pressure over a door 7 ft high at which it takes 30 lbf to open it against a closer of 6 lbf, by its width [in]: in
+# inches of water [NFPA 92, table A.4.4.2.2]
 NFPA_92 = {32: 0.45, 36: 0.40, 40: 0.37, 44: 0.34, 48: 0.31}
 DOOR = Opening("door", "middle", 2.0, 0.9, 2.05)
 # rho g w h^2 / 2, w 0.9 m

@@ -9,7 +9,8 @@ from hazard_ms.hazards.case import Case, table
 from hazard_ms.hazards.fire.realistic import wetting
 from hazard_ms.validation.mitigation import jets
 
-# Class A ratings that extinguishers must have at least [EN 3-7, 15.2]; 13A of 9 litres of water are missed: kind and charge [kg] -> length of the crib [dm]
+# Class A ratings that extinguishers must have at least [EN 3-7, 15.2], 13A of 9 litres of water are missed: kind and
+# charge [kg] -> length of the crib [dm]
 RATINGS = {("water", 6.0): 8, ("powder", 2.0): 8, ("powder", 6.0): 21, ("powder", 12.0): 43}
 # Data sheets of stored-pressure ones: 2.5 gallons (9.46 l) of water in 55 s, 5 lb (2.27 kg) of powder in 14 s, 5 lb of
 # carbon dioxide in 9 s, 2.5 lb (1.13 kg) of powder in 10 s; for the charges here, at the same rate

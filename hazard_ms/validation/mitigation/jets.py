@@ -8,8 +8,8 @@ import torch
 
 from hazard_ms.hazards.fire.fire_state import BURNING
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
-from hazard_ms.simulation.equipment import Equipment
 from hazard_ms.simulation.jet import Jet, spray
+from hazard_ms.simulation.mitigation.equipment import Equipment
 from hazard_ms.simulation.walls import Walls
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.extinguishers import CRIB, EXTINGUISHERS
@@ -63,7 +63,7 @@ def put_out(kind: str, surface: float, seconds: float, law: Blaze) -> bool:
 def discharge(kind: str) -> float:
     """Time [s] after which a new extinguisher `kind` is empty."""
     world: World = room_world([("fire_extinguisher", (4.0, 4.0, 0.0))])
-    world.equipment = Equipment(world, ("fire_extinguisher",))
+    world.equipment = Equipment(world.specs, world.target, ("fire_extinguisher",))
     world.equipment.kinds[:] = list(EXTINGUISHERS).index(kind)
     world.equipment.state.charge[:] = EXTINGUISHERS[kind].charge
     world.held[:] = True
@@ -71,13 +71,13 @@ def discharge(kind: str) -> float:
     jet.open(ROW, kind, torch.zeros(1, 3), torch.ones(1, 3))
     passed = 0
     while bool(jet.flowing[0]):
-        world.equipment.advance(FRAME, 1.0)
+        world.equipment.advance(world.held, FRAME, 1.0)
         passed += 1
     return passed * FRAME
 
 
 def throw(kind: str) -> float:
-    """How far the jet of an extinguisher `kind` gets [m], to 1 cm."""
+    """The distance that the jet of an extinguisher `kind` covers [m], to 1 cm."""
     jet = Jet.closed(1)
     jet.open(ROW, kind, torch.zeros(1, 3), torch.tensor([[1.0, 0.0, 0.0]]))
     far = torch.arange(1, 2001) * 0.01

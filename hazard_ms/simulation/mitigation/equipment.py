@@ -1,4 +1,4 @@
-"""What agents can pick up and use, in tasks with mitigations: tools, what is left in them, and where they act.
+"""The things that agents can pick up and use, in tasks with mitigations: tools, what is left in them, and where they act.
 
 Its state is saved with the others. Extinguishers are told apart by the beginning of their names: "co2_1" is one of
 `hazard_ms.spec.extinguishers.EXTINGUISHERS`; all others hold 2 kg of powder.
@@ -6,20 +6,16 @@ Its state is saved with the others. Extinguishers are told apart by the beginnin
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import torch
 from torch import Tensor
 
 from hazard_ms.simulation.jet import KINDS, Jet
 from hazard_ms.simulation.state import State, quantity
-from hazard_ms.spec import Body
+from hazard_ms.spec import Body, SceneSpec
 from hazard_ms.spec.extinguishers import EXTINGUISHERS
-
-if TYPE_CHECKING:
-    from hazard_ms.simulation.world import World
 
 CATEGORY = "fire_extinguisher"  # in the catalogue
 USUAL = "powder"  # what an extinguisher holds whose name does not say
@@ -40,19 +36,18 @@ class Equipment:
     """The tools of E agents: bodies of some categories that are no targets."""
 
     @torch.inference_mode(False)  # it changes in that mode and out of it
-    def __init__(self, world: World, categories: Collection[str]) -> None:
-        """Take the bodies of `world` that have one of the `categories` of the catalogue."""
-        self._world = world
-        shape, device = tuple(world.exists.shape), world.device
+    def __init__(self, specs: Sequence[SceneSpec], target: Tensor, categories: Collection[str]) -> None:
+        """Take the bodies of `specs` that have one of the `categories` and are no `target`, bool [E, B]."""
+        shape, device = tuple(target.shape), target.device
         self.tool = torch.zeros(shape, dtype=torch.bool, device=device)
         self.kinds = torch.full(shape, -1, device=device)  # of extinguishers, index into KINDS; -1 for others
-        for e, spec in enumerate(world.specs):
+        for e, spec in enumerate(specs):
             for b, thing in enumerate(spec.things):
                 usable = isinstance(thing, Body) and thing.category in categories
-                self.tool[e, b] = usable and not bool(world.target[e, b])
+                self.tool[e, b] = usable and not bool(target[e, b])
                 if usable and thing.category == CATEGORY:
                     self.kinds[e, b] = KINDS.index(kind_of(thing.name))
-        self.takes = world.target | self.tool
+        self.takes = target | self.tool
         full = torch.tensor([kind.charge for kind in EXTINGUISHERS.values()], device=device)
         self.full = torch.where(self.kinds >= 0, full[self.kinds.clamp(min=0)], 0.0)  # charge at frame 0 [kg], [E, B]
         sizes = {"E": shape[0], "B": shape[1]}
@@ -66,13 +61,13 @@ class Equipment:
         self.state.charge[rows] = self.full[rows]
         self.state.aim[rows, 0] = 1.0
 
-    def advance(self, dt: float, clock: float) -> None:
-        """Let `dt` [s] pass, in which jets use up the charge of what the hands hold, `clock` times as fast.
+    def advance(self, held: Tensor, dt: float, clock: float) -> None:
+        """Let `dt` [s] pass, in which jets use up the charge of what is `held`, bool [E, B], `clock` times as fast.
 
         A nozzle closes where nothing that discharges is held, and when it is empty.
         """
-        state, held = self.state, self._world.held & (self.kinds >= 0)
-        used = held & state.flowing[:, None]
+        state = self.state
+        used = held & (self.kinds >= 0) & state.flowing[:, None]
         spent = used * (self.jet.number("rate") * (dt * clock))[:, None]
         state.charge.copy_((state.charge - spent).clamp(min=0.0))
         state.flowing.logical_and_((used & (state.charge > 0.0)).any(1))

@@ -3,8 +3,9 @@
     share = 1 - cos(angle)    what a leaf leaves open of the width, seen along the wall's normal
     F = F_0 + max(0, P) w / (2 (w - d))    at the handle, d from the free edge [NFPA 92, 4.4.2.2]
 
-P is the force of water and air on the leaf against its turn. A leaf in an inner wall hangs at the lower end of its opening along the wall, in the middle of its thickness, and turns into the first side:
-to the south or the west. Angles are 0 where it is shut and a quarter turn where it is open.
+P is the force of water and air on the leaf against its turn. A leaf in an inner wall hangs at the lower end of its
+opening along the wall, in the middle of its thickness, and turns into the first side: to the south or the west. Angles
+are 0 where it is shut and a quarter turn where it is open.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ Mask = NDArray[np.bool_]
 MOST = 5  # places to search that are weighed at a time [ours]
 SIGHT = 3.0  # distance up to which a look surely shows what is on the floor and on furniture [m] [ours]
 DEPTH = 2.0  # how far unseen floor is believed to reach beyond the border of the floor that was seen [m] [ours]
-HIDDEN = 0.3  # share of the targets not seen yet that a look at all this floor would miss [ours]
+HIDDEN = 0.3  # share of the targets that a look at all this floor would miss, and that no look shows at all [ours]
 AGAIN = 0.3  # what a look shows from beside where one was, as a share of what it would have shown first [ours]
 BARRED = 0.5  # share of the targets out of sight from a look nearby that were not there either [ours]
 LITTLE = 0.05  # least share of it that a place must show to be worth a search [ours]
@@ -47,7 +47,8 @@ def lookouts(
     if not len(floor) or not things:
         return _unvisited(things, visits)
     names, places = [name for name, _ in things], np.array([place for _, place in things])
-    shows = (np.hypot(*np.moveaxis(places[:, None] - floor, -1, 0)) < SIGHT) * (weight / weight.sum())
+    hidden = HIDDEN / (1 - HIDDEN) * len(floor)  # before any look the weight of all floor is 1
+    shows = (np.hypot(*np.moveaxis(places[:, None] - floor, -1, 0)) < SIGHT) * (weight / (weight.sum() + hidden))
     again = np.array([sum(np.hypot(*(place - look)) < ANEW for look in looks) for place in places])
     shows *= (AGAIN**again)[:, None]
     ease = 1.0 / (1.0 + np.hypot(*(places - decision.agent_position).T))
@@ -58,7 +59,7 @@ def lookouts(
         if share[best] < LITTLE:
             break
         place = float(places[best, 0]), float(places[best, 1])
-        chosen.append(Lookout(names[best], place, (1 - HIDDEN) * float(share[best])))
+        chosen.append(Lookout(names[best], place, float(share[best])))
         shows[:, shows[best] > 0] = 0.0
     return tuple(chosen) or _unvisited(things, visits)
 
@@ -67,6 +68,7 @@ def _searchable(seen: SemanticMap, looks: Sequence[Place]) -> tuple[NDArray[np.f
     """The middles of floor [m], [P, 2], and how likely a target that was not seen is there, relative to each other [P].
 
     Floor that was seen counts HIDDEN of that which was not. Each further look from within SIGHT multiplies it by that.
+    What no look shows keeps its weight, so each look in vain leaves less hope for the next.
     """
     unseen = unseen_floor(seen)
     cells = unseen | (seen.explored & (seen.height < WALKABLE))

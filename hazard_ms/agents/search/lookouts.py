@@ -19,7 +19,7 @@ Mask = NDArray[np.bool_]
 MOST = 5  # places to search that are weighed at a time [ours]
 SIGHT = 3.0  # distance up to which a look surely shows what is on the floor and on furniture [m] [ours]
 DEPTH = 2.0  # how far unseen floor is believed to reach beyond the border of the floor that was seen [m] [ours]
-HIDDEN = 0.3  # share of the targets not seen yet that a look at all this floor would miss [ours]
+HIDDEN = 0.3  # share of the targets that a look at all this floor would miss, and that no look shows at all [ours]
 AGAIN = 0.3  # what a look shows from beside where one was, as a share of what it would have shown first [ours]
 BARRED = 0.5  # share of the targets out of sight from a look nearby that were not there either [ours]
 LITTLE = 0.05  # least share of it that a place must show to be worth a search [ours]
@@ -65,7 +65,8 @@ def lookouts(
     else:
         seen = np.array([in_sight(decision.map, ends[name].place, floor, SIGHT) for name in names])
         away = np.array([ends[name].length for name in names])
-    shows = seen * (weight / weight.sum())
+    hidden = HIDDEN / (1 - HIDDEN) * len(floor)  # before any look the weight of all floor is 1
+    shows = seen * (weight / (weight.sum() + hidden))
     again = np.array([sum(np.hypot(*(place - look)) < ANEW for look in looks) for place in places])
     shows *= (AGAIN**again)[:, None]
     ease = 1.0 / (1.0 + away)
@@ -76,7 +77,7 @@ def lookouts(
         if share[best] < LITTLE:
             break
         place = float(places[best, 0]), float(places[best, 1])
-        chosen.append(Lookout(names[best], place, (1 - HIDDEN) * float(share[best])))
+        chosen.append(Lookout(names[best], place, float(share[best])))
         shows[:, shows[best] > 0] = 0.0
     return tuple(chosen) or _unvisited(things, visits)
 
@@ -88,6 +89,7 @@ def _searchable(
 
     Floor that was seen counts HIDDEN of that which was not. Each further look from within SIGHT multiplies it by that.
     With `every`, only one in so many cells along each side, and only looks past which no wall stands.
+    What no look shows keeps its weight, so each look in vain leaves less hope for the next.
     """
     unseen = unseen_floor(seen)
     cells = unseen | (seen.explored & (seen.height < WALKABLE))

@@ -35,7 +35,7 @@ HOPELESS = 10  # such points from which on it fails more often than not, so it i
 RISK = 12.0  # frames that each such point of a way that is not clean costs beyond what it takes [ours]
 NO_WAY = 250.0  # cost of a pick-up to which there is no way: as that of one that fails, and of the next [frames] [ours]
 TRIES = 2  # number of postures that are tried
-GIVE_UP = 20  # frames after which no other posture is tried from the same place [ours]
+GIVE_UP = 90  # frames after which no other posture is tried from the same place [ours]
 ELSEWHERE = 60  # frames, those to a first better place included, after which nothing is tried from another one [ours]
 APART = 0.15  # distance of that place from the first [m] [ours]
 CHASES = 5  # number of times that the arm is led to where a moving thing will be [ours]
@@ -116,6 +116,9 @@ def _take(stage: Stage, index: int) -> Skill:
             stage.robot.use_hand(stage.position(index), len(tried))
         if len(tried) == TRIES or used > (GIVE_UP if chases == 0 else GIVE_UP_CHASE):
             break
+        if tried:  # away from what the arm touched
+            freed = before(stage, stage.robot.arm(), Surface(stage, place_of(stage, index)), FREE)
+            used += (yield from go(stage, freed, AGAIN_FRAMES, close=CLOSELY)).frames
         way = arm_way_where_it_will_be(stage, index, tried, drift)
     again = stage.held != index and used > 0 and used + moved <= ELSEWHERE and not chases
     if used:

@@ -65,6 +65,21 @@ def test_no_more_is_found_than_there_is() -> None:
     assert sum(mark.share for mark in lookouts(looked(around), {}, [HERE], [])) <= 1 - HIDDEN + 1e-9
 
 
+@pytest.mark.parametrize("count", [1, 2])
+def test_looks_in_vain_leave_less_hope(count: int) -> None:
+    """A disc of 2.5 m has been looked at. By Bayes' rule a target there was missed each time, or no look shows it."""
+    decision = looked({"border": (2.4, 0.0)})
+    seen = decision.map
+    y, x = np.nonzero(seen.explored)
+    middle = seen.origin[:, None] + 0.1 * (np.stack([x, y]) + 0.5)
+    disc = np.hypot(*middle) <= 2.5
+    seen._firm[y[~disc], x[~disc]] = 1.0
+    missed = (1 - HIDDEN) * HIDDEN**count
+    part = (np.hypot(middle[0] - 2.4, middle[1])[disc] < SIGHT).mean()  # of the disc, that is seen from the border
+    found = lookouts(decision, {}, [HERE] * count, [])
+    assert found[0].share == pytest.approx(part * missed / (missed + HIDDEN), rel=0.04)
+
+
 def test_a_look_from_beside_leaves_little_to_find_and_two_visits_exhaust_a_place() -> None:
     decision = looked({"border": (2.9, 0.0)})
     first, elsewhere, beside = (
@@ -88,6 +103,7 @@ def test_a_place_shows_its_share_of_all_that_may_be_hidden() -> None:
     decision = looked({"border": (2.9, 0.0)})
     y, x = np.mgrid[-60:60, -60:60] * 0.1 + 0.05
     away = np.hypot(x, y)
-    weight = np.where(away < 3.0, HIDDEN, 1.0) * (away < 5.0)
-    expected = (1 - HIDDEN) * (weight * (np.hypot(x - 2.9, y) < SIGHT)).sum() / weight.sum()
-    assert lookouts(decision, {}, [HERE], [])[0].share == pytest.approx(expected, rel=0.1)
+    floor = away < 5.0
+    missed = (1 - HIDDEN) * np.where(away < 3.0, HIDDEN, 1.0) * floor / floor.sum()  # there, and not seen yet
+    expected = missed[np.hypot(x - 2.9, y) < SIGHT].sum() / (missed.sum() + HIDDEN)  # Bayes' rule
+    assert lookouts(decision, {}, [HERE], [])[0].share == pytest.approx(expected, rel=0.07)

@@ -16,6 +16,9 @@ from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks.rescue import rescue
 
 
+MITIGATIONS = ("open", "shut", "extinguish", "put_on")
+
+
 def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
     """The task HazardHouseFire-v1 with the physics of a preset. Raises ValueError for unknown names."""
     return _in_homes([fire(physics, severity)])
@@ -27,4 +30,5 @@ def hazard_house_flood(physics: str = "paper", severity: str = USUAL) -> Task:
 
 
 def _in_homes(hazards: Sequence[Hazard]) -> Task:
-    return dataclasses.replace(rescue(hazards, "house", MOST_VALUE), several_rooms=True)
+    made = rescue(hazards, "house", MOST_VALUE)
+    return dataclasses.replace(made, several_rooms=True, mitigations=MITIGATIONS, averted=True)

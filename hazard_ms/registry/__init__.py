@@ -206,6 +206,7 @@ register_robot("g1", "hazard_ms.robots.g1:HazardG1")
 
 register_agent("random", "hazard_ms.agents.random:Random")
 register_agent("greedy", "hazard_ms.agents.greedy:Greedy")
+register_agent("fighter", "hazard_ms.agents.fighter:Fighter")
 for _name in ("rule", "oracle", "planner", "mcts"):
     register_agent(_name, f"hazard_ms.agents.{_name}:{_name.capitalize()}")
 for _name, _class in (("bc", "Bc"), ("rl", "Rl"), ("rl_paper", "RlPaper")):

@@ -1,4 +1,4 @@
-"""The things that agents can pick up and use, in tasks with mitigations: tools, what is left in them, and where they act.
+"""The things that agents can pick up and use, in tasks with mitigations: tools, and what is left in them.
 
 Its state is saved with the others. Extinguishers are told apart by the beginning of their names: "co2_1" is one of
 `hazard_ms.spec.extinguishers.EXTINGUISHERS`; all others hold 2 kg of powder.

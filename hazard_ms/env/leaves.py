@@ -15,7 +15,7 @@ import torch
 from sapien.physx import PhysxRigidDynamicComponent
 from torch import Tensor
 
-from hazard_ms.scenes.shell import LEAF, ShellBox, leaf
+from hazard_ms.scenes.shell import ShellBox, leaf
 from hazard_ms.scenes.walls import WALLS, runs_along_x
 from hazard_ms.simulation.drawing.textured_box import surface_material, textured_box
 from hazard_ms.simulation.mitigation import hinges
@@ -25,7 +25,7 @@ from hazard_ms.spec import Opening, Room
 
 GONE = -10.0  # height of what is broken [m]
 SLOW = 0.1  # leaves that move less in a frame turn, others are put where they belong [m] [ours]
-HANDLE = (0.12, LEAF + 0.1, 0.025)  # of a lever on both faces: along the leaf, across it, upwards [m] [ours]
+HANDLE = (0.12, 2 * hinges.BESIDE, 0.025)  # of a lever on both faces: along the leaf, across it, upwards [m] [ours]
 
 
 class Leaves:

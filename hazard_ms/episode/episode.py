@@ -170,6 +170,8 @@ class Episode:
     def freeze(self, gripper: tuple[Tensor, Tensor]) -> None:
         """Keep things in a hand or in the bag in their places; `gripper`: positions [m], [E, 3], rotations, [E, 4]."""
         now = self.world.held | self.world.away
+        if self.world.equipment is not None:
+            now = now | self.world.equipment.placed
         if none_set(now | self._frozen):
             return
         self._frozen = now
@@ -194,6 +196,11 @@ class Episode:
         things[rows, thing] = True
         for hazard in self.hazards:
             hazard.smother(self.states[hazard.name], self.world, things)
+
+    @property
+    def loads_openings(self) -> bool:
+        """Whether a hazard presses on doors and windows, or burns them."""
+        return bool(self._strainers)
 
     def lying(self) -> Tensor | None:
         """Whether the agent lies on the ground where a hazard threw it over, [E], bool; None: none ever does."""

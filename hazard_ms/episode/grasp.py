@@ -108,7 +108,13 @@ def places(hand: Hand, world: World, gripper: Tensor, rotation: Tensor) -> tuple
     held = world.held[..., None]
     base = torch.where(held, (gripper + rotate(rotation, hand.offset))[:, None], base)
     turn = torch.where(held, multiply(rotation, hand.turn)[:, None], world.rotation)
+    frozen = world.held | world.away
+    if world.equipment is not None:
+        stands = world.equipment.placed & ~world.held
+        there = world.equipment.places()
+        base, turn = (torch.where(stands[..., None], new, old) for new, old in zip(there, (base, turn), strict=True))
+        frozen = frozen | stands
     parked = base.clone()
     parked[..., 2] = PUT_AWAY_HEIGHT
     base = torch.where(world.away[..., None], parked, base)
-    return world.held | world.away, base, turn
+    return frozen, base, turn

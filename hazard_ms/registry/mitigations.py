@@ -99,3 +99,12 @@ register_mitigation(
     "puts what is in the hand on top of a table or other furniture, where it stays dry while the water is lower",
     reasons=("no_top", "no_room", "fell_off"),
 )
+register_mitigation(
+    "block",
+    MODULE + "blocking:block",
+    MODULE + "blocking:gaps",
+    "sets the flood board in the hand into the rails of a door or doorway, while the water there is low; it holds back "
+    "water up to its own height",
+    tools=("box",),
+    reasons=("no_board", "no_rails", "too_deep"),
+)

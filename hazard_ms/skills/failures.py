@@ -30,6 +30,9 @@ TOO_HOT = "too_hot"  # it cannot come near enough without being destroyed
 NO_TOP = "no_top"  # nothing can be put there within the arm's reach
 NO_ROOM = "no_room"  # its top is full, or too small
 FELL_OFF = "fell_off"  # let go, but it did not stay there
+NO_BOARD = "no_board"  # none is in the hand, or it is narrower than the opening
+NO_RAILS = "no_rails"  # a board cannot stand there
+TOO_DEEP = "too_deep"  # water presses on the board harder than the arm does
 STILL_BURNING = "still_burning"  # the jet reached the flames, but does not put them out
 
 FAILURES = (

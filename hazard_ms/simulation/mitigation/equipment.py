@@ -1,4 +1,4 @@
-"""The things that agents can pick up and use, in tasks with mitigations: tools, what is left in them, and where they act.
+"""The things that agents can pick up and use, in tasks with mitigations: tools, and what is left in them.
 
 Its state is saved with the others. Extinguishers are told apart by the beginning of their names: "co2_1" is one of
 `hazard_ms.spec.extinguishers.EXTINGUISHERS`; all others hold 2 kg of powder.
@@ -6,18 +6,21 @@ Its state is saved with the others. Extinguishers are told apart by the beginnin
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import torch
 from torch import Tensor
 
+from hazard_ms.scenes.walls import on_wall, runs_along_x
 from hazard_ms.simulation.jet import KINDS, Jet
 from hazard_ms.simulation.state import State, quantity
 from hazard_ms.spec import Body, SceneSpec
 from hazard_ms.spec.extinguishers import EXTINGUISHERS
 
 CATEGORY = "fire_extinguisher"  # in the catalogue
+IN_FRONT = -0.03  # of the middle of a board from the face of the wall that it leans against [m] [ours]
 USUAL = "powder"  # what an extinguisher holds whose name does not say
 
 
@@ -30,6 +33,9 @@ class EquipmentState(State):
     aim: Tensor = quantity("E 3", "", "direction of its jet, a unit vector", low=-1.01, high=1.01)
     kind: Tensor = quantity("E", "", "number of the kind of extinguisher", dtype="int", low=0, high=len(KINDS) - 1)
     flowing: Tensor = quantity("E", "", "it discharges", dtype="bool")
+    stands_in: Tensor = quantity(
+        "E B", "", "number of the opening in which a flood board stands, -1 for none", dtype="int", fill=-1, low=-1
+    )
 
 
 class Equipment:
@@ -48,6 +54,14 @@ class Equipment:
                 if usable and thing.category == CATEGORY:
                     self.kinds[e, b] = KINDS.index(kind_of(thing.name))
         self.takes = target | self.tool
+        openings = max(1, *(len(spec.room.openings) for spec in specs))
+        self.stand = torch.zeros(shape[0], openings, 3, device=device)  # where a board's base is in an opening [m]
+        self.turn = torch.zeros(shape[0], openings, 4, device=device)  # and how it is turned: its length along the wall
+        for e, spec in enumerate(specs):
+            for k, o in enumerate(spec.room.openings):
+                self.stand[e, k] = torch.tensor(on_wall(spec.room, o.wall, o.centre, o.sill, IN_FRONT))
+                half = 0.0 if runs_along_x(spec.room, o.wall) else math.pi / 4
+                self.turn[e, k] = torch.tensor([math.cos(half), 0.0, 0.0, math.sin(half)])
         full = torch.tensor([kind.charge for kind in EXTINGUISHERS.values()], device=device)
         self.full = torch.where(self.kinds >= 0, full[self.kinds.clamp(min=0)], 0.0)  # charge at frame 0 [kg], [E, B]
         sizes = {"E": shape[0], "B": shape[1]}
@@ -60,6 +74,21 @@ class Equipment:
         self.state.clear(rows)
         self.state.charge[rows] = self.full[rows]
         self.state.aim[rows, 0] = 1.0
+
+    @property
+    def placed(self) -> Tensor:
+        """The boards that stand in openings, bool [E, B]."""
+        return self.state.stands_in >= 0
+
+    def places(self) -> tuple[Tensor, Tensor]:
+        """The base [m], [E, B, 3], and the rotation, [E, B, 4], of boards where they stand; of others any."""
+        at = self.state.stands_in.clamp(min=0)[..., None]
+        return self.stand.gather(1, at.expand(-1, -1, 3)), self.turn.gather(1, at.expand(-1, -1, 4))
+
+    def boards(self, height: Tensor, count: int) -> Tensor:
+        """Heights [m] up to which boards close the `count` openings, [E, O]; those of all things: `height` [E, B]."""
+        made = height.new_zeros(height.shape[0], count)
+        return made.scatter_reduce_(1, self.state.stands_in.clamp(min=0), height * self.placed, "amax")
 
     def advance(self, held: Tensor, dt: float, clock: float) -> None:
         """Let `dt` [s] pass, in which jets use up the charge of what is `held`, bool [E, B], `clock` times as fast.

@@ -21,6 +21,7 @@ from hazard_ms.scenes.walls import WALLS, on_wall, runs_along_x, thickness_of
 from hazard_ms.spec import Opening, Room
 
 HANDLE_HEIGHT = 1.0  # [m] ADA 404.2.7: 34 to 48 in, 0.86 to 1.22 m
+BESIDE = 0.07  # as far as handles stand out from the middle of a leaf [m] [ours]
 END, SPACING = 0.05, 0.02  # of the points below a leaf: from its ends, and between them [m] [ours]
 HANDLE_EDGE = 0.07  # of the handle's middle from the free edge of the leaf [m] [NFPA 92: 0.07 m, as is usual]
 # Force at the handle of an inner door without any pressure [N] [ADA 404.2.9: at most 5 lbf]
@@ -76,8 +77,11 @@ def handle(room: Room, o: Opening, angle: float) -> NDArray[np.float64]:
 
 
 def under_leaf(room: Room, o: Opening, angle: float) -> NDArray[np.float64]:
-    """Points on the floor below a leaf at this `angle` [rad], without its ends [m], [P, 2]."""
-    return np.array([on_leaf(room, o, angle, far) for far in np.arange(END, o.width - END, SPACING)])
+    """Points on the floor below a leaf at this `angle` [rad] and its handles, without its ends [m], [P, 2]."""
+    _, along, out = hinge(room, o)
+    across = math.cos(angle) * out - math.sin(angle) * along
+    middle = np.array([on_leaf(room, o, angle, far) for far in np.arange(END, o.width - END, SPACING)])
+    return np.concatenate([middle + side * across for side in (-BESIDE, 0.0, BESIDE)])
 
 
 def in_swing(

@@ -112,7 +112,7 @@ class Inundation(Flood):
     @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
     def advance(self, state: InundationState, world: World, dt: float) -> None:  # type: ignore[override]
         state.time.add_(dt)
-        openings.set_heights(state, world)
+        openings.set_heights(state, world, self.outside)
         launches, (rows, columns) = world.launches, _cells(world)
         basin = launches.struct(Basin, state)
         new = launches.results(shallow_water.flow, state.velocity_x, state.velocity_y)

@@ -10,7 +10,7 @@ import tyro
 from hazard_ms import registry
 from hazard_ms.evaluation.choices import SPLITS, flag, offer
 
-FAMILIES = ("indoor", "outdoor", "house")
+FAMILIES = ("indoor", "outdoor", "house", "gale")
 MOST_WORKERS = 64  # processes [ours]
 
 Output = Annotated[Path | None, flag("-o", "--output", old="out")]

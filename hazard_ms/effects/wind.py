@@ -91,7 +91,8 @@ class WindEffects(SceneEffects):
         for e, scene in enumerate(self._scenes):
             drift = heading[e][0] * speed[e] * time[e], heading[e][1] * speed[e] * time[e]
             if isinstance(wind, GaleState):  # what flies shows that a front is coming
-                drift, speed[e] = tuple(wind.blown[e].tolist()), float(wind.lifted[e])
+                east, north = wind.blown[e].tolist()
+                drift, speed[e] = (east, north), float(wind.lifted[e])
             scene.show(heading[e], speed[e], gust[e], time[e], drift)
 
 

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import sapien
-from numpy.typing import NDArray
 
 # Largest force [N]: 20 kg to start or stop a load, the guideline for men [HSE RR228, 2004]
 FORCE = 196.0
@@ -48,8 +47,3 @@ class Hitch:
     def release(self) -> None:
         """Let go."""
         self._load.entity.remove_component(self._drive)
-
-
-def place_of(load: Any) -> NDArray[np.float64]:
-    """Middle of the base of a rigid body of SAPIEN [m], [3], world frame."""
-    return np.asarray(load.entity.pose.p, np.float64)

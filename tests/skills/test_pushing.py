@@ -104,6 +104,20 @@ def test_goals_must_be_finite(env: SkillEnv) -> None:
         next(push(env.stage, env.labeller.index("cart_1"), (np.nan, 0.0)))
 
 
+def test_a_cart_that_is_too_heavy_stays() -> None:
+    """At a friction of 0.5, 196 N move 40 kg: 22 kg of the cart and 10 kg in it, but not 30 kg."""
+    found = []
+    for mass in (10.0, 30.0):
+        (body,) = LOT.bodies
+        spec = dataclasses.replace(LOT, bodies=(dataclasses.replace(body, mass=mass),))
+        with registered_task("HazardLoad-v1", lot(hazard_gale, spec)):
+            env = SkillEnv.make("HazardLoad-v1", reward_mode="none")
+            result = pushed(env, (7.0, 6.0))
+            found.append((result.ok, result.reason, bool(place(env)[0] > 5.2)))
+            env.close()
+    assert found == [(True, "", True), (False, failures.BLOCKED, False)]
+
+
 def test_carts_that_stand_fast_are_not_pushed() -> None:
     with registered_task("HazardStill-v1", lot(hazard_wind)):
         env = SkillEnv.make("HazardStill-v1", reward_mode="none")

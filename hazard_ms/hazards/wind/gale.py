@@ -9,14 +9,14 @@ is slower. They blow half of the turn and all of it away from the first. Forces 
 holds for each wind holds for them: none makes a thing faster than the air. The front is a straight line that moves as
 the wind right behind it blows.
 
-Turn    45 to 180 degrees, either way. A wind shift is one of 45 degrees or more [FMH-1 2019, 12.6.8: in less than 15
-        minutes]; winds of downbursts turn up to right round [Iwashita & Kobayashi 2019]
+Turn    45 to 180 degrees, either way. A wind shift is one of 45 degrees or more in less than 15 minutes [FMH-1]; winds
+        of downbursts turn up to right round [Iwashita & Kobayashi 2019]
 Speed   twice that before the front: a squall is a rise by 8 m/s at least, to 11 m/s or more [WMO-No. 182]
 Pace    the wind behind the front over 1.44, the median of 943 fronts [Sherburn, Bunkers & Mose 2021]
 Times   rise and turning are those of a passage within a minute, in an episode of 100 s [ours]
 
-Carts are free to roll away from a push, but feel no wind, as in the steady wind. Limits: the front is not seen by what
-is ahead of it, no lift at its nose, no rain.
+Carts can be pushed, but feel no wind, as in the steady wind (docs/physics.md 1.3.1). Limits: no lift at the nose of the
+front, no rain.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import torch
 from torch import Tensor
@@ -147,7 +147,7 @@ class Gale(Wind):
         for share, name in zip(shares.unbind(-1), WINDS, strict=True):
             if not none_set(share > 0.0):
                 wind = wind_of(state, name)
-                speed = super().speed_at(wind, world, points)  # type: ignore[arg-type]
+                speed = super().speed_at(wind, world, points)
                 found += (share * speed)[..., None] * wind.heading[:, None]
         return found
 
@@ -177,7 +177,7 @@ def corners(world: World) -> Tensor:
     return torch.stack([x[:, (0, 0, 1, 1)], y[:, (0, 1, 0, 1)], torch.zeros_like(world.room).repeat(1, 2)], -1)
 
 
-def wind_of(state: GaleState, name: str) -> SimpleNamespace:
+def wind_of(state: GaleState, name: str) -> Any:
     """The fields of WindState that tell of the air, for the wind called `name` in WINDS; they share its memory."""
     own = {part: getattr(state, f"{name}_{part}") for part in AIR}
     return SimpleNamespace(**own, **{part: getattr(state, part) for part in SHARED})

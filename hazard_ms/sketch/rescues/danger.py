@@ -19,7 +19,10 @@ from hazard_ms.spec.checks import one_of, whole
 from hazard_ms.spec.severity import SCALED, SEVERITIES, USUAL
 from hazard_ms.tasks import task_of
 
-RESCUES = ("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1", "HazardGale-v1", "HazardCompound-v1")
+RESCUES = (
+    *("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1", "HazardCompound-v1"),
+    *("HazardHouseFire-v1", "HazardHouseFlood-v1", "HazardGale-v1"),
+)
 MOVED = 0.25  # distance from its place beyond which a thing counts as moved [m] [ours]
 QUARTERS = 4  # of an episode, at whose ends is counted
 MOST_SCENES = 1000  # more must be a mistake [ours]

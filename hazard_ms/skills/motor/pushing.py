@@ -1,7 +1,7 @@
 """The skill `push`: the robot walks behind a cart, grips it and pushes it to a place.
 
-It pushes with at most 196 N (hazard_ms.simulation.hitch), about what a cart that slides with 35 kg in it takes at a
-friction of 0.5, and stops where the cart is held fast or lags behind. On a GPU furniture stands, and no cart moves.
+It pushes with at most 196 N (hazard_ms.simulation.hitch), what a cart of 22 kg with 18 kg in it takes to slide at a
+friction of 0.5, and stops where the cart lags behind. On a GPU furniture stands fast, and no cart moves.
 """
 
 from __future__ import annotations

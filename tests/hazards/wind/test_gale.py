@@ -113,7 +113,7 @@ def test_the_air_that_is_shown_is_that_in_the_middle() -> None:
 
 
 def test_the_front_shows_before_it_arrives() -> None:
-    """What flies tells of the fastest air within 4 m around the square: the front is there, but not yet in the middle."""
+    """What flies tells of the fastest air within 4 m around the square, where the front is before it is in the middle."""
     state, world = started()
     reach = 12.0 * float(state.way.abs().sum())  # along its way from the middle to the farthest corner [m]
     shown = []
@@ -145,6 +145,23 @@ def test_seeds_decide_the_front_and_rows_are_their_own() -> None:
     world.chance.restart(torch.tensor([1]), torch.tensor([9]))
     LAW.reset(state, world, torch.tensor([1]))
     assert torch.equal(onset[[0, 2]], before[[0, 2]]) and float(onset[1]) != float(before[1])
+
+
+def test_a_batch_is_pushed_as_each_scene_alone() -> None:
+    """Two environments with other seeds, one before and one behind its front."""
+    world = street((Thing(), Thing(at=(4.0, 5.0, 0.0))), SCENE, copies=2)
+    world.chance.restart(torch.arange(2), torch.tensor([1, 2]))
+    state = begin(LAW, world)
+    assert isinstance(state, GaleState)
+    state.time[:] = torch.tensor([1.0, 70.0])
+    together = LAW.force(state, world, 0.01).force
+    for e, seed in enumerate((1, 2)):
+        one = street((Thing(), Thing(at=(4.0, 5.0, 0.0))), SCENE)
+        one.chance.restart(torch.arange(1), torch.tensor([seed]))
+        own = begin(LAW, one)
+        assert isinstance(own, GaleState)
+        own.time[:] = (1.0, 70.0)[e]
+        assert torch.equal(LAW.force(own, one, 0.01).force[0], together[e])
 
 
 def test_carts_alone_are_free() -> None:

@@ -1,4 +1,4 @@
-"""The hand goes into furniture through its open side: between two boards, of which the map shows the upper one alone."""
+"""The hand goes into furniture through its open side, between two boards of which the map shows the upper one."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """How often pick-ups and walks work in episodes: `./run python results/pickups.py [EPISODES] [TASK...]`.
 
 Plays the agents below in the first EPISODES scenes (10) of each split that nobody trains on, physics `paper`, Fetch,
-and prints the share of pick-ups and walks that worked, with the reason, the stand and the frames of each kind of failure.
-`--write` also writes every attempt to build/pickups.jsonl. An attempt counts once it has begun: refusals, such as
-`too_far`, and what the end of the episode broke off do not.
+and prints the share of pick-ups and walks that worked, with reason, stand and frames of each kind of failure. `--write`
+also writes every attempt to build/pickups.jsonl. An attempt counts once it has begun: refusals, such as `too_far`, and
+what the end of the episode broke off do not.
 """
 
 from __future__ import annotations

@@ -54,7 +54,7 @@ def posture_for(stage: Stage, point: NDArray[np.float64], inward: NDArray[np.flo
 
 
 def before(stage: Stage, arm: NDArray[np.float64], surface: Surface, height: float = HOVER) -> NDArray[np.float64]:
-    """The joints [rad], [J], with the hand `height` [m] above where it is at `arm` [rad], [J].
+    """The joints [rad], [..., J], with the hand `height` [m] above where it is at `arm` [rad], [..., J].
 
     Where there is furniture around the place of `surface`, the hand is before it instead.
     """

@@ -147,7 +147,7 @@ class Surface:
         if not len(around) or np.median(around) <= self.place.top + ARM_RADIUS or not low.any():
             return np.zeros(2), 0.0
         nearest = float(far[low].min())
-        out = away[low & (far <= nearest + cell)].mean(axis=0)
+        out = away[low & (far <= nearest + cell / 2)].mean(axis=0)
         return np.asarray(out / max(float(np.hypot(*out)), 1e-9)), nearest + cell
 
     def hits(self, legs: Sequence[Leg], enough: float = np.inf) -> int:

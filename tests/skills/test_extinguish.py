@@ -165,3 +165,12 @@ def test_the_heat_keeps_a_robot_away() -> None:
         armed(rooms)
         rooms.base.episode.forbidden = lambda points: torch.ones(points.shape[:2], dtype=torch.bool)
         assert acted(rooms, PUT_OUT).reason == failures.TOO_HOT
+
+
+def test_a_tool_that_is_let_go_over_the_bag_is_not_rescued() -> None:
+    with two_rooms(scene()) as rooms:
+        armed(rooms)
+        for _ in range(60):
+            rooms.base.advance(rooms.stage.act(shut=False))
+        b = rooms.index("powder_0")
+        assert rooms.stage.held == -1 and not bool(rooms.world.safe[0, b] | rooms.world.away[0, b])

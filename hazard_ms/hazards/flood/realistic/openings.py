@@ -22,7 +22,6 @@ from hazard_ms.kernels.launch import Launches
 from hazard_ms.simulation.openings import GAP, Strain
 from hazard_ms.simulation.world import World
 
-
 # Gap under a flood board that a hand sets into its rails [m] [ours]; those that are tested leak 1 l/h per metre of seal
 # [PAS 1188-1], a thousandth of it
 LEAK = 0.0002

@@ -35,7 +35,7 @@ AS_TASK, YES, _ = AVERTED
 
 @dataclass(frozen=True)
 class Alone:
-    """What is lost in one episode if nobody acts, and all that decides it."""
+    """The loss in one episode if nobody acts, and all that decides it."""
 
     env_id: str
     seed: int

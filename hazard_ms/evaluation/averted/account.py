@@ -15,7 +15,7 @@ from hazard_ms.evaluation.metrics import Fate
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.hazards.fire.realistic.tenability import dose_rate
-from hazard_ms.simulation.places import SETTLING, follow, strayed
+from hazard_ms.hazards.places import SETTLING, follow, strayed
 from hazard_ms.skills.actions import wait
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import Decision

@@ -19,7 +19,7 @@ from hazard_ms.evaluation.averted.contacts import Collisions
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.evaluation.runner import play
-from hazard_ms.simulation.places import SETTLING, follow, strayed
+from hazard_ms.hazards.places import SETTLING, follow, strayed
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec, Task
 from hazard_ms.tasks.fire import hazard_fire

@@ -77,7 +77,7 @@ def losses(options: SweepOptions, episodes: Sequence[EpisodeOptions]) -> dict[Ep
     with spread(list(jobs.values()), options.workers, options.backend, options.address) as outcomes:
         for done, (job, outcome) in enumerate(outcomes, 1):
             path = paths[id(job)]
-            loss = found[path] = outcome.result and outcome.result.lost
+            loss = found[path] = None if outcome.result is None else outcome.result.lost
             what = outcome.error or "its simulation broke"
             if loss is not None:
                 e = missing[path]

@@ -154,7 +154,7 @@ def test_a_thing_s_place_is_where_a_hand_last_put_it() -> None:
 
 def played(actions: tuple[tuple[str, str | None], ...]) -> EpisodeResult:
     options = EpisodeOptions("HazardWind-v1", agent="random", split="test", seed=1)
-    return play(options, player=Recorded(actions, "random"), account=Account(), max_episode_steps=FRAMES)
+    return play(options, [Account()], Recorded(actions, "random"), max_episode_steps=FRAMES)
 
 
 @pytest.mark.render

@@ -30,7 +30,7 @@ def attempt(job: Job, say: Say) -> Outcome:
     teller = Teller(job.options, say)
     try:
         player = None if job.actions is None else Recorded(job.actions, job.options.agent, job.waits)
-        result = play(job.options, [teller], player, Account() if job.averted else None)
+        result = play(job.options, [teller, *([Account()] if job.averted else [])], player)
         result.to_json()  # what cannot be written is this agent's fault, not that of who gathers results
         return Outcome(result)
     except KeyboardInterrupt:

@@ -156,15 +156,11 @@ def fates(env: SkillEnv) -> tuple[Fate, ...]:
 
 
 def play(
-    options: EpisodeOptions,
-    watchers: Sequence[Watcher] = (),
-    player: Agent | None = None,
-    account: Account | None = None,
-    **keywords: Any,
+    options: EpisodeOptions, watchers: Sequence[Watcher] = (), player: Agent | None = None, **keywords: Any
 ) -> EpisodeResult:
     """Play one episode in an environment of its own, made with `keywords` of gym.make besides those of `options`.
 
-    `player` decides in place of the agent of `options`; `account` adds what is lost and the loads.
+    `player` decides in place of the agent of `options`; an Account among `watchers` adds what is lost and the loads.
 
     Raises ValueError for what cannot be played.
     """
@@ -174,11 +170,11 @@ def play(
     env = environment(options, **keywords)
     made = time.perf_counter()
     try:
-        account = account or (Account() if env.base.task.safe_place.at_rest else None)
-        every = [*watchers, *([] if account is None else [account])]
-        played = Runner(env, player, every, options.clock).run(options.seed, options.reset_options)
+        if env.base.task.safe_place.at_rest and not any(isinstance(w, Account) for w in watchers):
+            watchers = [*watchers, Account()]
+        played = Runner(env, player, watchers, options.clock).run(options.seed, options.reset_options)
         result = result_of(options, env, played)
-        if account is not None:
+        for account in (w for w in watchers if isinstance(w, Account)):
             result = replace(result, **account.closed(lambda: fates(env)))
         played.phase_seconds["build"] += made - start
         return replace(result, wall_seconds=time.perf_counter() - start)

@@ -154,9 +154,8 @@ class PlanarRobot(Robot):
         position, heading = self.base_pose()
         velocity = self._drive()
         around = torch.arange(RIM, device=position.device) * (2.0 * np.pi / RIM)
-        rim = self.build.radius * torch.stack(
-            [rounding.cos(around), rounding.sin(around), torch.zeros_like(around)], -1
-        )
+        circle = [rounding.cos(around), rounding.sin(around), torch.zeros_like(around)]
+        rim = self.build.radius * torch.stack(circle, dim=-1)
         points = torch.cat([rim, torch.zeros_like(rim[:1])])
         now = position[:, None] + points
         then = now.clone()
@@ -227,8 +226,7 @@ class PlanarRobot(Robot):
         """Positions of all joints of the first environment [rad] or [m], [Joints]."""
         if self.scene.gpu_sim_enabled:
             return self.robot.get_qpos()[0].cpu().numpy().astype(np.float64)
-        # past ManiSkill's tensors, in a fifth of the time
-        return np.asarray(self.robot._objs[0].qpos, np.float64)
+        return np.asarray(self.robot._objs[0].qpos, np.float64)  # past ManiSkill's tensors, in a fifth of the time
 
     @cached_property
     def _chains(self) -> dict[tuple[int, ...], Chain]:

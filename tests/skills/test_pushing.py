@@ -12,7 +12,7 @@ import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.skills import failures
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.executor import SkillEnv
-from hazard_ms.skills.motor.pushing import NOT_MOVABLE, THERE, push
+from hazard_ms.skills.pushing import NOT_MOVABLE, THERE, push
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec, Task
 from hazard_ms.tasks.gale import hazard_gale
 from hazard_ms.tasks.wind import hazard_wind

@@ -1,1 +1,1 @@
-"""What an agent averts: value lost at the end with and without it, and the loads that it bears meanwhile."""
+"""The value that an agent keeps from being lost, and the loads that its robot bears meanwhile."""

@@ -15,7 +15,7 @@ from hazard_ms.evaluation.metrics import Fate
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.hazards.fire.realistic.tenability import dose_rate
-from hazard_ms.simulation.places import SETTLING, follow, strayed
+from hazard_ms.hazards.places import SETTLING, follow, strayed
 from hazard_ms.skills.actions import wait
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import Decision
@@ -76,13 +76,13 @@ class Account(Watcher):
         return {name: float(value[0]) for told in every for name, value in told.items()}
 
     def loads(self) -> Loads:
-        """What the robot has borne up to now."""
+        """The loads on the robot up to now."""
         dose = self._told({DOSE}, set()).get(DOSE, self._dose) if self._base.affects_agent else None
         found = None if self._collisions is None else self._collisions.number
         return Loads(dose, self._wading, self._water, found)
 
     def close(self) -> Loss | None:
-        """What is lost at the end of the task's time, during which nobody acts any more; None if physics broke.
+        """The loss at the end of the task's time, for the rest of which nobody acts; None if physics broke.
 
         What is in the hand stays there, what is in the bag is safe.
         """
@@ -112,7 +112,7 @@ class Account(Watcher):
         return moved if pushed else torch.zeros_like(moved)
 
     def closed(self, fates: Callable[[], tuple[Fate, ...]]) -> dict[str, Any]:
-        """The fields of a result that tell of loads, loss and targets, whose `fates` so far are asked for at the end."""
+        """The fields of a result that tell of loads, loss and targets, whose `fates` are asked for at the end."""
         loads, lost = self.loads(), self.close()
         return {"loads": loads, "lost": lost, **({} if lost is None else self._kept(fates))}
 

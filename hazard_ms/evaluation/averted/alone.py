@@ -35,7 +35,7 @@ AS_TASK, YES, _ = AVERTED
 
 @dataclass(frozen=True)
 class Alone:
-    """What is lost in one episode if nobody acts, and all that decides it."""
+    """The loss in one episode if nobody acts, and all that decides it."""
 
     env_id: str
     seed: int
@@ -77,7 +77,7 @@ def losses(options: SweepOptions, episodes: Sequence[EpisodeOptions]) -> dict[Ep
     with spread(list(jobs.values()), options.workers, options.backend, options.address) as outcomes:
         for done, (job, outcome) in enumerate(outcomes, 1):
             path = paths[id(job)]
-            loss = found[path] = outcome.result and outcome.result.lost
+            loss = found[path] = None if outcome.result is None else outcome.result.lost
             what = outcome.error or "its simulation broke"
             if loss is not None:
                 e = missing[path]

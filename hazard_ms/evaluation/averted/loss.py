@@ -1,4 +1,4 @@
-"""What is lost at the end, what a robot bore, and the score `averted` (docs/benchmark.md 4.3).
+"""The value lost at the end, the loads on a robot, and the score `averted` (docs/benchmark.md 4.3).
 
     averted = (L0 - L1) / L0
 
@@ -35,7 +35,7 @@ class Loss:
 
     @classmethod
     def of(cls, value: NDArray[np.float64], target: Bools, gone: Bools, damaged: Bools) -> Loss:
-        """The loss of N loose things of `value`, [N], of which some are a `target`, `gone` or `damaged`, [N] each.
+        """The loss of loose things with these values [-], [B], of which some are a `target`, `gone` or `damaged`, [B].
 
         What is gone is lost whole, what is damaged by the share that Value takes off for it.
         """
@@ -46,7 +46,7 @@ class Loss:
 
 @dataclass(frozen=True)
 class Loads:
-    """What a robot bore in an episode; None where nothing measures it, or hazards do not act on the robot."""
+    """The loads on a robot in an episode; None where nothing measures them, or hazards do not act on the robot."""
 
     heat: Amount | None = None  # dose of heat, 1: unbearable for people [-]
     wading: Amount | None = None  # time in which it stood in water [s]
@@ -70,7 +70,7 @@ def averted(lost: Loss | None, alone: Loss | None) -> float | None:
 
 
 def averted_of_all(lost: Loss | None, alone: Loss | None) -> float | None:
-    """As `averted`, of all loose things, targets or not."""
+    """The same share as `averted` of the value of all loose things, targets or not; None where it is undefined."""
     return None if lost is None or alone is None else _share(lost.things, alone.things)
 
 

@@ -56,7 +56,7 @@ class Group:
         return {episode: kept.result.tally.value for episode, kept in self.agents[agent].items()}
 
     def averted(self, agent: str) -> dict[Episode, float]:
-        """What an agent averted in each episode where that is known and defined, at most 1."""
+        """The share that an agent averted in each episode where that is known and defined, at most 1."""
         every = {episode: kept.result.averted for episode, kept in self.agents[agent].items()}
         return {episode: share for episode, share in every.items() if share is not None}
 

@@ -101,7 +101,7 @@ def attempt(job: Job, say: Say) -> Outcome:
 
 def _job(path: Path, result: EpisodeResult, load: tuple[str, ...]) -> RegretJob:
     played = job_of(result, load)
-    return RegretJob(played.options, played.decision_seconds, played.actions, played.waits, path)
+    return RegretJob(played.options, played.decision_seconds, played.actions, played.waits, path=path)
 
 
 def _records(folders: Sequence[Path]) -> dict[Path, EpisodeResult]:

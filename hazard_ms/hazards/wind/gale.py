@@ -30,6 +30,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.base import Push, State, none_set
+from hazard_ms.hazards.places import SETTLING, follow, strayed
 from hazard_ms.hazards.wind import kernels, shelter
 from hazard_ms.hazards.wind.gale_state import GaleState
 from hazard_ms.hazards.wind.sweeping import sweeping_speed
@@ -37,7 +38,6 @@ from hazard_ms.hazards.wind.wind import Wind
 from hazard_ms.hazards.wind.wind_state import WindState
 from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.simulation.containers import CATEGORY, container_index
-from hazard_ms.simulation.places import SETTLING, follow, strayed
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec, rounding
 

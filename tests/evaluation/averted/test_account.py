@@ -19,7 +19,7 @@ from hazard_ms.evaluation.averted.contacts import Collisions
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.evaluation.runner import play
-from hazard_ms.simulation.places import SETTLING, follow, strayed
+from hazard_ms.hazards.places import SETTLING, follow, strayed
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec, Task
 from hazard_ms.tasks.fire import hazard_fire
@@ -154,7 +154,7 @@ def test_a_thing_s_place_is_where_a_hand_last_put_it() -> None:
 
 def played(actions: tuple[tuple[str, str | None], ...]) -> EpisodeResult:
     options = EpisodeOptions("HazardWind-v1", agent="random", split="test", seed=1)
-    return play(options, player=Recorded(actions, "random"), account=Account(), max_episode_steps=FRAMES)
+    return play(options, [Account()], Recorded(actions, "random"), max_episode_steps=FRAMES)
 
 
 @pytest.mark.render

@@ -113,7 +113,7 @@ def test_the_air_that_is_shown_is_that_in_the_middle() -> None:
 
 
 def test_the_front_shows_before_it_arrives() -> None:
-    """What flies tells of the fastest air within 4 m around the square, where the front is before it is in the middle."""
+    """What flies tells of the fastest air up to 4 m around the square, which the front reaches before its middle."""
     state, world = started()
     reach = 12.0 * float(state.way.abs().sum())  # along its way from the middle to the farthest corner [m]
     shown = []

@@ -1,4 +1,4 @@
-"""Where things were last put down, and which of them something has moved since (torch).
+"""The places where things were last put down, and which of them something has moved since (torch).
 
 A place is where a thing stood at the start, or where it came to rest within SETTLING after a hand let it go.
 """

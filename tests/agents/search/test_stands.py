@@ -40,7 +40,7 @@ def test_walls_hide_what_is_behind_them_but_not_through_a_doorway(point: tuple[f
 
 
 def test_the_way_to_what_is_behind_a_wall_leads_through_the_doorway() -> None:
-    """1.5 m apart as the crow flies; the way is longer than past the edge of the doorway, shorter than along the axes."""
+    """1.5 m apart as the crow flies; the way is longer than past the edge of the doorway, shorter than along axes."""
     seen, here, there = divided(), (0.45, 1.5), (1.95, 1.5)
     ways = Ways(seen.height, seen.explored, seen.cell, seen.origin, here, [there, here], 0.29)
     path = ways.path(there, 0.0)

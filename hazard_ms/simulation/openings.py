@@ -95,7 +95,7 @@ class Openings:
         if self.inner:
             self._spans[..., 0] = self._spans[..., 1] - self.plan.width.gather(1, self._index.clamp(min=0))
         whole = torch.cat([walls.doorway[..., :1], self._spans, walls.doorway[..., 3:]], -1)
-        self.opened = Walls(walls.any, walls.wall, whole)  # with all doors open
+        self.opened = Walls(walls.any, walls.wall, whole, walls.ways)  # with all doors open
         self.begin(torch.arange(len(specs), device=device))
 
     def begin(self, rows: Tensor) -> None:

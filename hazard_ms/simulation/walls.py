@@ -8,6 +8,7 @@ the other.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
@@ -26,6 +27,8 @@ class Walls:
     wall: Tensor  # axis that it crosses (0 x, 1 y), where, and half of its thickness [m], [E, W, 3]
     # number of its wall (-1 for none), lower and upper end along it of what is open now, sill and top [m], [E, D, 5]
     doorway: Tensor
+    # numbers of the doorways that each wall has in any scene, [W]; empty: it may have any. Others are not looked at
+    ways: tuple[tuple[int, ...], ...] = ()
 
     @classmethod
     @torch.inference_mode(False)
@@ -33,20 +36,29 @@ class Walls:
         """The inner walls of `specs`. Their tensors can be changed in place, in inference mode and out of it."""
         walls = [[_wall(p) for p in s.room.partitions] for s in specs]
         doorways = [_doorways(s) for s in specs]
-        return cls(
-            any(walls), _padded(walls, (0.0, NOWHERE, 0.0), device), _padded(doorways, (-1.0, *[0.0] * 4), device)
+        most = max(1, *(len(row) for row in walls))
+        ways = tuple(
+            tuple(sorted({d for row in doorways for d, way in enumerate(row) if way[0] == w})) for w in range(most)
         )
+        wall, doorway = (0.0, NOWHERE, 0.0), (-1.0, *[0.0] * 4)
+        return cls(any(walls), _padded(walls, wall, device), _padded(doorways, doorway, device), ways)
 
     @classmethod
     def none(cls, count: int, device: torch.device | str = "cpu") -> Walls:
         """`count` scenes without inner walls."""
         wall, doorway = (0.0, NOWHERE, 0.0), (-1.0, *[0.0] * 4)
-        made = (torch.tensor(row, device=device).expand(count, 1, len(row)).contiguous() for row in (wall, doorway))
-        return cls(False, *made)
+        walls, doorways = (
+            torch.tensor(row, device=device).expand(count, 1, len(row)).contiguous() for row in (wall, doorway)
+        )
+        return cls(False, walls, doorways)
 
     def part(self, rows: Tensor | slice) -> Walls:
         """The walls of the environments `rows`, indices [R] or a slice."""
-        return Walls(self.any, self.wall[rows], self.doorway[rows])
+        return Walls(self.any, self.wall[rows], self.doorway[rows], self.ways)
+
+    def doorways_of(self, wall: int) -> Sequence[int]:
+        """Numbers of the doorways that may be in the wall of this number."""
+        return self.ways[wall] if self.ways else range(self.doorway.shape[1])
 
 
 def _wall(partition: Partition) -> tuple[float, ...]:
@@ -85,12 +97,14 @@ def blocked(walls: Walls, here: Tensor, there: Tensor) -> Tensor:
         at = walls.wall[:, w, 1, None, None]
         (mine, along), (yours, end) = ((_across(across, p), _across(~across, p)) for p in (here, there))
         crosses = (mine < at) != (yours < at)
+        if not crosses.is_cuda and not crosses.any():
+            continue
         share = (at - mine) / torch.where(crosses, yours - mine, 1.0)
         through = torch.zeros_like(found)
-        for d in range(walls.doorway.shape[1]):
+        place = along + share * (end - along)
+        height = here[..., 2] + share * (there[..., 2] - here[..., 2])
+        for d in walls.doorways_of(w):
             number, low, high, sill, top = (v[:, None, None] for v in walls.doorway[:, d].unbind(-1))
-            place = along + share * (end - along)
-            height = here[..., 2] + share * (there[..., 2] - here[..., 2])
             through |= (number == w) & (place > low) & (place < high) & (height >= sill) & (height < top)
         found |= crosses & ~through
     return found
@@ -113,7 +127,7 @@ def within(walls: Walls, x: Tensor, y: Tensor, half: float) -> Tensor:
         axis, at, thick = (v.view(like) for v in walls.wall[:, w].unbind(-1))
         place, along = torch.where(axis > 0, y, x), torch.where(axis > 0, x, y)
         through = torch.zeros_like(found)
-        for d in range(walls.doorway.shape[1]):
+        for d in walls.doorways_of(w):
             number, low, high, sill, _ = (v.view(like) for v in walls.doorway[:, d].unbind(-1))
             through |= (number == w) & (sill <= 0.0) & (along - half >= low) & (along + half <= high)
         found |= ((place - at).abs() < thick + half) & ~through

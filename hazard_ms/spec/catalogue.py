@@ -169,6 +169,6 @@ def category(name: str) -> Category:
 
 
 def value_of(thing: Body | Fixture) -> float:
-    """What a thing is worth if it is rescued: its own value where its scene gives one, else its category's."""
+    """The value of a thing that is rescued: its own where its scene gives one, else that of its category."""
     own = thing.value if isinstance(thing, Body) else None
     return float(CATEGORIES[thing.category].value if own is None else own)

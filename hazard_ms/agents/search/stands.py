@@ -1,4 +1,4 @@
-"""Where walks to things end, past the walls of several rooms, and what floor is in sight from there.
+"""The ends of walks to things, past the walls of several rooms, and the floor that is in sight from there.
 
 In a single room things are about as far as they look, and little hides the floor. In a home a thing behind a wall may
 be the whole way round, and a look shows no more than the room and what is seen through its doors.
@@ -25,7 +25,7 @@ ARM = 1.2  # distance up to which an arm reaches from where a walk ends [m] [our
 
 @dataclass(frozen=True)
 class Stand:
-    """Where a walk to a thing ends."""
+    """The end of a walk to a thing."""
 
     name: str  # of the thing
     place: Place  # of the robot [m], world frame
@@ -33,7 +33,7 @@ class Stand:
 
 
 def stands(decision: Decision, names: Sequence[str], radius: float) -> dict[str, Stand]:
-    """Where walks to things on the map end, by name, for a robot of `radius` [m]; without those to which no way leads.
+    """The ends of walks to things on the map, by name, for a robot of `radius` [m], where a way leads to them.
 
     Floor that was never seen counts as free, but costs more. Raises ValueError for a name that nothing has.
     """
@@ -53,7 +53,7 @@ def stands(decision: Decision, names: Sequence[str], radius: float) -> dict[str,
 
 
 def in_sight(seen: SemanticMap, place: Place, points: NDArray[np.float64], far: float) -> NDArray[np.bool_]:
-    """Which of `points` [m], [P, 2], are within `far` [m] of `place` [m] with nothing that hides them between, [P]."""
+    """A mask, [P], of the `points` [m], [P, 2], within `far` [m] of `place` [m] that nothing in between hides."""
     away = np.asarray(points, np.float64) - place
     near = np.hypot(*away.T) < far
     steps = np.arange(1, round(far / seen.cell)) * seen.cell / far

@@ -230,10 +230,12 @@ class Blaze(Burning):
 
         They are above a burning floor cell, or under a flux of more than `agent_bound`.
         """
-        apart = (state.flame_place[:, None, :, :2] - points[:, :, None, :2]).abs().amax(-1)
-        inside = ((apart <= spread.STEP / 2) & lit(state, world.frame)[:, None]).any(-1)
         raised = points + points.new_tensor([0.0, 0.0, tenability.CHEST])
-        return inside | (self._exposure(state, world, self._fires(state, world), raised)[0] > self.agent_bound)
+        return self._forbids(state, world, points, self._exposure(state, world, self._fires(state, world), raised)[0])
+
+    def _forbids(self, state: BlazeState, world: World, points: Tensor, flux: Tensor) -> Tensor:
+        apart = (state.flame_place[:, None, :, :2] - points[:, :, None, :2]).abs().amax(-1)
+        return ((apart <= spread.STEP / 2) & lit(state, world.frame)[:, None]).any(-1) | (flux > self.agent_bound)
 
     def agent_info(self, state: BlazeState, world: World) -> dict[str, Tensor]:
         flux, gas = (v[:, 0] for v in self._exposure(state, world, self._fires(state, world), tenability.chest(world)))
@@ -243,7 +245,7 @@ class Blaze(Burning):
             "agent_dose": state.agent_dose.clone(),
             "agent_thermal_class": tenability.thermal_class(gas, flux),
             "agent_overheated": state.agent_dose >= tenability.UNBEARABLE,
-            "agent_in_fire": self.forbids(state, world, world.agent_position[:, None])[:, 0],
+            "agent_in_fire": self._forbids(state, world, world.agent_position[:, None], flux[:, None])[:, 0],
             "agent_in_smoke": state.smoke_height < tenability.CHEST,
             "agent_toxic_dose": state.agent_toxic_dose.clone(),
             "agent_visibility": smoke.visibility(state, tenability.chest(world))[:, 0],

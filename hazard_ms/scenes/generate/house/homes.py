@@ -107,11 +107,11 @@ def _attempt(place: str, name: str, split: str, attempt: int) -> SceneSpec:
     bare = take(free_for(room, *standing, FLAME_RADIUS), room.size, doorways(room), MIN_DOORWAY_DISTANCE)
     bare &= ~_within(areas["hall"], room)  # it begins in a room
     burning = fires(draw.one(layout.fires), scatter.free, bare, agent, targets, room.size, draw)
-    sides = draw.shuffled(sorted({o.wall for o in room.openings if o.kind == "door" and o.wall in WALLS}))
+    side, second = draw.shuffled(sorted({o.wall for o in room.openings if o.kind == "door" and o.wall in WALLS}))
     clear = ((agent.position, START_RADIUS), *((fire, FLAME_RADIUS) for fire in burning))
     scatter.put_down("vacuum_cleaner", clear, Draw(STREAM, f"{seed}/floor", attempt))
     bodies = _valued(scatter.bodies, chosen, Draw(STREAM, f"{seed}/values", attempt))
-    return SceneSpec(name, room, tuple(made.fixtures), bodies, chosen, burning, agent, split, *sides)
+    return SceneSpec(name, room, tuple(made.fixtures), bodies, chosen, burning, agent, split, side, second)
 
 
 def _valued(bodies: list[Body], chosen: tuple[str, ...], draw: Draw) -> tuple[Body, ...]:

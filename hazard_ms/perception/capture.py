@@ -23,10 +23,10 @@ from hazard_ms.perception import coco, layout
 from hazard_ms.perception.card import card, licences
 from hazard_ms.perception.options import CaptureOptions
 from hazard_ms.perception.scene import capture_scene
-from hazard_ms.perception.spare import spare_names
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.foreign.files import sha256_of
 from hazard_ms.tasks import task_of
+from hazard_ms.tasks.spare import spare_names
 
 ELSEWHERE = "another process takes its pictures"
 

@@ -37,12 +37,12 @@ from hazard_ms.perception.layout import (
     text_of,
 )
 from hazard_ms.perception.options import VARIED, CaptureOptions
-from hazard_ms.perception.spare import file_of, number_of
 from hazard_ms.perception.states import Watch, attributes, stirred
 from hazard_ms.perception.viewpoints import viewpoints
 from hazard_ms.sensing.camera import NOTHING, STRUCTURE, points_of_depth
 from hazard_ms.simulation.drawing.lighting import DRAWN
 from hazard_ms.tasks import task_of
+from hazard_ms.tasks.spare import file_of, number_of
 
 POSES = 8  # pictures of a stop [ours]
 WATCHED_EVERY = 10  # frames, after which what is wet is noted: the flood of the original rises as often
@@ -69,8 +69,7 @@ class Taken(NamedTuple):
 def capture_scene(options: CaptureOptions, scene: str, folder: Path, alive: Callable[[], None]) -> None:
     """Take all pictures of `scene` and write them into `folder`, which is empty; call `alive` at every stop.
 
-    Raises ValueError for a scene that is neither of the split nor a spare one, where nothing draws, and where the
-    simulation breaks.
+    Raises ValueError for scenes neither of the split nor spare, where nothing draws, and where the simulation breaks.
     """
     for name in (*ENDINGS, *([THERMAL] if options.thermal else [])):
         (folder / name).mkdir()

@@ -15,7 +15,7 @@ from hazard_ms.scenes.splits import SCENES, spare_scene
 
 
 def spare_names(names: Sequence[str], count: int) -> tuple[str, ...]:
-    """So many names of spare scenes for each place of the scenes `names`: "kitchen_a/25" and so on, place by place."""
+    """Names of `count` spare scenes for each place of the scenes `names`: "kitchen_a/25" and so on, place by place."""
     return tuple(f"{place}/{SCENES + k:02d}" for place in _places(names) for k in range(count))
 
 
@@ -33,7 +33,7 @@ def number_of(scene: str, names: Sequence[str]) -> int:
 
 @contextmanager
 def file_of(scene: str, names: Sequence[str]) -> Iterator[str]:
-    """What an episode is told to be played in `scene`: its name, or the file of a spare one, for a while.
+    """The name of `scene`, or the file of a spare one, as episodes take it; the file goes when the context ends.
 
     Raises ValueError for a scene that is neither of `names` nor a spare one of their places.
     """

@@ -12,9 +12,9 @@ from hazard_ms.evaluation.options import EnvOptions
 from hazard_ms.perception.capture import capture
 from hazard_ms.perception.check import faults
 from hazard_ms.perception.options import CaptureOptions
-from hazard_ms.perception.spare import file_of, number_of, spare_names
 from hazard_ms.scenes.files import read_scene
 from hazard_ms.scenes.splits import SCENES, scene_names, spare_scene
+from hazard_ms.tasks.spare import file_of, number_of, spare_names
 
 NAMES = scene_names("train")
 PLACES = ("kitchen_a", "living_room_a", "craft_room_a")

@@ -75,7 +75,11 @@ class Fighter(Agent):
             return None  # the other agent puts it away
         hot = self._hot(decision)
         if held is not None:
-            if held.left <= 0.0 or not hot or hot[0] not in {a.target for a in decision.available if a.verb == EXTINGUISH}:
+            if (
+                held.left <= 0.0
+                or not hot
+                or hot[0] not in {a.target for a in decision.available if a.verb == EXTINGUISH}
+            ):
                 self._fights = held.left > 0.0 and self._fights
                 return Action(DROP) if not hot or held.left <= 0.0 else Action(WALK_TO, hot[0])
             self.note = f"puts out {hot[0]} with what is left, {100 * held.left:.0f} %"

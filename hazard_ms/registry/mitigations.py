@@ -108,3 +108,10 @@ register_mitigation(
     tools=("box",),
     reasons=("no_board", "no_rails", "too_deep"),
 )
+register_mitigation(
+    "push",
+    MODULE + "carts:push_cart",
+    MODULE + "carts:far_carts",
+    "pushes a cart to the nearest thing that is still to be rescued, with an empty hand",
+    reasons=("not_movable",),
+)

@@ -28,7 +28,6 @@ SLIPPED = 1.5 * GIVE  # lag behind the base at which the cart is held fast [m]
 RAMP = 15  # frames in which the base comes up to speed: 1 m/s^2, 22 N more for a cart of 22 kg [ours]
 MOST_TURN = np.deg2rad(2.0)  # that the base turns in a frame while it pushes [rad] [ours]
 WALKS = 4  # drives behind the cart, with a look after each, at most [ours]
-NOT_MOVABLE = "not_movable"  # the thing is no cart that could roll here
 
 
 def push(stage: Stage, index: int, goal: tuple[float, float], frames: int = PUSH_FRAMES) -> Skill:
@@ -44,7 +43,7 @@ def push(stage: Stage, index: int, goal: tuple[float, float], frames: int = PUSH
     handles = stage.world.handles
     load = None if handles is None or cart < 0 else getattr(handles, "furniture", {}).get(cart)
     if load is None or not bool(stage.world.movable[0, cart]):
-        return Result(False, NOT_MOVABLE)
+        return Result(False, failures.NOT_MOVABLE)
     aim = np.array(goal, np.float64)
     if _left(stage, cart, aim) <= THERE:
         return Result(True)

@@ -51,4 +51,5 @@ def hazard_gale(physics: str = "paper", severity: str = USUAL) -> Task:
         safe_place=LEE,
         text="Put every target into a shopping cart, or in the lee, before wind that turns can carry it away.",
         averted=True,
+        mitigations=("push",),
     )

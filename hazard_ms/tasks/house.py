@@ -15,20 +15,19 @@ from hazard_ms.spec.catalogue import MOST_VALUE
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks.rescue import rescue
 
-
-MITIGATIONS = ("open", "shut", "extinguish", "put_on")
+DOORS = ("open", "shut")
 
 
 def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
     """The task HazardHouseFire-v1 with the physics of a preset. Raises ValueError for unknown names."""
-    return _in_homes([fire(physics, severity)])
+    return _in_homes([fire(physics, severity)], "extinguish")
 
 
 def hazard_house_flood(physics: str = "paper", severity: str = USUAL) -> Task:
     """The task HazardHouseFlood-v1 with the physics of a preset. Raises ValueError for unknown names."""
-    return _in_homes([flood(physics, severity)])
+    return _in_homes([flood(physics, severity)], "put_on")
 
 
-def _in_homes(hazards: Sequence[Hazard]) -> Task:
+def _in_homes(hazards: Sequence[Hazard], *mitigations: str) -> Task:
     made = rescue(hazards, "house", MOST_VALUE)
-    return dataclasses.replace(made, several_rooms=True, mitigations=MITIGATIONS, averted=True)
+    return dataclasses.replace(made, several_rooms=True, mitigations=(*DOORS, *mitigations), averted=True)

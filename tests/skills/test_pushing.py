@@ -12,7 +12,7 @@ import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.skills import failures
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.executor import SkillEnv
-from hazard_ms.skills.pushing import NOT_MOVABLE, THERE, push
+from hazard_ms.skills.pushing import THERE, push
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec, Task
 from hazard_ms.tasks.gale import hazard_gale
 from hazard_ms.tasks.wind import hazard_wind
@@ -121,5 +121,28 @@ def test_a_cart_that_is_too_heavy_stays() -> None:
 def test_carts_that_stand_fast_are_not_pushed() -> None:
     with registered_task("HazardStill-v1", lot(hazard_wind)):
         env = SkillEnv.make("HazardStill-v1", reward_mode="none")
-        assert pushed(env, (7.0, 6.0)) == Result(False, NOT_MOVABLE)
+        assert pushed(env, (7.0, 6.0)) == Result(False, failures.NOT_MOVABLE)
         env.close()
+
+
+def test_agents_push_a_cart_to_what_they_must_rescue(env: SkillEnv) -> None:
+    """It is left a metre short of the thing; where nothing is far from it no push is offered."""
+    decision, _ = env.reset(seed=0)
+    assert not [a for a in decision.available if a.verb == "push"]  # the bottle lies in the cart
+
+
+def test_a_push_is_offered_and_ends_beside_the_thing() -> None:
+    far = dataclasses.replace(LOT.bodies[0], position=(7.5, 7.2, 0.0))
+    spec = dataclasses.replace(LOT, name="test/far", bodies=(far,))
+    with registered_task("HazardFarLot-v1", lot(hazard_gale, spec)):
+        env = SkillEnv.make("HazardFarLot-v1", reward_mode="none")
+        try:
+            decision, _ = env.reset(seed=0)
+            (action,) = [a for a in decision.available if a.verb == "push"]
+            assert action.target == "cart_1"
+            *_, info = env.step(action)
+            assert info["result"].ok, info["result"]
+            way = np.array([2.5, 1.2])  # from the cart to the bottle
+            assert np.hypot(*(place(env)[:2] - ((5.0, 6.0) + way * (1.0 - 1.0 / np.hypot(*way))))) <= THERE + 0.1
+        finally:
+            env.close()

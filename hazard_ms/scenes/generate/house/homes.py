@@ -33,6 +33,7 @@ ATTEMPTS = 200  # at one scene [ours]: one in 3 to 10 fits, and takes 0.1 s
 NEAR_FRONT_DOOR = 2.5  # distance from the front door within which the rescuer starts [m] [ours]
 FROM_CORNER = 0.3  # of a place along a wall for an extinguisher [m] [ours]
 EXTINGUISHER = "fire_extinguisher"  # a tool: it is in no pool of targets
+SIZE, MASS = 0.75, 3.3  # of one of 2 kg of powder: 0.41 m high, and its mass when full [kg] [data sheets: 3.2 to 3.5 kg]
 EXTINGUISHERS = ("hall", "kitchen_1")  # the areas in which one stands each [ours]: by the exit, and where fires begin
 
 WIDE, MIDDLE, NARROW = (3.8, 4.8), (3.6, 4.0), (2.6, 2.7)  # of columns [m]
@@ -146,14 +147,14 @@ def _stand(scatter: Scatter, area: Area, along: bool, draw: Draw) -> None:
     model = draw.one(models_of(EXTINGUISHER))
     extent = asset(model).extent
     name = f"{EXTINGUISHER}_{1 + sum(b.category == EXTINGUISHER for b in scatter.bodies)}"
-    off = max(extent[:2]) / 2 + MIN_GAP
+    off = SIZE * max(extent[:2]) / 2 + MIN_GAP
     for _ in range(10 * TRIES):
         axis = 0 if along else draw.whole(0, 1)  # along which it runs
         at = [0.0, 0.0]
         at[axis] = draw.uniform(area.min[axis] + FROM_CORNER, area.max[axis] - FROM_CORNER)
         at[1 - axis] = draw.one((area.min[1 - axis] + off, area.max[1 - axis] - off))
         position = (round(at[0], 4), round(at[1], 4), RESTING_HEIGHT)
-        body = Body(name, EXTINGUISHER, model, position, boxes.turned(0.0))
+        body = Body(name, EXTINGUISHER, model, position, boxes.turned(0.0), (SIZE,) * 3, MASS)
         if scatter.add(body, boxes.box_of(body, extent), -1, None):
             return
     raise NoPlaceError(f"a {EXTINGUISHER} must have a place in {area.name}, got none")

@@ -39,7 +39,9 @@ class Block(nn.Module):
     def __init__(self, width: int) -> None:
         super().__init__()
         self.both = nn.Sequential(convolution(width, width), convolution(width, width))
-        nn.init.constant_(self.both[1][1].weight, SLIGHT)  # so that blocks can be added to a trained network
+        nn.init.constant_(
+            self.both.get_parameter("1.1.weight"), SLIGHT
+        )  # so that blocks can be added to a trained network
 
     def forward(self, x: Tensor) -> Tensor:
         """Features, [N, C, H, W], as many as in `x`."""

@@ -53,7 +53,8 @@ def cut(
     rgb, depth, ids = picture.rgb()[part], picture.depth()[part], picture.ids()[part]
     if window != sides:
         rgb = cv2.resize(rgb, sides, interpolation=cv2.INTER_LINEAR).astype(np.uint8)
-        depth, ids = depth_at(depth, sides), cv2.resize(ids, sides, interpolation=cv2.INTER_NEAREST_EXACT)
+        depth = depth_at(depth, sides)
+        ids = cv2.resize(ids, sides, interpolation=cv2.INTER_NEAREST_EXACT).astype(np.uint16)
     things = ids.astype(np.int64)
     label, weight, offset = taught(things, picture.categories(), numbers, other)
     return Crop(rgb, depth, intrinsic, picture.cam2world(), label, weight, offset, things)

@@ -1,64 +1,66 @@
-"""Our small detector and what it was trained on: `./run python results/detector.py [capture|train|compare|tables...]`.
+"""Our small detector: `./run python results/detector.py [capture|train|calibrate|tables...]`.
 
-`capture` takes pictures as the robots' head cameras see: of all training scenes and of the test rooms, and of the same
-training scenes before a hazard has changed anything. `train` trains the detector `small` on the former, `compare`
-twice for fewer steps, once on each. `tables` scores all three in the test rooms and writes detector.md beside this file
-and docs/detector.svg. Without words it does all of it. Each step resumes where it stopped; takes hours on one core.
+`capture` takes pictures with 512 pixels and 120 degrees of whole episodes: few of each of many scenes, those of the
+split `train` and spare ones of the same places; narrower ones of some of them; those of the test rooms, also for
+results/eyes.py; and those in which errors are counted. `train` goes on from the package's weights, `calibrate` counts
+the errors, `tables` scores the detector in the test rooms and writes detector.md beside this file. Without words it
+does all of it. Each step resumes where it stopped; takes hours on one core. What is shipped is build/detector.
 """
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 import os
+import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.perception.detectors.small import Small
-from hazard_ms.perception.score import KINDS, STATES, average_precision, table
-from hazard_ms.perception.training.pictures import read, truth_of
-from hazard_ms.perception.training.validation import results_of
+from hazard_ms.perception import layout
+from hazard_ms.perception.detectors.small import SHIPPED, Small
+from hazard_ms.perception.score import KINDS, table
+from hazard_ms.perception.training.pictures import read
 from hazard_ms.spec.checks import one_of
+from results.eyes import COLUMNS, HOME, Look, scored, values
 from results.tables import COMMAND, HERE, TASKS, machine
 
-RAW = HERE.parent / "build"
-CHART = HERE.parent / "docs" / "detector.svg"
-PICTURES, CALM = RAW / "pictures", RAW / "calm_pictures"  # with hazards, and before a hazard has changed anything
-EYES = ["--size", "256", "--fov", "120"]  # of the head cameras
-TRAINING, TEST = "24", "16"  # pictures of each scene
-SHIPPED, COMPARED = "15000", "4000"  # steps of the trainings
-ROOMS = ("fire", "flood")  # tasks whose pictures are compared
-STEPS = ("capture", "train", "compare", "tables")
-SETS = {"with hazards": PICTURES, "without": CALM}
-LARGE = 1000.0  # area from which a thing is large [pixels]
-GROUPS: dict[str, Callable[[Any], bool]] = {  # of the chart
-    "dry, not burnt": STATES["dry, not burnt"],
-    "burning or burnt": lambda a: a["status"] != "normal",
-    "wet": STATES["wet"],
-}
+PICTURES, NARROW, CAMERA, UNSEEN = (HOME / name for name in ("pictures", "narrow", "camera", "unseen"))
+FIRST, DETECTOR = HOME / "first" / "small.safetensors", HOME / "detector" / "small.safetensors"
+WIDE = ("--per-scene", "6", "--size", "512", "--fov", "120", "-o", PICTURES)
+CLOSE = ("--per-scene", "8", "--size", "512", "--fov", "60", "-o", NARROW)
+SPARE = "24"  # spare scenes of each place
+ROOMS = ("fire", "flood")  # tasks that are seen more closely, too
+CLOSER = [f"{place}/{n}" for place in ("kitchen_a", "living_room_a", "craft_room_a") for n in range(26, 36, 2)]
+ERRORS = {"fire": "large", "flood": "large", "wind": "hard"}  # splits in which errors are counted, by task
+FEW = 6  # scenes of each of these
+STEPS_IN_ALL = "40000"
+STEPS = ("capture", "train", "calibrate", "tables")
+Row = dict[str, Any]
 HEAD = """# The small detector
 
-Made by `./run python results/detector.py`: {pictures} pictures of 256 x 256 with 120 degrees, as the head cameras see,
-from the 75 training scenes of each task, {steps} steps of 8 crops of 128 x 128. Scored in {tests} pictures of rooms and
-streets that it was not trained in, on things that can be moved and carts. One training each. Written at
+Made by `./run python results/detector.py`: {pictures} pictures of 512 x 512 with 120 degrees, and with 60, of {scenes}
+scenes of the three tasks; {steps} steps of 6 crops of 160 x 160 at half to one and a half times their size, after those
+of the weights that the training went on from. Scored in {tests} pictures, 512/120, of rooms and streets that it was not
+trained in, on things that can be moved and carts. One training. Written at
 {machine}.
 
-AP50 of boxes for things of {large:.0f} pixels or more: {box:.3f}; of masks: {mask:.3f}.
-"""
-BESIDE = """
-## Trained with hazards and without
+AP50 of masks by task, with the number of things; goals are 0.60 for all of 256 pixels or more, and 0.45 for those of
+them that burn and that are or were wet. "Any category" counts a thing as found whatever it is called.
 
-Two detectors, {steps} steps each, on as many pictures of the same scenes of fire and flood; one set shows whole
-episodes, the other only what no hazard has changed yet; the original takes its pictures right after a scene is set up.
-AP50 of masks in pictures of the test rooms, things of {least:.0f} pixels or more.
-
-| things | number | trained with hazards | without |
-|---|---|---|---|
+| task | {columns} | any category |
+|{line}
 """
-LEAST = 256.0  # area of things that are compared: smaller ones are hardly found by either [pixels]
+CURVE = """
+## Curve
+
+AP50 of masks of all things in 60 of these pictures, on the way. The rate of learning falls to the end.
+
+| step | AP50 |
+|---|---|
+"""
 
 
 def run(*words: str | Path) -> None:
@@ -67,104 +69,81 @@ def run(*words: str | Path) -> None:
     subprocess.run([*COMMAND, *told], cwd=HERE.parent, check=True)
 
 
-def datasets(home: Path, tasks: Sequence[str]) -> list[Path]:
-    """The datasets of `tasks` below a folder."""
-    return [home / TASKS[task] for task in tasks]
-
-
 def capture() -> None:
     """Take the pictures that are missing."""
-    for task, env_id in TASKS.items():
-        for split, count in (("train", TRAINING), ("test", TEST)):
-            words = ("perception", "capture", "-e", env_id, "--split", split, "--per-scene", count, *EYES)
-            run(*words, "-o", PICTURES)
-            if task in ROOMS and split == "train":
-                run(*words, "--last-frame", "0", "-o", CALM)
+    for env_id in TASKS.values():
+        words = ("perception", "capture", "-e", env_id, "--split")
+        run(*words, "train", "--spare", SPARE, *WIDE)
+        run(*words, "test", *WIDE)
+        run(*words, "test", "--per-scene", "4", "--size", "640", "--fov", "55", "-o", CAMERA)
+        run(*words, "test", *CLOSE)
+    for task in ROOMS:
+        run(
+            "perception", "capture", "-e", TASKS[task], "--split", "train", "--spare", "10", "--scenes", *CLOSER, *CLOSE
+        )
+    for task, split in ERRORS.items():
+        place = {"large": "flat_a", "hard": "parking_hard"}[split]
+        scenes = [f"{place}/{k:02d}" for k in range(FEW)]
+        words = ("perception", "capture", "-e", TASKS[task], "--split", split, "--scenes", *scenes, "--per-scene", "10")
+        run(*words, "--size", "512", "--fov", "120", "-o", UNSEEN)
 
 
 def train() -> None:
-    """Train the detector of the package."""
-    options = ("--model", "small", "--steps", SHIPPED, "--every", "1000")
-    data = datasets(PICTURES, [*TASKS])  # of both splits
-    run("perception", "train", *data, "-o", RAW / "detector", *options, "--validate", *data)
+    """Go on from the weights that the package had when the training began."""
+    if not FIRST.is_file():
+        FIRST.parent.mkdir(parents=True, exist_ok=True)
+        for ending in (".json", ".safetensors"):
+            shutil.copyfile(SHIPPED.with_suffix(ending), FIRST.with_suffix(ending))
+    wide = [PICTURES / env_id for env_id in TASKS.values()]
+    close = [NARROW / TASKS[task] for task in ROOMS]
+    words = ("--model", "small", "--weights", FIRST, "--batch", "6", "--steps", STEPS_IN_ALL, "--every", "1000")
+    run("perception", "train", *wide, *close, "-o", DETECTOR.parent, *words, "--validate", *wide)
 
 
-def compare() -> None:
-    """Train the two detectors that are compared."""
-    for name, home in SETS.items():
-        options = ("--model", "small", "--steps", COMPARED, "--every", "1000")
-        data, test = datasets(home, ROOMS), datasets(PICTURES, ROOMS)
-        run("perception", "train", *data, "-o", compared(name), *options, "--validate", *test)
+def calibrate() -> None:
+    """Count the errors in rooms and streets that belong to neither `train` nor `test`."""
+    table_of = DETECTOR.with_name("small_confusion.json")
+    data = [UNSEEN / TASKS[task] for task in ERRORS]
+    told = f"small:{os.path.relpath(DETECTOR, HERE.parent)}"
+    run("perception", "calibrate", *data, "--perception", told, "--split", "large", "hard", "-o", table_of)
 
 
-def compared(name: str) -> Path:
-    """The folder of a detector that is compared."""
-    return RAW / f"detector_{name.replace(' ', '_')}"
+def of_images(truth: Row, found: list[Row], numbers: range) -> tuple[Row, list[Row]]:
+    """The part of the truth and of what was found that is of the images with these numbers."""
+    images = [image for image in truth["images"] if image["id"] in numbers]
+    things = [thing for thing in truth["annotations"] if thing["image_id"] in numbers]
+    return {**truth, "images": images, "annotations": things}, [one for one in found if one["image_id"] in numbers]
 
 
-def classes_of(folder: Path) -> list[str]:
-    """The categories that a detector tells."""
-    classes: list[str] = json.loads((folder / "small.json").read_text(encoding="utf-8"))["classes"]
-    return classes
-
-
-def found_by(folder: Path, tasks: Sequence[str], classes: list[str]) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """The truth about things of `classes` in the test pictures of `tasks`, and what a detector finds in them."""
-    pictures = read(datasets(PICTURES, tasks), "test")
-    return truth_of(pictures, classes), results_of(Small(str(folder / "small.safetensors")), pictures)
+def row_of(task: str, truth: Row, found: list[Row]) -> str:
+    """A row of the first table."""
+    cells = [f"{value:.3f} ({count})" if count else "-" for value, count in values(truth, found)]
+    return f"| {task} | {' | '.join(cells)} |\n"
 
 
 def tables() -> None:
-    """Score the detectors, write detector.md, and draw the chart."""
-    truth, found = found_by(RAW / "detector", [*TASKS], classes_of(RAW / "detector"))
-    box, mask = (average_precision(truth, found, kind, area=(LARGE, math.inf))[1] for kind in KINDS)
-    learned = len(read(datasets(PICTURES, [*TASKS]), "train"))
-    told = {"pictures": learned, "tests": len(truth["images"]), "steps": SHIPPED, "large": LARGE}
-    text = HEAD.format(machine=machine(), box=box, mask=mask, **told)
+    """Score the detector and write detector.md."""
+    detector = Small(str(DETECTOR))
+    looks = {task: [Look(picture) for picture in read([PICTURES / env_id], "test")] for task, env_id in TASKS.items()}
+    truth, found, _ = scored([look for mine in looks.values() for look in mine], detector)
+    rows, first = "", 1
+    for task, mine in looks.items():
+        rows += row_of(task, *of_images(truth, found, range(first, first + len(mine))))
+        first += len(mine)
+    rows += row_of("all", truth, found)
+    homes = [home / env_id for home in (PICTURES, NARROW) for env_id in TASKS.values()]
+    learned = read([home for home in homes if (home / layout.instances("train")).is_file()], "train")
+    recipe = json.loads(DETECTOR.with_suffix(".json").read_text(encoding="utf-8"))
+    told = {"pictures": len(learned), "scenes": len({(p.dataset.name, p.row["scene"]) for p in learned})}
+    told |= {"steps": recipe["step"], "tests": len(truth["images"]), "columns": " | ".join(COLUMNS)}
+    text = HEAD.format(**told, line="---|" * (2 + len(COLUMNS)), machine=machine()) + rows
     for kind, name in KINDS.items():
         text += f"\n## {name.capitalize()}\n\n{table(truth, found, kind)}"
-    rows = beside()
-    text += BESIDE.format(steps=COMPARED, least=LEAST)
-    for name, (count, values) in rows.items():
-        text += f"| {name} | {count} | " + " | ".join(f"{value:.3f}" for value in values) + " |\n"
+    with DETECTOR.with_suffix(".csv").open(newline="", encoding="utf-8") as file:
+        curve = [(float(row["step"]), float(row["mask AP50"])) for row in csv.DictReader(file)]
+    text += CURVE + "".join(f"| {step:,.0f} | {value:.3f} |\n" for step, value in curve if math.isfinite(value))
     (HERE / "detector.md").write_text(text, encoding="utf-8")
-    chart(rows)
     print(text)
-
-
-def beside() -> dict[str, tuple[int, list[float]]]:
-    """For each of GROUPS the number of things, and the AP50 of masks of the detectors of SETS."""
-    made: dict[str, tuple[int, list[float]]] = {name: (0, []) for name in GROUPS}
-    both = sorted(set.intersection(*(set(classes_of(compared(name))) for name in SETS)))
-    for name in SETS:
-        truth, found = found_by(compared(name), ROOMS, both)
-        for group, rule in GROUPS.items():
-            number = sum(rule(row["attributes"]) and row["area"] >= LEAST for row in truth["annotations"])
-            found_again = average_precision(truth, found, "segm", rule, (LEAST, math.inf))[1]
-            made[group] = number, [*made[group][1], found_again]
-    return made
-
-
-def chart(rows: dict[str, tuple[int, list[float]]]) -> None:
-    """Draw the comparison."""
-    import matplotlib
-
-    matplotlib.use("svg")
-    matplotlib.rcParams.update({"svg.hashsalt": "detector", "font.size": 11})
-    from matplotlib import pyplot
-
-    figure, ax = pyplot.subplots(figsize=(6.4, 3.4))
-    for k, name in enumerate(SETS):
-        bars = ax.bar([n + 0.38 * (k - 0.5) for n in range(len(rows))], [v[k] for _, v in rows.values()], 0.36)
-        bars.set_label(f"trained {name}" if k == 0 else "trained without")
-        ax.bar_label(bars, fmt="%.2f", fontsize=9)
-    ax.set_xticks(range(len(rows)), [f"{name}\n({count} things)" for name, (count, _) in rows.items()])
-    top = 1.15 * max(max(values) for _, values in rows.values())
-    ax.set(ylabel="AP50 of masks", title="Small detector in rooms that it has not seen", ylim=(0.0, top))
-    ax.legend(frameon=False)
-    ax.grid(alpha=0.3, axis="y")
-    figure.tight_layout()
-    figure.savefig(CHART, metadata={"Date": None})
 
 
 def main(wanted: list[str]) -> None:
@@ -172,7 +151,7 @@ def main(wanted: list[str]) -> None:
     todo = [one_of(name, STEPS, "a step") for name in wanted] or [*STEPS]
     for name in STEPS:
         if name in todo:
-            {"capture": capture, "train": train, "compare": compare, "tables": tables}[name]()
+            {"capture": capture, "train": train, "calibrate": calibrate, "tables": tables}[name]()
 
 
 if __name__ == "__main__":

@@ -32,14 +32,15 @@ PAPER = {
     "GPT-3.5": (63.5, 38.5, 16.2),
     "GPT-4": (67.7, 38.2, 33.9),
 }
-PLAIN, LARGER = "small:fusion=false", "512/120"
+SMALLER, LARGER = "256/120", "512/120"
+PLAIN, LARGE = f"small:fusion=false,eyes={SMALLER}", f"small:fusion=false,eyes={LARGER}"
 # what is played by name: the perception, and whether agents count beliefs
 PARTS = {
     "none": (PLAIN, False),
-    f"eyes {LARGER}": (f"{PLAIN},eyes={LARGER}", False),
-    "fusion": ("small", False),
+    f"eyes {LARGER}": (LARGE, False),
+    "fusion": (f"small:eyes={SMALLER}", False),
     "belief": (PLAIN, True),
-    "fusion and belief": ("small", True),
+    "fusion and belief": (f"small:eyes={SMALLER}", True),
     f"all, eyes {LARGER}": (f"small:eyes={LARGER}", True),
 }
 DOUBTING = {"greedy": "greedy:belief=false", "planner": "planner:belief=0.0", "mcts": "mcts:belief=0.0"}  # without

@@ -21,14 +21,12 @@ from hazard_ms.perception.detectors.small_network import (
     features,
     without_normalisation,
 )
-from hazard_ms.perception.training.pictures import read
-from hazard_ms.perception.training.small import SmallStudent, mirrored
 from hazard_ms.sensing.camera import STRUCTURE
 from hazard_ms.sensing.detection.detector import Detection, Detector
 from hazard_ms.sensing.detection.own import OwnLabeller
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import AgentStart, Body, Room, SceneSpec
-from tests.worlds.drawn_pictures import PITCH, camera, depth_to, draw
+from tests.worlds.drawn_pictures import PITCH, camera, depth_to
 from tests.worlds.wall import view as wall
 
 SIDE = 64  # of a picture [pixels]
@@ -141,27 +139,6 @@ def test_other_things_and_specks_are_not_told() -> None:
     assert things(chances, offsets, CLASSES) == []
 
 
-def test_a_crop_tells_class_middle_and_weight_of_each_pixel(tmp_path: Path) -> None:
-    (picture, *_) = pictures = read([draw(tmp_path / "data", "train", 2)], "train")
-    student = SmallStudent(pictures, 2, 64)
-    crop, ids = student.cut(picture, 8, 32, (64, 64)), picture.ids()[32:96, 8:72]
-    for index, thing in enumerate(("apple", "box", "apple", "box")):
-        mask = ids == index + 1
-        if mask.any():
-            rows, columns = np.nonzero(mask)
-            assert set(crop.label[mask]) == {1 + student.classes.index(thing)}
-            assert crop.offset[0][mask] + columns == pytest.approx(columns.mean(), abs=1e-3)
-            assert crop.offset[1][mask] + rows == pytest.approx(rows.mean(), abs=1e-3)
-    assert set(crop.label[ids == 0]) == {0}
-    given = [torch.from_numpy(np.asarray(part))[None] for part in crop[:4]]
-    floor = features(*given)[0, 4].numpy()[(ids == 0) & (crop.depth > 0)]
-    assert floor == pytest.approx(0.0, abs=2e-3)  # the camera of the crop is right
-    twice = mirrored(mirrored(crop))
-    assert all(np.allclose(a, b) for a, b in zip(twice, crop, strict=True))
-    flipped = [torch.from_numpy(np.asarray(part))[None] for part in mirrored(crop)[:4]]
-    assert torch.allclose(features(*flipped), features(*given).flip(-1), atol=1e-4)
-
-
 @pytest.fixture(scope="module")
 def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
     torch.manual_seed(0)
@@ -180,8 +157,8 @@ def test_pictures_may_have_any_size(weights: Path) -> None:
     assert found and all(one.mask.shape == (size, size) and one.category in CLASSES for one in found)
 
 
-def test_the_weights_take_less_than_three_megabytes(weights: Path) -> None:
-    assert weights.stat().st_size < 3e6
+def test_the_weights_take_less_than_eight_megabytes(weights: Path) -> None:
+    assert weights.stat().st_size < 8e6
 
 
 @pytest.mark.parametrize(

@@ -123,8 +123,8 @@ def test_a_finished_training_goes_on_with_more_steps_and_not_with_another_seed(
         ({"split": "hard"}, "split must be one of test, train in"),
         ({"minutes": float("nan")}, "minutes must be positive"),
         ({"batch": 0}, "batch must be"),
-        ({"size": 100}, "size must be a multiple of 16 for the model small, got 100"),
-        ({"weights": "coco.pth"}, "weights must be none for the model small"),
+        ({"size": 100}, "size must be a multiple of 32 for the model small, got 100"),
+        ({"weights": "coco.pth"}, "weights must be a file .pth or .safetensors, got coco.pth"),
         ({"model": "mask_rcnn", "weights": "coco.pth"}, "weights must be a file .pth or .safetensors, got coco.pth"),
     ],
 )

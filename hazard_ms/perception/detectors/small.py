@@ -35,6 +35,8 @@ NEAR = 0.35  # distance of two middles that are of one thing, as a share of the 
 class Small(Detector):
     """The trained network, asked on one core or on a GPU."""
 
+    eyes = "512/120"  # of the original; with fewer pixels it tells fewer categories right (docs/perception.md)
+
     def __init__(self, path: str = "") -> None:
         """Load the weights at `path`, NAME.safetensors with NAME.json beside it; by default those of the package.
 

@@ -14,8 +14,11 @@ from hazard_ms.perception.options import LARGEST, SMALLEST
 
 UNTRAINED = "none"  # weights to begin with
 MOST_STEPS, MOST_BATCH = 10**8, 4096  # [ours]
-SIDES = 16  # of which those of the crops of small are multiples [pixels]
-SIZES = {"small": 128, "mask_rcnn": 192}  # usual sizes of the networks that begin untrained [pixels] [ours]
+SIDES = 32  # of which those of the crops of small are multiples [pixels]
+SIZES = {
+    "small": 160,
+    "mask_rcnn": 192,
+}  # of crops, and of pictures for an untrained network [pixels] [ours]
 
 
 @dataclass(frozen=True)
@@ -29,8 +32,8 @@ class TrainOptions:
     model: Literal["mask_rcnn", "small"] = "mask_rcnn"
     """Mask R-CNN of torchvision, or the small detector that looks at depth, too."""
     weights: str = UNTRAINED
-    """File .pth or .safetensors to begin with: torchvision's COCO weights, or an earlier training's; none: a smaller
-    network with random weights."""
+    """File .pth or .safetensors to begin with: torchvision's COCO weights, or an earlier training's; for small those of
+    another small one, with its NAME.json; none: random weights, for Mask R-CNN of a smaller network."""
     split: str = "train"
     """Split to learn from."""
     validate: tuple[Path, ...] = ()
@@ -51,7 +54,7 @@ class TrainOptions:
     """Pictures or crops of a step; by default 2, small 8."""
     size: int | None = None
     """Shorter side to which Mask R-CNN brings pictures (by default 192 untrained, else as `weights` learned, or
-    torchvision's), or side of the crops of small (128, a multiple of 16), in pixels."""
+    torchvision's), or side of the crops of small (160, a multiple of 32), in pixels."""
 
     def check(self) -> None:
         """Check all options. Raises ValueError for invalid ones."""
@@ -71,8 +74,6 @@ class TrainOptions:
         whole(self.seed, 0, 2**31 - 1, "seed")
         if self.size is not None:
             whole(self.size, SMALLEST, LARGEST, "size")
-        if self.model == "small" and self.weights != UNTRAINED:
-            raise ValueError(f"weights must be {UNTRAINED} for the model small, got {self.weights}")
         if self.model == "small" and (self.size or 0) % SIDES:
             raise ValueError(f"size must be a multiple of {SIDES} for the model small, got {self.size}")
 

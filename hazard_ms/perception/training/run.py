@@ -71,15 +71,15 @@ def student(options: TrainOptions, pictures: Sequence[Picture], before: dict[str
     Raises ValueError for pictures of things that such a training did not begin with.
     """
     recipe = before["recipe"] if before else None
-    size = options.size or (SIZES[options.model] if options.weights == UNTRAINED else None)
+    weights = None if options.weights == UNTRAINED else Path(options.weights)
+    size = options.size or (SIZES[options.model] if weights is None or options.model == "small" else None)
     if options.model == "small":
         from hazard_ms.perception.training.small import SmallStudent
 
         assert size is not None
-        return SmallStudent(pictures, options.batch_size, size, recipe)
+        return SmallStudent(pictures, options.batch_size, size, recipe, weights)
     from hazard_ms.perception.training.mask_rcnn import MaskRcnnStudent
 
-    weights = None if options.weights == UNTRAINED else Path(options.weights)
     return MaskRcnnStudent(pictures, options.batch_size, size, weights, recipe)
 
 

@@ -76,8 +76,7 @@ class SemanticMap:
         self._seen_at = np.full(shape, -1, np.int32)  # frame in which it was seen there
         self.levels = np.full((hazards, *shape), np.nan, np.float32)
         self.objects: Mapping[int, Sighting] = {}
-        self.frame = -1  # frame of the last update
-        self._frozen = False
+        self.frame, self._frozen = -1, False  # frame of the last update; whether it can be written to no more
 
     @property
     def height(self) -> NDArray[np.float32]:
@@ -222,9 +221,7 @@ class SemanticMap:
         cy, cx = self.cell_of(position)
         size = len(self.explored)
         y, x = np.mgrid[max(0, cy - reach) : min(size, cy + reach + 1), max(0, cx - reach) : min(size, cx + reach + 1)]
-        far = np.hypot(
-            self.origin[0] + (x + 0.5) * self.cell - position[0], self.origin[1] + (y + 0.5) * self.cell - position[1]
-        )
+        far = np.hypot(*np.moveaxis(self.centre_of(y, x) - position, -1, 0))
         y, x = y[far <= radius], x[far <= radius]
         self.explored[y, x] = True
         self._firm[y, x], self._light[y, x], self.object_id[y, x] = 0.0, 0.0, -1

@@ -78,15 +78,14 @@ class Blaze(Burning):
     agent_bound: float = 10.0  # flux that keeps the agent out: the limit of class III [kW/m^2] [docs/physics.md 3.1]
 
     def __post_init__(self) -> None:
-        sizes = ("first_release", "first_base", "first_height", "horizon")
-        for name in ("every", "time_scale", "growth", *sizes, "agent_bound"):
+        sizes = ("first_release", "first_base", "first_height", "horizon", "agent_bound")
+        for name in ("every", "time_scale", "growth", *sizes):
             if not 0 < getattr(self, name) < math.inf:
                 raise ValueError(f"{name} must be a positive number, got {getattr(self, name)}")
         if not 0 < self.radiant < 1:
             raise ValueError(f"radiant must be a share between 0 and 1, got {self.radiant}")
         if not self.flame_temperature > self.room_temperature:
-            found = f"got {self.flame_temperature}"
-            raise ValueError(f"flame_temperature must be above room_temperature, {self.room_temperature}, {found}")
+            raise ValueError(f"flame_temperature must be above {self.room_temperature}, got {self.flame_temperature}")
 
     def sizes(self, world: World) -> dict[str, int]:
         lattices = max(1, *(len(s.fires) for s in world.specs))
@@ -111,8 +110,7 @@ class Blaze(Burning):
     def reset(self, state: BlazeState, world: World, rows: Tensor) -> None:
         state.temperature[rows] = state.agent_temperature[rows] = state.smoke_temperature[rows] = self.room_temperature
         begin_flames(state, world, rows, fixtures_block=True)
-        first = state.flame_cell[rows] >= 0
-        middle = state.free.shape[-1] // 2
+        first, middle = state.flame_cell[rows] >= 0, state.free.shape[-1] // 2
         state.free[rows, :, middle, middle] = False
         state.floor_temperature[rows] = self.room_temperature
         each = self.first_release / first.sum(1, keepdim=True).clamp(min=1)

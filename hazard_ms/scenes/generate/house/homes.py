@@ -33,10 +33,7 @@ ATTEMPTS = 200  # at one scene [ours]: one in 3 to 10 fits, and takes 0.1 s
 NEAR_FRONT_DOOR = 2.5  # distance from the front door within which the rescuer starts [m] [ours]
 FROM_CORNER = 0.3  # of a place along a wall for an extinguisher [m] [ours]
 EXTINGUISHER = "fire_extinguisher"  # a tool: it is in no pool of targets
-SIZE, MASS = (
-    0.75,
-    3.3,
-)  # of one of 2 kg of powder: 0.41 m high, and its mass when full [kg] [data sheets: 3.2 to 3.5 kg]
+SIZE, MASS = 0.75, 3.3  # of one with 2 kg of powder: 0.41 m high; its mass when full [kg] [data sheets: 3.2 to 3.5]
 EXTINGUISHERS = ("hall", "kitchen_1")  # the areas in which one stands each [ours]: by the exit, and where fires begin
 
 WIDE, MIDDLE, NARROW = (3.8, 4.8), (3.6, 4.0), (2.6, 2.7)  # of columns [m]

@@ -9,7 +9,7 @@ import pytest
 from tests.worlds.files.checkout import ROOT
 
 FOLDERS = {".ci", "assets", "docs", "examples", "hazard_ms", "results", "tests"}
-LARGEST = 40_000_000  # of all files together [bytes]; they had 30 million when this was written [ours]
+LARGEST = 46_000_000  # of all files together [bytes]; they have 42 million, 7 of them weights of a detector [ours]
 
 
 def test_only_known_folders_are_tracked_and_they_stay_small() -> None:

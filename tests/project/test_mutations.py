@@ -159,4 +159,5 @@ def test_a_name_that_is_not_listed_is_refused() -> None:
     assert {m.file for m in runner.chosen(["hazard_ms/registry"])} == {
         "hazard_ms/registry/__init__.py",
         "hazard_ms/registry/announce.py",
+        "hazard_ms/registry/loading.py",
     }

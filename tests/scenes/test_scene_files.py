@@ -125,13 +125,17 @@ def test_names_must_differ() -> None:
 def test_every_field_is_written() -> None:
     """A field that a later version adds to the spec must be in the file, too."""
     other = next(wall for wall in ("east", "west") if wall != SPEC.flood_side)
-    given = dataclasses.replace(SPEC, second_flood_side=other, parameters=(Parameter("earthquake", "peak", 3.5),))
+    bodies = (dataclasses.replace(SPEC.bodies[0], value=7.0), *SPEC.bodies[1:])
+    given = dataclasses.replace(
+        SPEC, bodies=bodies, second_flood_side=other, parameters=(Parameter("earthquake", "peak", 3.5),)
+    )
     data = json.loads(to_json(given))
     assert set(data) == {"format"} | {f.name for f in dataclasses.fields(SceneSpec)}
     assert from_json(to_json(given)) == given
     assert "parameters" not in json.loads(to_json(SPEC))  # as in the files of scenes that have none
     assert given.parameter("earthquake", "peak", 1.0) == 3.5
     assert given.parameter("fire", "peak", 1.0) == 1.0 == SPEC.parameter("earthquake", "peak", 1.0)
+    assert "value" not in json.loads(to_json(SPEC))["bodies"][0]  # nor those of things without values of their own
     assert set(data["bodies"][0]) == {f.name for f in dataclasses.fields(SPEC.bodies[0])}
     fields = {f.name for f in dataclasses.fields(SPEC.room.openings[0])}
     assert set(data["room"]["openings"][0]) == fields - {"open"}  # as in the files of scenes whose doors are closed

@@ -21,7 +21,7 @@ def test_each_split_has_fifty_scenes_of_its_own() -> None:
     assert tuple(names) == task.splits and [len(of) for of in names.values()] == [50, 50, 50]
     assert len(set.union(*names.values())) == 150 and TASKS["HazardGale-v1"].max_frames == 3000
     assert not set.union(*names.values()) & set(task_of("HazardWind-v1", "paper").all_scenes)
-    assert task.affects_agent and task.averted
+    assert TASKS["HazardGale-v1"].affects_agent and task.averted and task.mitigations == ("push",)
 
 
 @pytest.mark.parametrize("place", ["street_gale", "park_gale", "market_gale", "yard_gale"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from hazard_ms.evaluation.metrics import Fate
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import EpisodeResult, file_hashes
+from hazard_ms.sensing.detection.perception import eyes_of
 
 
 def result_of(episode: EpisodeOptions, saved: bool = False, ended: str = "time") -> EpisodeResult:
@@ -25,5 +26,6 @@ def result_of(episode: EpisodeOptions, saved: bool = False, ended: str = "time")
         command="",
         clock=episode.clock,
         perception=episode.perception,
+        eyes=eyes_of(episode.perception),
         files=file_hashes(episode.agent, episode.perception),
     )

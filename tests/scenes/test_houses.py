@@ -25,7 +25,7 @@ LONG = [*scene_names("train", "house")[::23], *scene_names("test", "house"), *sc
 MORE = [pytest.param(name, marks=pytest.mark.long) for name in LONG if name not in SAMPLE]
 EACH = pytest.mark.parametrize("name", [*sorted(SAMPLE), *MORE])
 RADIUS = 0.3  # of a disc in which Fetch's base, 0.28 m, fits [m]
-HELD_OUT_DIGEST = "6e479e3aa9f702d5be6662739daa58d77de91020e6151de0284b4b547913f90e"
+HELD_OUT_DIGEST = "0d8380abcf010bee00768a54f873510cb85cc7b2045bc22f20af5f85a9709f51"
 
 
 def rooms_of(spec: SceneSpec) -> list[Area]:
@@ -124,7 +124,7 @@ def test_there_are_12_to_20_targets_with_values_1_to_20_and_two_extinguishers(na
 @EACH
 def test_fires_begin_in_rooms_and_water_at_two_outer_doors(name: str) -> None:
     spec = scene(name)
-    assert 1 <= len(spec.fires) <= 2
+    assert 3 <= len(spec.fires) <= 4
     assert all(any(in_area(room, fire) for room in rooms_of(spec)) for fire in spec.fires)
     doors = {o.wall for o in spec.room.openings if o.kind == "door" and o.wall in WALLS}
     assert {spec.flood_side, spec.second_flood_side} == doors and len(doors) == 2

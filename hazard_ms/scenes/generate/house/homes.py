@@ -86,7 +86,7 @@ def layout_of(place: str, split: str) -> House:
         things=tuple(t for t in things if t != EXTINGUISHER),
         targets=(12, 20),
         bodies=120 - len(EXTINGUISHERS),
-        fires=(1, 2),
+        fires=(3, 4),
         inflows=2,
         plans=PLANS,
     )

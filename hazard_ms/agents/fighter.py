@@ -10,12 +10,13 @@ from __future__ import annotations
 from hazard_ms.agents.base import Agent, agent, distance, known
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_TO, Action, Decision, Tool
+from hazard_ms.skills.failures import UNFINISHED
 
 EXTINGUISH = "extinguish"
 FIRE = "fire"
 LARGE = 12  # hot things from which on a fire is too large for what one can carry [ours]
 HOT = 100.0  # level at which a thing is hot: boiling water, as the skill has it [C]
-TRIES = 3  # failures in a row, of walks, pick-ups and jets, after which it gives up the fight [ours]
+TRIES = 3  # failures of walks, pick-ups and jets after which it gives up the fight [ours]
 
 
 class Fighter(Agent):
@@ -35,11 +36,13 @@ class Fighter(Agent):
     def reset(self, brief: Brief) -> None:
         """Begin an episode; `brief` tells whether a fire can be fought in it."""
         self._base.reset(brief)
-        self._fire = brief.hazards.index(FIRE) if FIRE in brief.hazards else -1
+        names = [hazard.name for hazard in brief.hazards]
+        self._fire = names.index(FIRE) if FIRE in names else -1
         self._fights = self._fire >= 0 and EXTINGUISH in brief.mitigations
         self._failures = 0
         self._looked = False
         self._mine: Action | None = None  # its own last action, which the other agent has not chosen
+        self._out: set[str] = set()  # what it has put out, or found not to burn
 
     def act(self, decision: Decision) -> Action:
         """The next action of the fight, else the other agent's."""
@@ -58,10 +61,12 @@ class Fighter(Agent):
         return action
 
     def _count(self, decision: Decision) -> None:
-        """Count failures of the fight in a row, and end it after TRIES."""
+        """Count failures of the fight, end it after TRIES, and remember what was put out."""
         if self._mine is None or decision.last_result is None:
             return
-        self._failures = 0 if decision.last_result.ok else self._failures + 1
+        self._failures += not decision.last_result.ok and decision.last_result.reason not in UNFINISHED
+        if self._mine.verb == EXTINGUISH and self._mine.target is not None and decision.last_result.ok:
+            self._out.add(self._mine.target)
         if self._failures >= TRIES:
             self._fights = False
 
@@ -98,10 +103,10 @@ class Fighter(Agent):
         return Action(PICK_UP if decision.walked_up_to == name else WALK_TO, name)
 
     def _hot(self, decision: Decision) -> list[str]:
-        """Names of the known things that were hot when last seen, nearest first."""
+        """Names of the known things that were hot when last seen and that it has not put out, nearest first."""
         found = [
             (distance(decision, seen), decision.names[index])
             for index, seen in decision.map.objects.items()
             if len(seen.levels) > self._fire and seen.levels[self._fire] >= HOT
         ]
-        return [name for _, name in sorted(found)]
+        return [name for _, name in sorted(found) if name not in self._out]

@@ -9,11 +9,11 @@ import pytest
 
 from hazard_ms.skills import failures
 from hazard_ms.skills.actions import skill
-from hazard_ms.skills.decision import Action, Result
+from hazard_ms.skills.decision import Action
 from hazard_ms.skills.mitigations.blocking import gaps
 from hazard_ms.skills.mitigations.offers import offered
 from hazard_ms.spec import AgentStart, Body, Opening
-from tests.worlds.two_rooms import TwoRooms, spec, two_rooms
+from tests.worlds.two_rooms import TwoRooms, acted, spec, two_rooms
 
 DOOR = Opening("door", "east", 2.0, 0.9, 2.05)
 BLOCK = Action("block", "door_0")
@@ -25,15 +25,6 @@ def board(height: float = 0.6, mass: float = 5.0) -> Body:
 
 def scene(**more: Any) -> Any:
     return spec(door=None, openings=(DOOR,), start=AgentStart((4.6, 2.2), 0.0), bodies=(board(**more),))
-
-
-def acted(rooms: TwoRooms, action: Action) -> Result:
-    for _ in range(8):
-        result = rooms.run(skill(rooms.stage, action))
-        rooms.look()
-        if result.reason != failures.MAX_FRAMES:
-            break
-    return result
 
 
 def dry(rooms: TwoRooms) -> None:

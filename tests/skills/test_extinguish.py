@@ -11,13 +11,12 @@ import torch
 
 from hazard_ms.hazards.fire.fire_state import BURNING
 from hazard_ms.skills import failures
-from hazard_ms.skills.actions import skill
-from hazard_ms.skills.decision import Action, Result
+from hazard_ms.skills.decision import Action
 from hazard_ms.skills.mitigations.extinguish import charge, hot_things
 from hazard_ms.skills.mitigations.offers import offered, tools
 from hazard_ms.spec import AgentStart, Body, Opening
 from hazard_ms.spec.extinguishers import EXTINGUISHERS
-from tests.worlds.two_rooms import DOOR, VERBS, TwoRooms, spec, two_rooms
+from tests.worlds.two_rooms import DOOR, VERBS, TwoRooms, acted, spec, two_rooms
 
 CLOCK = 4.5  # seconds of a realistic fire in a second [docs/physics.md 3.1]
 START = AgentStart((1.0, 2.0), 0.0)
@@ -35,16 +34,6 @@ def box(place: tuple[float, float, float] = AT) -> Body:
 
 def scene(kind: str = "powder_0", mass: float = 3.3, door: Opening | None = None, place: Any = AT) -> Any:
     return spec(door=door, start=START, bodies=(bottle_of(kind, mass), box(place)))
-
-
-def acted(rooms: TwoRooms, action: Action) -> Result:
-    """The result of an action, asked for again where it is not finished."""
-    for _ in range(8):
-        result = rooms.run(skill(rooms.stage, action))
-        rooms.look()
-        if result.reason != failures.MAX_FRAMES:
-            break
-    return result
 
 
 def armed(rooms: TwoRooms, name: str = "powder_0") -> None:

@@ -8,25 +8,15 @@ import pytest
 
 from hazard_ms.registry import ROBOTS
 from hazard_ms.skills import failures
-from hazard_ms.skills.actions import skill
-from hazard_ms.skills.decision import Action, Result
+from hazard_ms.skills.decision import Action
 from hazard_ms.skills.mitigations.shelving import tops
 from hazard_ms.spec import Body, Fixture
-from tests.worlds.two_rooms import TwoRooms, spec, two_rooms
+from tests.worlds.two_rooms import acted, spec, two_rooms
 
 TABLE = Fixture("table_0", "table", "plain_box", (5.0, 2.6, 0.0), scale=(1.0, 0.8, 0.72))
 HIGH = Fixture("cupboard_0", "cabinet", "plain_box", (0.4, 3.6, 1.4), scale=(0.4, 0.4, 0.4))
 SMALL = Fixture("shelf_0", "shelf", "plain_box", (5.0, 0.4, 0.0), scale=(0.1, 0.1, 0.7))
 MUG = Body("bottle_1", "bottle", "plain_box", (2.3, 1.8, 0.0), scale=(0.08, 0.08, 0.2), mass=0.4)
-
-
-def acted(rooms: TwoRooms, action: Action) -> Result:
-    for _ in range(8):
-        result = rooms.run(skill(rooms.stage, action))
-        rooms.look()
-        if result.reason != failures.MAX_FRAMES:
-            break
-    return result
 
 
 def scene() -> Any:

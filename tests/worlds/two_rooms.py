@@ -17,8 +17,10 @@ from hazard_ms.scenes import floor
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.simulation.mitigation import hinges
+from hazard_ms.skills import failures
+from hazard_ms.skills.actions import skill
 from hazard_ms.skills.context import Skill, Stage
-from hazard_ms.skills.decision import Result
+from hazard_ms.skills.decision import Action, Result
 from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition, Room, SceneSpec
 from tests.worlds.registering import registered_task
 
@@ -140,3 +142,13 @@ def two_rooms(
         env.reset(seed=0)
         yield TwoRooms(env)
         env.close()
+
+
+def acted(rooms: TwoRooms, action: Action) -> Result:
+    """The result of an action, asked for again where it is not finished."""
+    for _ in range(8):
+        result = rooms.run(skill(rooms.stage, action))
+        rooms.look()
+        if result.reason != failures.MAX_FRAMES:
+            break
+    return result

@@ -119,3 +119,13 @@ def test_an_agents_loss_is_the_mean_over_its_episodes(tmp_path: Path) -> None:
     assert [line.split()[0] for line in lines[1:]] == ["greedy", "planner"] and lines[1].split()[-1] == "2"
     with pytest.raises(ValueError, match="episodes must be at least one, got none"):
         shares([])
+
+
+def test_all_that_is_lost_by_going_for_what_is_no_target_is_lost_by_perception() -> None:
+    """0.9 could be reached before, 0.3 after it: the hand that found nothing there has done nothing wrong."""
+    taken = dataclasses.replace(CHOICE, regret=0.1, seen=0.0, mistaken="pan_1 is a lamp")
+    (found,) = decisions_of([taken], [False], [0.3])
+    assert (found.cause, found.evidence) == (PERCEPTION, "pan_1 is a lamp")
+    assert found.regret == pytest.approx(0.6) and found.execution == pytest.approx(0.0) and found.unseen == 0.0
+    lost = lost_by([found], 0.0)
+    assert lost[PERCEPTION] == pytest.approx(0.6) and lost[EXECUTION] == pytest.approx(0.0)

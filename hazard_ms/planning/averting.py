@@ -1,9 +1,10 @@
 """The aim `averted` of a problem: what would be lost by its limit if nobody rescued it counts, and little else.
 
-At the limit, a target has lost `1 - damaged_share` of its value if it was damaged before it was safe, and nothing
-otherwise (docs/benchmark.md 4.3). So a rescue in time counts this share where the target would be damaged by the limit,
-and a target that stays whole counts it without a rescue. Beside that a rescue counts a small share of what it counts by
-the score Value, so that of plans that avert the same the one of the higher Value is the best.
+At the limit, a target that nobody rescued has lost all of its value if a hazard has carried it off
+(`Problem.gone_at`), `1 - damaged_share` of it if it is damaged, and nothing otherwise (docs/benchmark.md 4.3). What is
+rescued has lost only what its damage took before. So a rescue counts the share that would be lost without it, less that
+of damage done before; what stays whole where it is counts without a rescue. Beside that a rescue counts a small share
+of what it counts by the score Value, so that of plans that avert the same the one of the higher Value is the best.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hazard_ms.planning.problem import Problem
 
@@ -24,10 +26,10 @@ def averting(problem: Problem, beside: float = BESIDE) -> Problem:
     """
     if not 0.0 < beside <= 1.0:
         raise ValueError(f"beside must be above 0 and at most 1, got {beside}")
-    loss = 1.0 - problem.damaged_share
-    values = np.array(problem.values) * np.where(_at_risk(problem), loss + beside, beside)
-    share = beside * problem.damaged_share / (loss + beside)
-    return replace(problem, values=values.tolist(), damaged_share=share)
+    lost, late = _lost(problem), 1.0 - problem.damaged_share
+    counts = lost + beside
+    shares = (np.maximum(lost - late, 0.0) + beside * problem.damaged_share) / counts
+    return replace(problem, values=(np.array(problem.values) * counts).tolist(), shares=shares.tolist())
 
 
 def kept(problem: Problem) -> float:
@@ -35,9 +37,10 @@ def kept(problem: Problem) -> float:
 
     `problem` has the targets' own values, not those that `averting` gives.
     """
-    return float(np.array(problem.values)[~_at_risk(problem)].sum()) * (1.0 - problem.damaged_share)
+    return float(np.array(problem.values) @ (1.0 - _lost(problem)))
 
 
-def _at_risk(problem: Problem) -> np.ndarray:
-    """Whether each target is damaged by the limit if nobody rescues it, bool [M]."""
-    return np.array(problem.damaged_at) < problem.limit
+def _lost(problem: Problem) -> NDArray[np.float64]:
+    """The share of its value that each target has lost by the limit if nobody rescues it, [M]."""
+    damaged = np.where(np.array(problem.damaged_at) < problem.limit, 1.0 - problem.damaged_share, 0.0)
+    return damaged if problem.gone_at is None else np.where(np.array(problem.gone_at) < problem.limit, 1.0, damaged)

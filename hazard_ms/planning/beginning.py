@@ -12,7 +12,7 @@ longer than planned (`Problem.spread`), measures take what is planned.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -74,6 +74,7 @@ class _Beginning(NamedTuple):
     steps: tuple[Step, ...]
     node: int  # of the problem, at which it begins
     whole: NDArray[np.float64]  # last frame at which each target is whole, [M]
+    there: NDArray[np.float64] | None  # last frame at which each is where it was, as `Problem.gone_at`, [M]
     hand: int | None  # number of the measure that fetched the tool in the hand
     charge: float  # frames that it still lasts
 
@@ -87,9 +88,10 @@ class _Search:
         if shape[0] != nodes:
             raise ValueError(f"to must have shape ({nodes}, K) for this problem, got {shape}")
         for measure in measures.measures:
-            if len(measure.spared_until) != travel.targets:
-                got = len(measure.spared_until)
-                raise ValueError(f"spared_until of {measure.name} must have {travel.targets} frames, got {got}")
+            for name in ("spared_until", "stays_until"):
+                frames = getattr(measure, name)
+                if frames is not None and len(frames) != travel.targets:
+                    raise ValueError(f"{name} of {measure.name} must have {travel.targets} frames, got {len(frames)}")
         self._problem, self._travel, self._measures = problem, travel, measures
         self._effort, self._beside = (most_labels, beam), beside
 
@@ -118,14 +120,14 @@ class _Search:
     def _roots(self, plan: Plan) -> Iterator[_Beginning]:
         """The beginnings without measures: where the agent is, and where the first rescue of `plan` ends."""
         problem, measures, hand = self._problem, self._measures, self._measures.in_hand
-        whole = np.array(problem.damaged_at)
+        whole, there = np.array(problem.damaged_at), None if problem.gone_at is None else np.array(problem.gone_at)
         charge = 0.0 if hand is None else measures.measures[hand].charge
         if problem.holding is None:
-            yield _Beginning(problem.frame, None, (), self._travel.start[0], whole, hand, charge)
+            yield _Beginning(problem.frame, None, (), self._travel.start[0], whole, there, hand, charge)
         if plan.rescues and hand is None:
             first = plan.rescues[0]
             node = self._travel.targets + first.cart if first.cart >= 0 else first.target
-            yield _Beginning(first.safe, first, (), node, whole, None, 0.0)
+            yield _Beginning(first.safe, first, (), node, whole, there, None, 0.0)
 
     def _extensions(self, now: _Beginning) -> Iterator[_Beginning]:
         for number, measure in enumerate(self._measures.measures):
@@ -161,12 +163,15 @@ class _Search:
         done = begins + measure.frames
         if not done <= self._problem.limit:
             return None
-        spared = np.maximum(now.whole, measure.spared_until)
+        there = now.there
+        if there is not None and measure.stays_until is not None:
+            there = _spared(there, measure.stays_until, done)
         fetches = measure.charge > 0.0
         return now._replace(
             frame=done,
             steps=(*now.steps, Step(number, begins, done)),
-            whole=np.where(now.whole < done, now.whole, spared),
+            whole=_spared(now.whole, measure.spared_until, done),
+            there=there,
             hand=number if fetches else now.hand,
             charge=measure.charge if fetches else now.charge - measure.uses,
         )
@@ -193,8 +198,15 @@ class _Search:
         for step in beginning.steps:
             for target in self._measures.measures[step.measure].closes:
                 pick[target] = self._problem.limit + 1.0  # never
-        whole = beginning.whole.tolist()
-        left = replace(self._problem, travel=travel, frame=ready.frame, damaged_at=whole, pick=pick, holding=None)
+        left = replace(
+            self._problem,
+            travel=travel,
+            frame=ready.frame,
+            damaged_at=beginning.whole.tolist(),
+            gone_at=None if beginning.there is None else beginning.there.tolist(),
+            pick=pick,
+            holding=None,
+        )
         return left if beginning.before is None else _without(left, beginning.before.target)
 
     def _faded(self, left: Problem) -> Problem:
@@ -208,6 +220,11 @@ class _Search:
             values=[value * passed for value in left.values],
             fading=min(self._problem.fading / passed, 1.0 / span),
         )
+
+
+def _spared(until: NDArray[np.float64], frames: Sequence[float], done: float) -> NDArray[np.float64]:
+    """The frames `until`, [M], after a measure that is done at the frame `done` and gives these `frames`, [M]."""
+    return np.where(until < done, until, np.maximum(until, frames))
 
 
 def _without(problem: Problem, target: int) -> Problem:

@@ -30,10 +30,14 @@ class Measure:
     needs: int | None = None  # number of the measure that fetches the tool that must be in the hand; None: empty hand
     uses: float = 0.0  # frames of its charge that it takes from that tool
     charge: float = 0.0  # frames that the tool lasts that it fetches, and has in the hand afterwards; 0: no tool
+    stays_until: Sequence[float] | None = None  # the same as `spared_until` of being carried off, [M]; None: no change
     closes: tuple[int, ...] = ()  # targets that nobody gets to any more once it is done: those behind a shut door
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "spared_until", tuple(np.array(self.spared_until, np.float64).tolist()))
+        if self.stays_until is not None:
+            object.__setattr__(self, "stays_until", tuple(np.array(self.stays_until, np.float64).tolist()))
+            refuse_unless_frames(np.array(self.stays_until), "stays_until")
         for name in ("frames", "spared_until", "uses", "charge"):
             refuse_unless_frames(np.array(getattr(self, name), np.float64), name)
 

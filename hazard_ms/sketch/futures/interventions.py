@@ -16,9 +16,11 @@ from numpy.typing import NDArray
 from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.sketch.futures import seats
-from hazard_ms.sketch.recording import Running, course_of
+from hazard_ms.sketch.recording import Running, course_of, pushes
+from hazard_ms.sketch.timeline import STRIDE
 
 OUT, SHUT, OPEN = "out", "shut", "open"
+LEVEL_ROUNDING = 1e-3  # by which levels may differ that are equal [m, or the hazard's unit] [ours]
 
 
 class Intervention(NamedTuple):
@@ -35,10 +37,25 @@ class Foreseen(NamedTuple):
     first: int  # the frame of the present
     damaged_at: NDArray[np.int64]  # first frame in which each thing is damaged; -1: never, [N + 1, B]
     burning: NDArray[np.int64]  # flames and burning things that are put out, [N + 1]
+    frames: NDArray[np.int64]  # of the samples of levels, [S]; none where nothing pushes things
+    levels: NDArray[np.float32]  # highest of the hazards that push at each thing in each sample, [S, N + 1, B]
 
     def whole_until(self) -> NDArray[np.float64]:
         """The last frame at which each thing is whole; inf if it is never damaged, [N + 1, B]."""
         return np.where(self.damaged_at < 0, np.inf, self.damaged_at - 1.0)
+
+    def stays_until(self, gone_at: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The last frame before each thing is carried off that is so at `gone_at`, [B], if nobody acts: [N + 1, B].
+
+        It is, once the hazard is as high there as it then is: inf where it never is.
+        """
+        if not len(self.frames):
+            return np.broadcast_to(gone_at, self.damaged_at.shape).copy()
+        then = np.minimum(np.searchsorted(self.frames, gone_at), len(self.frames) - 1)
+        needed = self.levels[then, 0, np.arange(len(gone_at))]  # [B]
+        enough = self.levels >= needed - LEVEL_ROUNDING
+        first = np.where(enough.any(0), self.frames[enough.argmax(0)], np.inf)
+        return np.where(np.isfinite(gone_at), np.maximum(first, np.where(first < gone_at, gone_at, 0.0)), np.inf)
 
 
 def foresee(env: Running, sets: Sequence[Sequence[Intervention]], frames: int | None = None) -> Foreseen:
@@ -58,13 +75,20 @@ def foresee(env: Running, sets: Sequence[Sequence[Intervention]], frames: int | 
     course = course_of(env, len(sets) + 1)
     burning = np.zeros(len(sets) + 1, np.int64)
     last = env.task.max_frames if frames is None else first + frames
+    pushing = [k for k, hazard in enumerate(env.task.hazards) if pushes([hazard])]
+    sampled: list[int] = []
+    levels = []
     for frame in range(first, last + 1):
         if frame > first:
             course.advance(frame - first)
+        if pushing and (frame - first) % STRIDE == 0:
+            sampled.append(frame)
+            levels.append(course.episode.levels(course.world.position)[:, pushing].amax(1).cpu().numpy())
         for row, intervention in due.get(frame, ()):
             burning[row] += _intervene(course.episode, row, intervention)
     damaged = course.episode.damage.frame.cpu().numpy().astype(np.int64)
-    return Foreseen(first, damaged, burning)
+    samples = np.stack(levels) if levels else np.zeros((0, *damaged.shape), np.float32)
+    return Foreseen(first, damaged, burning, np.array(sampled, np.int64), samples)
 
 
 def fire_of(episode: Episode) -> FireState | None:

@@ -1,0 +1,1 @@
+"""What agents share that do something about the hazard itself: which measures there are, and how they are done."""

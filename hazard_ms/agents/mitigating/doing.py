@@ -1,0 +1,149 @@
+"""Does what was chosen about the hazard by ordinary actions: fetches a tool, puts out seats of fire, shuts a door."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hazard_ms.agents.mitigating.choice import Chooser, Key
+from hazard_ms.agents.mitigating.prospects import FETCH, Array, Prospect, as_now, charge_of, seats_of
+from hazard_ms.agents.truth import Truth
+from hazard_ms.hazards.fire.fire_state import BURNING
+from hazard_ms.planning.problem import Problem
+from hazard_ms.sketch.futures import seats
+from hazard_ms.sketch.futures.interventions import OUT, fire_of
+from hazard_ms.sketch.rescue_problem import RescueScene
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action, Decision
+from hazard_ms.skills.failures import UNFINISHED
+from hazard_ms.skills.mitigations.extinguish import AROUND
+
+EXTINGUISH, SHUT_DOOR = "extinguish", "shut"
+TRIES = 3  # failures after which something is given up [ours]
+
+
+class Mitigator:
+    """What the oracle does about the hazard in one episode; `note` says why."""
+
+    def __init__(self, truth: Truth, brief: Brief) -> None:
+        self._truth, self._brief = truth, brief
+        self._base = truth.env.base
+        self._chooser = Chooser(self._base)
+        self._queue: list[Prospect] = []  # what was chosen and is not yet done
+        self._failures: dict[Key, int] = {}
+        self._last: Action | None = None  # its own last action
+        self._shares: tuple[float, ...] = ()
+        self.note = ""
+
+    def scene(self, now: RescueScene, here: tuple[float, float]) -> RescueScene:
+        """The scene as a planner sees it with its doors as they are: `now`, unless one of them has moved."""
+        share = self._base.world.openings.share[0].tolist()
+        shares = tuple(share[: len(now.spec.room.openings)])
+        moved = self._shares not in ((), shares)
+        self._shares = shares
+        if not moved:
+            return now
+        spec = as_now(now.spec, shares, here)
+        return RescueScene(spec, self._brief.robot, self._base.agent.build.radius, self._brief.max_frames)
+
+    def took(self, decision: Decision) -> bool:
+        """Whether the last action was its own; counts its failure."""
+        last, result = self._last, decision.last_result
+        if last is None or result is None:
+            return False
+        if not result.ok and result.reason not in UNFINISHED and self._queue:
+            key = self._queue[0].kind, self._queue[0].numbers
+            self._failures[key] = self._failures.get(key, 0) + 1
+            if self._failures[key] >= TRIES:
+                self._end()
+        return True
+
+    def act(self, decision: Decision, problem: Problem, targets: Sequence[int], scene: RescueScene) -> Action | None:
+        """The next action about the hazard; None where a rescue is next."""
+        self._last = self._next(decision)
+        if self._last is None and not any(t.held for t in decision.targets):
+            self._choose(decision, problem, targets, scene)
+            self._last = self._next(decision)
+        if self._last is not None:
+            self._truth.reveal()
+        return self._last
+
+    def _choose(self, decision: Decision, problem: Problem, targets: Sequence[int], scene: RescueScene) -> None:
+        failed = {key for key, times in self._failures.items() if times >= TRIES}
+        held = -1 if decision.held is None else decision.index(decision.held)
+        course, made = self._chooser.course(problem, targets, scene, decision.agent_position, held, failed)
+        if course is None or course.before is not None:
+            return
+        self._queue = [made[step.measure] for step in course.steps]
+        names = ", ".join(f"{p.kind} {'+'.join(map(str, p.numbers))}" for p in self._queue)
+        self.note = f"{names}: averts {course.value:g} instead of {course.plain:g}"
+
+    def _end(self) -> None:
+        """Give up what was chosen, or be done with it."""
+        self._queue = []
+        self._chooser.forget()
+        self._truth.forget()
+        self._truth.also = set()
+
+    def _next(self, decision: Decision) -> Action | None:
+        """The next action of what was chosen; None where that is done."""
+        while self._queue:
+            action = self._step(decision, self._queue[0])
+            if action is not None:
+                return action
+            if self._queue:
+                del self._queue[0]
+            if not self._queue:
+                self._end()
+        return None
+
+    def _step(self, decision: Decision, doing: Prospect) -> Action | None:
+        if doing.kind == FETCH:
+            return self._fetched(decision, doing.numbers[0])
+        if doing.kind == OUT:
+            return self._fought(decision, doing.numbers)
+        door = doing.numbers[0]
+        openings = self._base.world.openings
+        if float(openings.share[0, door]) <= 0.0 or bool(openings.state.broken[0, door]):
+            return None
+        return Action(DROP) if decision.held is not None else Action(SHUT_DOOR, self._truth.env.stage.doors.names[door])
+
+    def _fetched(self, decision: Decision, tool: int) -> Action | None:
+        name = decision.names[tool]
+        if decision.held == name:
+            return None
+        self._truth.also = {tool}
+        if decision.held is not None:
+            return Action(DROP)
+        return Action(PICK_UP if decision.walked_up_to == name else WALK_TO, name)
+
+    def _fought(self, decision: Decision, numbers: Sequence[int]) -> Action | None:
+        """The next jet at the nearest of the seats `numbers` that still burns; None where none does, or none helps."""
+        held = -1 if decision.held is None else decision.index(decision.held)
+        burning = {seat.number for seat in seats_of(self._base)}
+        left = [number for number in numbers if number in burning]
+        if not left or held < 0 or charge_of(self._base, held) <= 0.0:
+            return None
+        found = self._aim(left[0], np.array(decision.agent_position), held)
+        if found < 0:
+            return None
+        self._truth.also = {found}
+        return Action(EXTINGUISH, decision.names[found])
+
+    def _aim(self, seat: int, here: Array, held: int) -> int:
+        """The thing to name, along B, for putting out the flames of a seat that are nearest to `here` [m]; -1: none."""
+        fire, world = fire_of(self._base.episode), self._base.world
+        assert fire is not None
+        places = world.position[0, :, :2].cpu().numpy().astype(np.float64)
+        goods = np.flatnonzero(((seats.things(fire, world) == seat) & (fire.status == BURNING))[0].cpu().numpy())
+        if len(goods):
+            return int(goods[np.argmin(np.hypot(*(places[goods] - here).T))])
+        floor = fire.flame_place[0, :, :2][seats.flames(fire, world.frame)[0] == seat].cpu().numpy().astype(np.float64)
+        if not len(floor):
+            return -1
+        nearest = floor[np.argmin(np.hypot(*(floor - here).T))]
+        there = (world.exists & ~world.away & ~world.held)[0].cpu().numpy()
+        gaps = np.where(there, np.hypot(*(places - nearest).T), np.inf)
+        best = int(np.argmin(gaps))
+        return best if gaps[best] < AROUND else -1

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.agents.attempts import Attempts
+from hazard_ms.agents.attempts import Attempts, Enclosure
 from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.agents.mitigating.doing import Mitigator
 from hazard_ms.agents.search.landmark_search import LandmarkSearch
@@ -28,7 +28,7 @@ from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
-from hazard_ms.skills.failures import NO_PATH, UNREACHABLE
+from hazard_ms.skills.failures import UNREACHABLE
 from hazard_ms.skills.motor.walking import ARRIVED, MIDPOINT
 
 MOST_REACH = 2.0  # distance up to which it reaches for a thing after a walk has arrived [m] [ours]
@@ -40,7 +40,6 @@ CART_FAILURES = 3  # after which a cart is no longer used [ours]
 FADING = 2e-4  # share of a target's value that is at risk in each frame until it is safe: skills fail [ours]
 MOVED = 0.2  # a thing that will be met farther than this from where it is now is moving [m] [ours]
 LOYALTY = 20.0  # frames that it deducts for the target that it is on its way to, so that it does not waver [ours]
-ENCLOSED = 2  # targets to which there is no path, from which it is the robot that cannot get away [ours]
 ROUNDS = 2  # number of times that it tries again what it had given up [ours]
 MOST_LABELS = 20_000  # of the exact search: rarely needed [ours]
 BEAM = 2_000  # labels of a layer beyond that [ours]
@@ -71,9 +70,8 @@ class Oracle(PrivilegedAgent):
         self._goal: str | None = None
         self._before: tuple[Action, tuple[float, float]] | None = None  # the last action, and where it began [m]
         self._search = LandmarkSearch()
-        told = self._truth if self._mitigates and brief.mitigations else None
-        self._mitigator = None if told is None else Mitigator(told, brief)
-        self._no_path: set[str] = set()  # targets to which there was no path, one after another
+        self._mitigator = Mitigator(self._truth, brief) if self._mitigates and brief.mitigations else None
+        self._enclosure = Enclosure()
 
     def act(self, decision: Decision) -> Action:
         """The next action: the first step of the best plan from here on."""
@@ -85,23 +83,14 @@ class Oracle(PrivilegedAgent):
         if self._mitigator is None or not self._mitigator.took(decision):
             self._judge(decision, self._truth)
         self._attempts.in_vain = self._in_vain(decision, self._truth)
-        action = Action(EXPLORE) if self._enclosed(decision) else self._choose(decision, self._truth)
+        action = self._get_out(decision) if self._enclosure.found(decision) else self._choose(decision, self._truth)
         self._before = (action, decision.agent_position)
         self._truth.reveal()
         return action
 
-    def _enclosed(self, decision: Decision) -> bool:
-        """Whether there is no way to one target after another: not they are to blame, but where the robot stands."""
-        last, result = decision.last_action, decision.last_result
-        if last is None or result is None or last.target is None or result.reason != NO_PATH or result.frames:
-            self._no_path.clear()
-            return False
-        self._no_path.add(last.target)
-        if len(self._no_path) < ENCLOSED:
-            return False
-        self._no_path.clear()
-        self.note = "no way leads anywhere: look around"
-        return True
+    def _get_out(self, decision: Decision) -> Action:
+        door = self._mitigator and self._mitigator.way_out(decision)
+        return self._say("no way leads anywhere", door or Action(EXPLORE))
 
     def _choose(self, decision: Decision, truth: Truth) -> Action:
         tool = any(t.held for t in decision.tools)

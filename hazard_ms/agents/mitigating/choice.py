@@ -35,6 +35,7 @@ from hazard_ms.sketch.rescue_problem import RescueScene
 
 KEPT = 400  # frames for which futures are kept [ours]
 LEAST = 0.02  # share of what the targets at risk would lose from which on a loss is worth a thought [ours]
+LEAST_GAIN = 0.03  # share of what the targets at risk are worth that a course must avert beyond rescues [ours]
 EFFORT = (2_000, 60)  # labels of a search, and of a layer beyond [ours]
 UNEXPECTED = 1.5  # factor by which a fire takes longer than is planned, since it grows meanwhile [ours]
 
@@ -88,7 +89,8 @@ class Chooser:
         held = [k for k, tool in enumerate(tools) if tool.numbers[0] == in_hand]
         chosen = Measures(measures, **ways, in_hand=held[0] if held else None, put_down=costs.PUT_DOWN)
         course = best_course(problem, chosen, most_labels=EFFORT[0], beam=EFFORT[1])
-        return (course if course.steps else None), made
+        least = LEAST_GAIN * sum(problem.values[t] for t in self._risky(problem))
+        return (course if course.steps and course.value - course.plain > least else None), made
 
     def _gone_at(self, problem: Problem, targets: Sequence[int]) -> Array | None:
         """The last frame before each thing is carried off as far as `problem` says, [B]; None where it says nothing."""
@@ -103,11 +105,16 @@ class Chooser:
         plan = solve(averting(problem), *EFFORT)
         gone = problem.gone_at or [np.inf] * len(problem.values)
         saved = {r.target for r in plan.rescues if r.safe <= problem.damaged_at[r.target] or gone[r.target] < np.inf}
-        least_by = [min(pair) for pair in zip(problem.damaged_at, gone, strict=True)]
-        risky = [t for t, by in enumerate(least_by) if problem.frame <= by < problem.limit]
+        risky = self._risky(problem)
         lost = [t for t in risky if t not in saved]
         least = LEAST * sum(problem.values[t] for t in risky)
         return lost if sum(problem.values[t] for t in lost) > least else []
+
+    def _risky(self, problem: Problem) -> list[int]:
+        """The targets that would be damaged or carried off by the limit, and are not yet."""
+        gone = problem.gone_at or [np.inf] * len(problem.values)
+        by = [min(pair) for pair in zip(problem.damaged_at, gone, strict=True)]
+        return [t for t, frame in enumerate(by) if problem.frame <= frame < problem.limit]
 
     def _foresee(
         self, ends: Sequence[Prospect], tools: Sequence[Prospect], scene: RescueScene, here: Array

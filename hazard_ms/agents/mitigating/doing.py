@@ -11,15 +11,16 @@ from hazard_ms.agents.mitigating.prospects import FETCH, Array, Prospect, as_now
 from hazard_ms.agents.truth import Truth
 from hazard_ms.hazards.fire.fire_state import BURNING
 from hazard_ms.planning.problem import Problem
+from hazard_ms.scenes.walls import WALLS
 from hazard_ms.sketch.futures import seats
-from hazard_ms.sketch.futures.interventions import OUT, fire_of
+from hazard_ms.sketch.futures.interventions import OPEN, OUT, SHUT, fire_of
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.skills.mitigations.extinguish import AROUND
 
-EXTINGUISH, SHUT_DOOR = "extinguish", "shut"
+EXTINGUISH, SHUT_DOOR, OPEN_DOOR = "extinguish", "shut", "open"
 TRIES = 3  # failures after which something is given up [ours]
 
 
@@ -50,6 +51,7 @@ class Mitigator:
     def took(self, decision: Decision) -> bool:
         """Whether the last action was its own; counts its failure."""
         last, result = self._last, decision.last_result
+        self._last = None
         if last is None or result is None:
             return False
         if not result.ok and result.reason not in UNFINISHED and self._queue:
@@ -67,6 +69,26 @@ class Mitigator:
             self._last = self._next(decision)
         if self._last is not None:
             self._truth.reveal()
+        return self._last
+
+    def way_out(self, decision: Decision) -> Action | None:
+        """To open the nearest shut door, where the robot cannot get away; None where there is none."""
+        openings, spec = self._base.world.openings, self._base.specs[0]
+        here = np.array(decision.agent_position)
+        shut = [
+            (float(np.hypot(*(openings.plan.beside[0, k, :, :2].mean(0).cpu().numpy() - here))), k)
+            for k, o in enumerate(spec.room.openings)
+            if o.kind == "door" and o.wall not in WALLS and float(openings.share[0, k]) < 1.0
+            if self._failures.get((OPEN, (k,)), 0) < TRIES
+        ]
+        if not shut or decision.held is not None:
+            return None
+        door = min(shut)[1]
+        self._failures[OPEN, (door,)] = self._failures.get((OPEN, (door,)), 0) + 1
+        self._end()
+        self._failures[SHUT, (door,)] = TRIES  # not again
+        self._last = Action(OPEN_DOOR, self._truth.env.stage.doors.names[door])
+        self.note = "no way leads anywhere: open a door"
         return self._last
 
     def _choose(self, decision: Decision, problem: Problem, targets: Sequence[int], scene: RescueScene) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.agents.mitigating import costs
 from hazard_ms.env import HazardEnv
-from hazard_ms.hazards.fire.fire_state import FireState
+from hazard_ms.hazards.fire.fire_state import BURNING, FireState
 from hazard_ms.scenes.walls import WALLS
 from hazard_ms.simulation.jet import KINDS
 from hazard_ms.sketch.futures import seats
@@ -67,7 +67,8 @@ def seats_of(base: HazardEnv) -> list[Seat]:
 def _burning(fire: FireState, base: HazardEnv) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
     """The seats of all flames, [F], and things, [B], -1 for none, and the places of both [m], [F + B, 2]."""
     world = base.world
-    floor, goods = seats.flames(fire, world.frame)[0], seats.things(fire, world)[0]
+    floor = seats.flames(fire, world.frame)[0]
+    goods = torch.where(fire.status == BURNING, seats.things(fire, world), -1)[0]
     places = torch.cat([fire.flame_place[0, :, :2], world.position[0, :, :2]])
     return floor.cpu().numpy(), goods.cpu().numpy(), places.cpu().numpy().astype(np.float64)
 

@@ -1,7 +1,8 @@
 """Futures of a running episode, one for each thing that could be done about the hazard, in one batch.
 
 Copies of the episode are advanced without a simulator, as `hazard_ms.sketch.recording.ahead` does; in each, one thing
-is done at its frame. Chance is counted, so that all else happens as it would have.
+is done at its frame. Each copy is exactly the episode in which that is done. Limit: flames draw by their places in the
+roster, so that a fire elsewhere may spread a little otherwise once a seat is out.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import torch
 from numpy.typing import NDArray
 
 from hazard_ms.episode.episode import Episode
-from hazard_ms.hazards.fire.fire_state import FireState
+from hazard_ms.hazards.fire.fire_state import BURNING, FireState
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.recording import Running, course_of, pushes
 from hazard_ms.sketch.timeline import STRIDE
@@ -106,7 +107,7 @@ def _intervene(episode: Episode, row: int, what: Intervention) -> int:
     fire = fire_of(episode)
     if fire is None:
         return 0
-    both = (seats.flames(fire, world.frame), seats.things(fire, world))
-    burning = sum(int((part[row] == what.number).sum()) for part in both)
+    burning = int((seats.flames(fire, world.frame) == what.number)[row].sum())
+    burning += int(((seats.things(fire, world) == what.number) & (fire.status == BURNING))[row].sum())
     seats.put_out(fire, world, row, what.number)
     return burning

@@ -16,11 +16,12 @@ from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.interventions import OPEN, OUT, SHUT, fire_of
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action, Decision
-from hazard_ms.skills.failures import UNFINISHED
+from hazard_ms.skills.decision import DROP, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
+from hazard_ms.skills.failures import NO_LINE_OF_SIGHT, UNFINISHED
 from hazard_ms.skills.mitigations.extinguish import AROUND
 
 EXTINGUISH, SHUT_DOOR, OPEN_DOOR = "extinguish", "shut", "open"
+MOST_STEPS = 6  # towards flames behind a wall, until there is a line of sight [ours]
 TRIES = 3  # failures after which something is given up [ours]
 
 
@@ -35,6 +36,7 @@ class Mitigator:
         self._failures: dict[Key, int] = {}
         self._last: Action | None = None  # its own last action
         self._shares: tuple[float, ...] = ()
+        self._hidden, self._steps = False, 0  # a wall was before the flames; steps taken towards them since
         self.note = ""
 
     def scene(self, now: RescueScene, here: tuple[float, float]) -> RescueScene:
@@ -54,12 +56,24 @@ class Mitigator:
         self._last = None
         if last is None or result is None:
             return False
-        if not result.ok and result.reason not in UNFINISHED and self._queue:
+        self._hidden = result.reason == NO_LINE_OF_SIGHT and self._steps < MOST_STEPS
+        if not result.ok and result.reason not in UNFINISHED and self._queue and not self._hidden:
             key = self._queue[0].kind, self._queue[0].numbers
             self._failures[key] = self._failures.get(key, 0) + 1
             if self._failures[key] >= TRIES:
                 self._end()
         return True
+
+    def begin(self, what: Sequence[Prospect]) -> None:
+        """Do `what`, in its order, from now on."""
+        self._queue = list(what)
+
+    def next(self, decision: Decision) -> Action | None:
+        """The next action of what was begun, after the last one; None where all is done, or was given up."""
+        self.took(decision)
+        self._last = self._next(decision)
+        self._truth.reveal()
+        return self._last
 
     def act(self, decision: Decision, problem: Problem, targets: Sequence[int], scene: RescueScene) -> Action | None:
         """The next action about the hazard; None where a rescue is next."""
@@ -103,7 +117,7 @@ class Mitigator:
 
     def _end(self) -> None:
         """Give up what was chosen, or be done with it."""
-        self._queue = []
+        self._queue, self._steps = [], 0
         self._chooser.forget()
         self._truth.forget()
         self._truth.also = set()
@@ -151,6 +165,9 @@ class Mitigator:
         if found < 0:
             return None
         self._truth.also = {found}
+        if self._hidden:  # a wall is between: walk on towards it, through the door
+            self._hidden, self._steps = False, self._steps + 1
+            return Action(WALK_ONE_STEP, decision.names[found])
         return Action(EXTINGUISH, decision.names[found])
 
     def _aim(self, seat: int, here: Array, held: int) -> int:

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 FETCH = "fetch"
 THREAT = 3.0  # distance from a target that would be lost within which a fire is fought [m] [ours]
 MOST_FUTURES = 11  # beside that in which nobody acts [ours]
-SPRAY_FROM = 2.0  # from flames to where they are fought [m] [ours]
+SPRAY_FROM = 1.0  # from flames to where they are fought [m] [ours]
 ANY_WAY = 1e6  # longer than any way [m]
 
 
@@ -135,7 +135,10 @@ def as_now(spec: SceneSpec, shares: Iterable[float], here: tuple[float, float]) 
 
 
 def closes(spec: SceneSpec, door: int, radius: float, here: tuple[float, float], goals: Array, edges: Array) -> Array:
-    """Which `goals` [m], [G, 2], nobody gets to from `here` [m] once a door of `spec` is shut: numbers."""
+    """Which `goals` [m], [G, 2], nobody gets to from `here` [m] once a door of `spec` is shut: numbers.
+
+    Limit: what lies within reach of a walk behind a thin wall counts as reached.
+    """
     shares = [0.0 if number == door else o.share for number, o in enumerate(spec.room.openings)]
     ways = Ways(as_now(spec, shares, here), radius=radius)
     frames = ways.frames(np.array([here]), goals, edge=edges)

@@ -47,20 +47,20 @@ class Probe:
     def do(self, what: Prospect) -> None:
         """Do a measure to its end, and print what its actions came to."""
         print(f"{what.kind} {what.numbers}, {self.way(what):.0f} frames away:")
-        self.mitigator.begin([what])
+        self.mitigator.begin([what], self.scene)
         while (action := self.mitigator.next(self.decision)) is not None:
-            if not self.step(action):
+            self.step(action)
+            if self.env.frame >= self.env.max_frames:
                 return
 
-    def step(self, action: Action) -> bool:
-        """Do an action and print what it came to; False once the episode is over."""
+    def step(self, action: Action) -> None:
+        """Do an action and print what it came to."""
         before = self._burning()
-        self.decision, _, terminated, truncated, info = self.env.step(action)
+        self.decision, *_, info = self.env.step(action)
         held, result = self.env.stage.held, info["result"]
         left = prospects.charge_of(self.env.base, held) if held >= 0 else 0.0
         what = f"{result.frames} frames {result.reason}, burning {before} to {self._burning()}, jet left {left:.0f}"
         print(f"  frame {self.decision.frame}: {action} {what}", flush=True)
-        return not (terminated or truncated)
 
     def _burning(self) -> dict[int, int]:
         return {seat.number: seat.burning for seat in prospects.seats_of(self.env.base)}
@@ -79,7 +79,7 @@ def main(arguments: Sequence[str]) -> None:
     here = np.array(probe.decision.agent_position)
     for fight in prospects.fights(env.base, np.array([s.place for s in prospects.seats_of(env.base)]), here)[:2]:
         probe.do(fight)
-    if env.stage.held >= 0:
+    if env.stage.held >= 0 and env.frame < env.max_frames:
         probe.step(Action("drop"))
     env.close()
 

@@ -5,23 +5,31 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import torch
 
 from hazard_ms.agents.mitigating.choice import Chooser, Key
-from hazard_ms.agents.mitigating.prospects import FETCH, Array, Prospect, as_now, charge_of, seats_of
+from hazard_ms.agents.mitigating.prospects import ANY_WAY, FETCH, Array, Prospect, as_now, charge_of, seats_of
 from hazard_ms.agents.truth import Truth
 from hazard_ms.hazards.fire.fire_state import BURNING
 from hazard_ms.planning.problem import Problem
 from hazard_ms.scenes.walls import WALLS
+from hazard_ms.simulation.walls import blocked
+from hazard_ms.simulation.world import World
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.interventions import OPEN, OUT, SHUT, fire_of
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import DROP, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
-from hazard_ms.skills.failures import NO_LINE_OF_SIGHT, UNFINISHED
+from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action, Decision
+from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.skills.mitigations.extinguish import AROUND
 
 EXTINGUISH, SHUT_DOOR, OPEN_DOOR = "extinguish", "shut", "open"
-MOST_STEPS = 6  # towards flames behind a wall, until there is a line of sight [ours]
+EYES = 1.0  # height from which a jet is aimed [m] [ours]
+VIEW, AROUND_IT = (
+    3.0,
+    16,
+)  # distance from flames [m], and number of the things that it walks to for a view of them [ours]
+LOW = 0.1  # height of flames on the floor [m] [ours]
 TRIES = 3  # failures after which something is given up [ours]
 
 
@@ -36,7 +44,7 @@ class Mitigator:
         self._failures: dict[Key, int] = {}
         self._last: Action | None = None  # its own last action
         self._shares: tuple[float, ...] = ()
-        self._hidden, self._steps = False, 0  # a wall was before the flames; steps taken towards them since
+        self._scene: RescueScene | None = None
         self.note = ""
 
     def scene(self, now: RescueScene, here: tuple[float, float]) -> RescueScene:
@@ -56,17 +64,16 @@ class Mitigator:
         self._last = None
         if last is None or result is None:
             return False
-        self._hidden = result.reason == NO_LINE_OF_SIGHT and self._steps < MOST_STEPS
-        if not result.ok and result.reason not in UNFINISHED and self._queue and not self._hidden:
+        if not result.ok and result.reason not in UNFINISHED and self._queue:
             key = self._queue[0].kind, self._queue[0].numbers
             self._failures[key] = self._failures.get(key, 0) + 1
             if self._failures[key] >= TRIES:
                 self._end()
         return True
 
-    def begin(self, what: Sequence[Prospect]) -> None:
-        """Do `what`, in its order, from now on."""
-        self._queue = list(what)
+    def begin(self, what: Sequence[Prospect], scene: RescueScene) -> None:
+        """Do `what`, in its order, in `scene` from now on."""
+        self._queue, self._scene = list(what), scene
 
     def next(self, decision: Decision) -> Action | None:
         """The next action of what was begun, after the last one; None where all is done, or was given up."""
@@ -77,6 +84,7 @@ class Mitigator:
 
     def act(self, decision: Decision, problem: Problem, targets: Sequence[int], scene: RescueScene) -> Action | None:
         """The next action about the hazard; None where a rescue is next."""
+        self._scene = scene
         self._last = self._next(decision)
         if self._last is None and not any(t.held for t in decision.targets):
             self._choose(decision, problem, targets, scene)
@@ -117,7 +125,7 @@ class Mitigator:
 
     def _end(self) -> None:
         """Give up what was chosen, or be done with it."""
-        self._queue, self._steps = [], 0
+        self._queue = []
         self._chooser.forget()
         self._truth.forget()
         self._truth.also = set()
@@ -165,10 +173,31 @@ class Mitigator:
         if found < 0:
             return None
         self._truth.also = {found}
-        if self._hidden:  # a wall is between: walk on towards it, through the door
-            self._hidden, self._steps = False, self._steps + 1
-            return Action(WALK_ONE_STEP, decision.names[found])
+        before = self._in_view_from(found, np.array(decision.agent_position))
+        if before >= 0 and decision.walked_up_to != decision.names[before]:
+            self._truth.also = {found, before}
+            return Action(WALK_TO, decision.names[before])
         return Action(EXTINGUISH, decision.names[found])
+
+    def _in_view_from(self, index: int, here: Array) -> int:
+        """The thing to walk to from `here` [m] for a view of the thing `index` that a wall hides; -1: none, or no wall.
+
+        Of the things around it, it is the one with the shortest way that ends where no wall is between.
+        """
+        world = self._base.world
+        aim = world.position[:1, index : index + 1]
+        if self._scene is None or not bool(blocked(world.walls, _standing(here[None], world), aim)[0, 0, 0]):
+            return -1
+        places = world.position[0, :, :2].cpu().numpy().astype(np.float64)
+        there = (world.exists & ~world.away & ~world.held)[0].cpu().numpy()[: len(self._scene.edges)]
+        gaps = np.where(there, np.hypot(*(places[: len(there)] - places[index]).T), np.inf)
+        near = [b for b in np.argsort(gaps)[:AROUND_IT].tolist() if gaps[b] < VIEW]
+        goals, edges = places[near], self._scene.edges[near]
+        ends = self._scene.ways.along(here[None], goals, ANY_WAY, edges)
+        frames = self._scene.ways.frames(here[None], goals, edge=edges)
+        clear = ~blocked(world.walls, _standing(ends, world), aim)[0, :, 0].cpu().numpy()
+        frames = np.where(clear, frames, np.inf)
+        return near[int(np.argmin(frames))] if len(near) and np.isfinite(frames).any() else -1
 
     def _aim(self, seat: int, here: Array, held: int) -> int:
         """The thing to name, along B, for putting out the flames of a seat that are nearest to `here` [m]; -1: none."""
@@ -182,7 +211,15 @@ class Mitigator:
         if not len(floor):
             return -1
         nearest = floor[np.argmin(np.hypot(*(floor - here).T))]
-        there = (world.exists & ~world.away & ~world.held)[0].cpu().numpy()
+        there = (world.exists & ~world.away & ~world.held)[0]
+        flame = torch.tensor([[[*nearest.tolist(), LOW]]], dtype=torch.float32, device=world.device)
+        there = (there & ~blocked(world.walls, world.position[:1], flame)[0, :, 0]).cpu().numpy()
         gaps = np.where(there, np.hypot(*(places - nearest).T), np.inf)
         best = int(np.argmin(gaps))
         return best if gaps[best] < AROUND else -1
+
+
+def _standing(places: Array, world: World) -> torch.Tensor:
+    """Places of a nozzle above `places` [m], [P, 2], as walls take them: [1, P, 3]."""
+    high = np.concatenate([places, np.full((len(places), 1), EYES)], axis=1)
+    return torch.as_tensor(high[None], dtype=torch.float32, device=world.device)

@@ -18,6 +18,7 @@ from hazard_ms.agents.mitigating import prospects
 from hazard_ms.agents.mitigating.doing import Mitigator
 from hazard_ms.agents.mitigating.prospects import Prospect
 from hazard_ms.agents.truth import Truth
+from hazard_ms.sketch.futures.surroundings import charge_of
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.skills.actions import wait
 from hazard_ms.skills.decision import Action, Decision
@@ -58,7 +59,7 @@ class Probe:
         before = self._burning()
         self.decision, *_, info = self.env.step(action)
         held, result = self.env.stage.held, info["result"]
-        left = prospects.charge_of(self.env.base, held) if held >= 0 else 0.0
+        left = charge_of(self.env.base, held) if held >= 0 else 0.0
         what = f"{result.frames} frames {result.reason}, burning {before} to {self._burning()}, jet left {left:.0f}"
         print(f"  frame {self.decision.frame}: {action} {what}", flush=True)
 

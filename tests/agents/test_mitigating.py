@@ -83,9 +83,9 @@ def test_what_is_behind_a_door_is_closed_off_by_it() -> None:
     spec = dataclasses.replace(ROOM, room=DOORS, bodies=(), fires=(), agent_start=AgentStart((1.0, 2.0)))
     goals = np.array([[2.0, 3.0], [4.2, 2.0], [5.5, 2.0]])
     edges = np.zeros(3)
-    assert prospects.closes(spec, 0, 0.29, (1.0, 2.0), goals, edges).tolist() == [1, 2]
-    assert prospects.closes(spec, 0, 0.29, (5.0, 2.0), goals, edges).tolist() == [0]
-    assert prospects.closes(spec, 2, 0.29, (1.0, 2.0), goals, edges).tolist() == []
+    assert prospects.closes(spec, 0, 0.29, (1.0, 2.0), goals, edges) == [1, 2]
+    assert prospects.closes(spec, 0, 0.29, (5.0, 2.0), goals, edges) == [0]
+    assert prospects.closes(spec, 2, 0.29, (1.0, 2.0), goals, edges) == []
 
 
 def test_a_scene_has_its_doors_as_they_are_now() -> None:

@@ -1,1 +1,1 @@
-"""What agents share that do something about the hazard itself: which measures there are, and how they are done."""
+"""Agents that do something about the hazard itself: the measures that there are, and how they are done."""

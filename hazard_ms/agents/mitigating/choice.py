@@ -23,7 +23,6 @@ from hazard_ms.agents.mitigating.prospects import (
     tools_of,
     ways_between,
 )
-from hazard_ms.env import HazardEnv
 from hazard_ms.planning.averting import averting
 from hazard_ms.planning.beginning import Course, best_course
 from hazard_ms.planning.measures import Measure, Measures
@@ -31,6 +30,7 @@ from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, Foreseen, Intervention, foresee
+from hazard_ms.sketch.futures.surroundings import Home
 from hazard_ms.sketch.rescue_problem import RescueScene
 
 KEPT = 400  # frames for which futures are kept [ours]
@@ -43,9 +43,9 @@ Key = tuple[str, tuple[int, ...]]
 
 
 class Chooser:
-    """What is worth doing in one episode of `base`."""
+    """Chooses what is worth doing in one episode of `base`."""
 
-    def __init__(self, base: HazardEnv) -> None:
+    def __init__(self, base: Home) -> None:
         self._base = base
         self.forget()
 
@@ -176,10 +176,9 @@ class Chooser:
                 frames = costs.FIGHT * len(p.numbers) + UNEXPECTED * jet
                 measures.append(Measure(name, frames, spared.tolist(), next(turn) % tools, jet, stays_until=there))
                 continue
-            behind: Array | Sequence[int] = ()
+            behind: list[int] = []
             gains = (spared > whole[0]).any() or (stays is not None and bool((stays[row] > stays[0]).any()))
             if p.kind == SHUT and gains:
                 behind = closes(scene.spec, p.numbers[0], scene.ways.radius, here, goals, edges)
-            closed = tuple(int(b) for b in behind)
-            measures.append(Measure(name, p.frames, spared.tolist(), stays_until=there, closes=closed))
+            measures.append(Measure(name, p.frames, spared.tolist(), stays_until=there, closes=tuple(behind)))
         return measures

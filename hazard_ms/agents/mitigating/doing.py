@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import torch
 
 from hazard_ms.agents.mitigating.choice import Chooser, Key
-from hazard_ms.agents.mitigating.prospects import ANY_WAY, FETCH, Array, Prospect, as_now, charge_of, seats_of
+from hazard_ms.agents.mitigating.prospects import ANY_WAY, FETCH, Array, Prospect, as_now, seats_of
 from hazard_ms.agents.truth import Truth
-from hazard_ms.hazards.fire.fire_state import BURNING
 from hazard_ms.planning.problem import Problem
-from hazard_ms.scenes.walls import WALLS
-from hazard_ms.simulation.walls import blocked
-from hazard_ms.simulation.world import World
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.interventions import OPEN, OUT, SHUT, fire_of
+from hazard_ms.sketch.futures.surroundings import charge_of, hidden, inner_doors
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action, Decision
@@ -34,7 +30,7 @@ TRIES = 3  # failures after which something is given up [ours]
 
 
 class Mitigator:
-    """What the oracle does about the hazard in one episode; `note` says why."""
+    """Does something about the hazard in one episode of the oracle; `note` says why."""
 
     def __init__(self, truth: Truth, brief: Brief) -> None:
         self._truth, self._brief = truth, brief
@@ -94,14 +90,12 @@ class Mitigator:
         return self._last
 
     def way_out(self, decision: Decision) -> Action | None:
-        """To open the nearest shut door, where the robot cannot get away; None where there is none."""
-        openings, spec = self._base.world.openings, self._base.specs[0]
-        here = np.array(decision.agent_position)
+        """The opening of the nearest shut door, where the robot cannot get away; None where there is none."""
+        world, here = self._base.world, np.array(decision.agent_position)
         shut = [
-            (float(np.hypot(*(openings.plan.beside[0, k, :, :2].mean(0).cpu().numpy() - here))), k)
-            for k, o in enumerate(spec.room.openings)
-            if o.kind == "door" and o.wall not in WALLS and float(openings.share[0, k]) < 1.0
-            if self._failures.get((OPEN, (k,)), 0) < TRIES
+            (float(np.hypot(*(middle - here))), number)
+            for number, middle in inner_doors(world).items()
+            if float(world.openings.share[0, number]) < 1.0 and self._failures.get((OPEN, (number,)), 0) < TRIES
         ]
         if not shut or decision.held is not None:
             return None
@@ -185,8 +179,8 @@ class Mitigator:
         Of the things around it, it is the one with the shortest way that ends where no wall is between.
         """
         world = self._base.world
-        aim = world.position[:1, index : index + 1]
-        if self._scene is None or not bool(blocked(world.walls, _standing(here[None], world), aim)[0, 0, 0]):
+        aim = world.position[0, index].cpu().numpy().astype(np.float64)
+        if self._scene is None or not hidden(world, _standing(here[None]), aim)[0]:
             return -1
         places = world.position[0, :, :2].cpu().numpy().astype(np.float64)
         there = (world.exists & ~world.away & ~world.held)[0].cpu().numpy()[: len(self._scene.edges)]
@@ -195,8 +189,7 @@ class Mitigator:
         goals, edges = places[near], self._scene.edges[near]
         ends = self._scene.ways.along(here[None], goals, ANY_WAY, edges)
         frames = self._scene.ways.frames(here[None], goals, edge=edges)
-        clear = ~blocked(world.walls, _standing(ends, world), aim)[0, :, 0].cpu().numpy()
-        frames = np.where(clear, frames, np.inf)
+        frames = np.where(hidden(world, _standing(ends), aim), np.inf, frames)
         return near[int(np.argmin(frames))] if len(near) and np.isfinite(frames).any() else -1
 
     def _aim(self, seat: int, here: Array, held: int) -> int:
@@ -204,22 +197,20 @@ class Mitigator:
         fire, world = fire_of(self._base.episode), self._base.world
         assert fire is not None
         places = world.position[0, :, :2].cpu().numpy().astype(np.float64)
-        goods = np.flatnonzero(((seats.things(fire, world) == seat) & (fire.status == BURNING))[0].cpu().numpy())
+        goods = np.flatnonzero((seats.alight(fire, world) == seat)[0].cpu().numpy())
         if len(goods):
             return int(goods[np.argmin(np.hypot(*(places[goods] - here).T))])
         floor = fire.flame_place[0, :, :2][seats.flames(fire, world.frame)[0] == seat].cpu().numpy().astype(np.float64)
         if not len(floor):
             return -1
         nearest = floor[np.argmin(np.hypot(*(floor - here).T))]
-        there = (world.exists & ~world.away & ~world.held)[0]
-        flame = torch.tensor([[[*nearest.tolist(), LOW]]], dtype=torch.float32, device=world.device)
-        there = (there & ~blocked(world.walls, world.position[:1], flame)[0, :, 0]).cpu().numpy()
+        there = (world.exists & ~world.away & ~world.held)[0].cpu().numpy()
+        there &= ~hidden(world, world.position[0].cpu().numpy().astype(np.float64), np.array([*nearest, LOW]))
         gaps = np.where(there, np.hypot(*(places - nearest).T), np.inf)
         best = int(np.argmin(gaps))
         return best if gaps[best] < AROUND else -1
 
 
-def _standing(places: Array, world: World) -> torch.Tensor:
-    """Places of a nozzle above `places` [m], [P, 2], as walls take them: [1, P, 3]."""
-    high = np.concatenate([places, np.full((len(places), 1), EYES)], axis=1)
-    return torch.as_tensor(high[None], dtype=torch.float32, device=world.device)
+def _standing(places: Array) -> Array:
+    """Places of a nozzle above `places` [m], [P, 2]: [P, 3]."""
+    return np.concatenate([places, np.full((len(places), 1), EYES)], axis=1)

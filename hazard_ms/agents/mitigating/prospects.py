@@ -8,20 +8,15 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
 
 from hazard_ms.agents.mitigating import costs
-from hazard_ms.env import HazardEnv
-from hazard_ms.hazards.fire.fire_state import BURNING, FireState
-from hazard_ms.scenes.walls import WALLS
-from hazard_ms.simulation.jet import KINDS
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, fire_of
+from hazard_ms.sketch.futures.surroundings import Home, charge_of, inner_doors
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.sketch.travel.ways import Ways
 from hazard_ms.spec import SceneSpec
-from hazard_ms.spec.extinguishers import EXTINGUISHERS
 
 Array = NDArray[np.float64]
 FETCH = "fetch"
@@ -52,38 +47,20 @@ class Prospect(NamedTuple):
     charge: float = 0.0  # frames that a tool lasts
 
 
-def seats_of(base: HazardEnv) -> list[Seat]:
+def seats_of(base: Home) -> list[Seat]:
     """The seats of fire that burn now."""
     fire = fire_of(base.episode)
     if fire is None:
         return []
-    floor, goods, places = _burning(fire, base)
-    every = np.concatenate([floor, goods])
+    world = base.world
+    every = np.concatenate([seats.flames(fire, world.frame)[0].cpu(), seats.alight(fire, world)[0].cpu()])
+    places = np.concatenate([fire.flame_place[0, :, :2].cpu(), world.position[0, :, :2].cpu()]).astype(np.float64)
     return [
         Seat(int(n), places[every == n].mean(0), int((every == n).sum())) for n in np.unique(every[every >= 0]).tolist()
     ]
 
 
-def _burning(fire: FireState, base: HazardEnv) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
-    """The seats of all flames, [F], and things, [B], -1 for none, and the places of both [m], [F + B, 2]."""
-    world = base.world
-    floor = seats.flames(fire, world.frame)[0]
-    goods = torch.where(fire.status == BURNING, seats.things(fire, world), -1)[0]
-    places = torch.cat([fire.flame_place[0, :, :2], world.position[0, :, :2]])
-    return floor.cpu().numpy(), goods.cpu().numpy(), places.cpu().numpy().astype(np.float64)
-
-
-def charge_of(base: HazardEnv, index: int) -> float:
-    """Frames that the extinguisher `index` along B still lasts; 0 for other things."""
-    tools = base.world.equipment
-    number = -1 if tools is None else int(tools.kinds[0, index])
-    if tools is None or number < 0:
-        return 0.0
-    left = float(tools.state.charge[0, index]) / EXTINGUISHERS[KINDS[number]].rate
-    return left / float(base.control_timestep)
-
-
-def tools_of(base: HazardEnv, scene: RescueScene) -> list[Prospect]:
+def tools_of(base: Home, scene: RescueScene) -> list[Prospect]:
     """The extinguishers that still hold something: to fetch them."""
     made, equipment = [], base.world.equipment
     rows = [] if equipment is None else equipment.tool[0].nonzero()[:, 0].tolist()
@@ -95,7 +72,7 @@ def tools_of(base: HazardEnv, scene: RescueScene) -> list[Prospect]:
     return made
 
 
-def fights(base: HazardEnv, lost: Array, here: Array) -> list[Prospect]:
+def fights(base: Home, lost: Array, here: Array) -> list[Prospect]:
     """Seats, pairs of them and all of them put out that threaten things at `lost` [m], [L, 2], nearest first."""
     near = [seat for seat in seats_of(base) if _gap(seat.place, lost) <= THREAT]
     near.sort(key=lambda seat: float(np.hypot(*(seat.place - here))))
@@ -111,14 +88,14 @@ def _fight(group: Sequence[Seat]) -> Prospect:
     return Prospect(OUT, numbers, group[0].place, group[-1].place, SPRAY_FROM, costs.FIGHT * len(group) + jet, jet)
 
 
-def doors(base: HazardEnv, lost: Array) -> list[Prospect]:
+def doors(base: Home, lost: Array) -> list[Prospect]:
     """The open doors in inner walls: to shut them, those nearest to what would be `lost` [m], [L, 2], first."""
-    made, openings, spec = [], base.world.openings, base.specs[0]
-    for number, o in enumerate(spec.room.openings):
-        leaf = o.kind == "door" and o.wall not in WALLS and not bool(openings.state.broken[0, number])
-        if leaf and float(openings.share[0, number]) > 0.0:
-            at = openings.plan.beside[0, number, :, :2].mean(0).cpu().numpy().astype(np.float64)
-            made.append(Prospect(SHUT, (number,), at, at, 0.0, costs.DOOR))
+    share = base.world.openings.share[0]
+    made = [
+        Prospect(SHUT, (number,), at, at, 0.0, costs.DOOR)
+        for number, at in inner_doors(base.world).items()
+        if float(share[number]) > 0.0
+    ]
     return sorted(made, key=lambda door: _gap(door.first, lost))
 
 
@@ -134,15 +111,17 @@ def as_now(spec: SceneSpec, shares: Iterable[float], here: tuple[float, float]) 
     return dataclasses.replace(spec, room=room, agent_start=dataclasses.replace(spec.agent_start, position=here))
 
 
-def closes(spec: SceneSpec, door: int, radius: float, here: tuple[float, float], goals: Array, edges: Array) -> Array:
-    """Which `goals` [m], [G, 2], nobody gets to from `here` [m] once a door of `spec` is shut: numbers.
+def closes(
+    spec: SceneSpec, door: int, radius: float, here: tuple[float, float], goals: Array, edges: Array
+) -> list[int]:
+    """The numbers of the `goals` [m], [G, 2], that nobody gets to from `here` [m] once a door of `spec` is shut.
 
     Limit: what lies within reach of a walk behind a thin wall counts as reached.
     """
     shares = [0.0 if number == door else o.share for number, o in enumerate(spec.room.openings)]
     ways = Ways(as_now(spec, shares, here), radius=radius)
     frames = ways.frames(np.array([here]), goals, edge=edges)
-    return np.flatnonzero(~np.isfinite(frames))
+    return [int(n) for n in np.flatnonzero(~np.isfinite(frames))]
 
 
 def ways_between(

@@ -15,7 +15,7 @@ import torch
 from numpy.typing import NDArray
 
 from hazard_ms.episode.episode import Episode
-from hazard_ms.hazards.fire.fire_state import BURNING, FireState
+from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.recording import Running, course_of, pushes
 from hazard_ms.sketch.timeline import STRIDE
@@ -33,7 +33,7 @@ class Intervention(NamedTuple):
 
 
 class Foreseen(NamedTuple):
-    """What follows if nobody acts, and after it what follows from each of N sets of interventions: N + 1 rows."""
+    """The outcome if nobody acts, and after it that of each of N sets of interventions: N + 1 rows."""
 
     first: int  # the frame of the present
     damaged_at: NDArray[np.int64]  # first frame in which each thing is damaged; -1: never, [N + 1, B]
@@ -60,7 +60,7 @@ class Foreseen(NamedTuple):
 
 
 def foresee(env: Running, sets: Sequence[Sequence[Intervention]], frames: int | None = None) -> Foreseen:
-    """What follows from the present of the one running episode of `env`, which is left as it is.
+    """Foresee the outcome of sets of interventions in the one running episode of `env`, which is left as it is.
 
     Each of N `sets` of interventions is done in a copy of its own. `frames`: how far to look, by default until the
     task's limit. What should be done in the past, or later than that, is not done. Raises ValueError for an unknown
@@ -108,6 +108,6 @@ def _intervene(episode: Episode, row: int, what: Intervention) -> int:
     if fire is None:
         return 0
     burning = int((seats.flames(fire, world.frame) == what.number)[row].sum())
-    burning += int(((seats.things(fire, world) == what.number) & (fire.status == BURNING))[row].sum())
+    burning += int((seats.alight(fire, world) == what.number)[row].sum())
     seats.put_out(fire, world, row, what.number)
     return burning

@@ -24,8 +24,13 @@ def flames(state: FireState, frame: Tensor) -> Tensor:
     return torch.where(lit(state, frame), state.flame_cell.div(cells, rounding_mode="floor"), -1)
 
 
+def alight(state: FireState, world: World) -> Tensor:
+    """The seat of each thing that burns, by its number, -1 for others, [E, B]."""
+    return torch.where(state.status == BURNING, things(state, world), -1)
+
+
 def things(state: FireState, world: World) -> Tensor:
-    """The seat of each thing that burns or is hot, -1 for others, [E, B]."""
+    """The seat of each thing that burns or is hot, by its number, -1 for others, [E, B]."""
     seat = flames(state, world.frame)
     apart = torch.cdist(world.position[..., :2], state.flame_place[..., :2])  # [m], [E, B, F]
     apart = torch.where(seat[:, None] >= 0, apart, torch.inf)

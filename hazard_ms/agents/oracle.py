@@ -12,23 +12,24 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.agents.attempts import Attempts
+from hazard_ms.agents.attempts import Attempts, Enclosure
 from hazard_ms.agents.base import PrivilegedAgent
+from hazard_ms.agents.mitigating.doing import Mitigator
+from hazard_ms.agents.search.landmark_search import LandmarkSearch
 from hazard_ms.agents.search.memory import ELSEWHERE, SAME_AGAIN, after
 from hazard_ms.agents.search.outlook import SPREAD
 from hazard_ms.agents.search.walks import detours
 from hazard_ms.agents.truth import Truth
+from hazard_ms.planning.averting import averting
 from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import PlannedRescue, soonest
+from hazard_ms.planning.problem import PlannedRescue, Problem, soonest
+from hazard_ms.sketch.recording import pushes
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
-from hazard_ms.skills.failures import NO_PATH, UNREACHABLE
+from hazard_ms.skills.failures import UNREACHABLE
 from hazard_ms.skills.motor.walking import ARRIVED, MIDPOINT
-from hazard_ms.skills.options.landmarks import landmarks
-from hazard_ms.skills.options.macros import Macro, play
-from hazard_ms.skills.options.options import LANDMARK, LOOK, Option
 
 MOST_REACH = 2.0  # distance up to which it reaches for a thing after a walk has arrived [m] [ours]
 NEAR = 0.2  # beyond where a walk arrives, from which it reaches for a thing without walking [m] [ours]
@@ -39,7 +40,6 @@ CART_FAILURES = 3  # after which a cart is no longer used [ours]
 FADING = 2e-4  # share of a target's value that is at risk in each frame until it is safe: skills fail [ours]
 MOVED = 0.2  # a thing that will be met farther than this from where it is now is moving [m] [ours]
 LOYALTY = 20.0  # frames that it deducts for the target that it is on its way to, so that it does not waver [ours]
-ENCLOSED = 2  # targets to which there is no path, from which it is the robot that cannot get away [ours]
 ROUNDS = 2  # number of times that it tries again what it had given up [ours]
 MOST_LABELS = 20_000  # of the exact search: rarely needed [ours]
 BEAM = 2_000  # labels of a layer beyond that [ours]
@@ -50,9 +50,9 @@ class Oracle(PrivilegedAgent):
 
     colours = False
 
-    def __init__(self, known: bool = False) -> None:
-        """`known`: whether it plans only with the targets and carts that its map holds."""
-        self._only_known = known
+    def __init__(self, known: bool = False, mitigate: bool = True) -> None:
+        """`known`: it plans only with the targets and carts that its map holds; `mitigate`: it uses mitigations."""
+        self._only_known, self._mitigates = known, mitigate and not known
         self._truth: Truth | None = None
 
     def attach(self, env: SkillEnv) -> None:
@@ -69,41 +69,44 @@ class Oracle(PrivilegedAgent):
         self._attempts = Attempts()
         self._goal: str | None = None
         self._before: tuple[Action, tuple[float, float]] | None = None  # the last action, and where it began [m]
-        self._search: Macro | None = None
-        self._no_path: set[str] = set()  # targets to which there was no path, one after another
+        self._search = LandmarkSearch()
+        self._mitigator = Mitigator(self._truth, brief) if self._mitigates and brief.mitigations else None
+        self._enclosure = Enclosure()
 
     def act(self, decision: Decision) -> Action:
         """The next action: the first step of the best plan from here on."""
         assert self._truth is not None
         if self._before is None:  # not earlier: who records the episode begins with the map of an honest agent
             self._truth.furnish()
-        self._judge(decision, self._truth)
+        if self._mitigator is not None:
+            self._scene = self._mitigator.scene(self._scene, decision.agent_position)
+        if self._mitigator is None or not self._mitigator.took(decision):
+            self._judge(decision, self._truth)
         self._attempts.in_vain = self._in_vain(decision, self._truth)
-        action = Action(EXPLORE) if self._enclosed(decision) else self._choose(decision, self._truth)
+        action = self._get_out(decision) if self._enclosure.found(decision) else self._choose(decision, self._truth)
         self._before = (action, decision.agent_position)
         self._truth.reveal()
         return action
 
-    def _enclosed(self, decision: Decision) -> bool:
-        """Whether there is no way to one target after another: not they are to blame, but where the robot stands."""
-        last, result = decision.last_action, decision.last_result
-        if last is None or result is None or last.target is None or result.reason != NO_PATH or result.frames:
-            self._no_path.clear()
-            return False
-        self._no_path.add(last.target)
-        if len(self._no_path) < ENCLOSED:
-            return False
-        self._no_path.clear()
-        self.note = "no way leads anywhere: look around"
-        return True
+    def _get_out(self, decision: Decision) -> Action:
+        door = self._mitigator and self._mitigator.way_out(decision)
+        return self._say("no way leads anywhere", door or Action(EXPLORE))
 
     def _choose(self, decision: Decision, truth: Truth) -> Action:
-        if decision.held is not None and not decision.containers:
+        tool = any(t.held for t in decision.tools)
+        if decision.held is not None and not decision.containers and not tool:
             return self._say("into the bag", Action(DROP))
-        step = self._next_rescue(decision, truth)
+        targets, problem = self._problem(decision, truth)
+        if self._mitigator is not None and problem is not None:
+            action = self._mitigator.act(decision, problem, targets, self._scene)
+            if action is not None:
+                return self._say(self._mitigator.note, action)
+        if tool:
+            return self._say("it is of no use any more", Action(DROP))
+        step = None if problem is None else self._next_rescue(decision, truth, targets, problem)
         if step is None:
             return self._otherwise(decision, truth)
-        self._search = None
+        self._search.leave()
         holding = decision.held is not None
         index = self._cart(decision, step.cart) if holding else self._arrived_at(decision, truth, step.target)
         name = self._goal = decision.names[index]
@@ -116,33 +119,45 @@ class Oracle(PrivilegedAgent):
         nearly = holding and decision.last_action != one_step and self._is_near(decision, truth, index, MIDPOINT)
         return one_step if nearly else Action(WALK_TO, name)
 
-    def _next_rescue(self, decision: Decision, truth: Truth) -> PlannedRescue | None:
-        """The first step of the best plan, with indices along B for targets; None where nothing can be rescued."""
-        names = decision.names
+    def _problem(self, decision: Decision, truth: Truth) -> tuple[list[int], Problem | None]:
+        """The targets of the next plan, by index along B, and its problem; None where nothing can be rescued."""
         targets = [t for t in decision.targets if t.held or self._considered(t.name, t.index, truth, GIVE_UP)]
         targets = [t for t in targets if not t.rescued and (t.held or t.name not in self._attempts.in_vain)]
-        carts = [c for c in self._carts if self._considered(names[c], int(c), truth, CART_FAILURES)]
-        if not targets or (decision.containers and not len(carts)):
-            return None
+        if not targets or (decision.containers and not self._usable(decision, truth)):
+            return [], None
+        held = next((t.index for t in targets if t.held), None)
         problem = self._scene.problem(
             truth.future(),
             np.array([t.index for t in targets]),
             np.array([t.value * self._chance(t.name, decision) for t in targets]),
-            np.array(carts, np.int64),
-            Outset(decision.agent_position, decision.agent_heading, decision.frame, self._held(decision)),
+            np.array(self._usable(decision, truth), np.int64),
+            Outset(decision.agent_position, decision.agent_heading, decision.frame, held),
             self._detours(decision, truth, [t.index for t in targets])
             - [LOYALTY * (t.name == self._goal) for t in targets],
             FADING,
             SPREAD,
+            truth.env.base.task.averted and pushes(truth.env.base.task.hazards),
         )
-        plan = solve(problem, MOST_LABELS, BEAM)
+        return [t.index for t in targets], problem
+
+    def _next_rescue(
+        self, decision: Decision, truth: Truth, targets: list[int], problem: Problem
+    ) -> PlannedRescue | None:
+        """The first step of the best plan, with indices along B for targets; None where nothing can be rescued."""
+        aimed = averting(problem) if truth.env.base.task.averted else problem
+        plan = solve(aimed, MOST_LABELS, BEAM)
         self.note = f"plan of {plan.value:g} in {len(plan.rescues)} rescues by frame {plan.frame:.0f}"
         first = plan.rescues[0] if plan.rescues else soonest(problem)
         if first is None:
             return None
         self.note = self.note if plan.rescues else "too late by any plan, but the nearest"
+        carts = self._usable(decision, truth)
         cart = int(np.flatnonzero(self._carts == carts[first.cart])[0]) if decision.containers else -1
-        return first._replace(target=targets[first.target].index, cart=cart)
+        return first._replace(target=targets[first.target], cart=cart)
+
+    def _usable(self, decision: Decision, truth: Truth) -> list[int]:
+        """The carts that did not fail too often, by index along B."""
+        return [int(c) for c in self._carts if self._considered(decision.names[c], int(c), truth, CART_FAILURES)]
 
     def _detours(self, decision: Decision, truth: Truth, targets: list[int]) -> NDArray[np.float64]:
         """Frames by which the walk to each of `targets`, [T], is longer now, past what floats or was pushed about."""
@@ -161,9 +176,6 @@ class Oracle(PrivilegedAgent):
         """The cart that it is on its way to, so that it does not waver, else the planned one; indices along B."""
         under_way = [c for c in self._carts if decision.names[c] == self._goal]
         return int((under_way or [self._carts[planned]])[0])
-
-    def _held(self, decision: Decision) -> int | None:
-        return None if decision.held is None else decision.index(decision.held)
 
     def _considered(self, name: str, index: int, truth: Truth, most: int) -> bool:
         """Whether a thing is part of the plan: it failed fewer than `most` times and, if that counts, it is known."""
@@ -216,32 +228,14 @@ class Oracle(PrivilegedAgent):
         """The action where no plan rescues anything: search, try again what was given up, or stop."""
         if all(target.rescued for target in decision.targets):
             return self._say("every target is rescued", Action(STOP))
-        if self._only_known and (action := self._searched(decision)) is not None:
-            return action
+        if self._only_known and (action := self._search.act(decision, self._attempts)) is not None:
+            return self._say(self._search.note, action)
         if self._attempts.failures and self._attempts.rounds < ROUNDS:
             self._attempts = Attempts(rounds=self._attempts.rounds + 1, looked=True, in_vain=self._attempts.in_vain)
             if self._only_known:
                 return self._say("try again what was given up", Action(EXPLORE))
             return self._choose(decision, truth)
         return self._say("nothing can be rescued any more", Action(STOP))
-
-    def _searched(self, decision: Decision) -> Action | None:
-        """The next action of a search; None where nothing is left to search."""
-        if self._search is not None:
-            try:
-                return self._search.send(decision)
-            except StopIteration:
-                self._search = None
-        marks = landmarks(decision, self._attempts.visits, 1)
-        if not self._attempts.looked:
-            option, self._attempts.looked = Option(LOOK), True
-        elif marks:
-            option, visits = Option(LANDMARK, marks[0].name), self._attempts.visits
-            visits[marks[0].name] = visits.get(marks[0].name, 0) + 1
-        else:
-            return None
-        self._search = play(option, decision)
-        return self._say(f"search: {option}", next(self._search))
 
     def _say(self, note: str, action: Action) -> Action:
         self.note = note

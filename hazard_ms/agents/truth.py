@@ -12,6 +12,7 @@ from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.options.landmarks import WALKABLE
 
+LASTS = 300  # frames for which the future of a home is kept, whatever is picked up [ours]
 SURPRISE = 0.25  # how far a target may be from where it was expected before the future is predicted again [m] [ours]
 
 
@@ -28,7 +29,7 @@ class Future:
         base = self._env.base
         world, now = base.world, int(base.world.frame[0])
         free = (~(world.safe | world.held | world.away)[0]).cpu().numpy()
-        if self._told is not None and np.array_equal(free, self._free):
+        if self._told is not None and (np.array_equal(free, self._free) or self._lasts(now)):
             things = slice(len(self._told.names))
             off = world.position[0, things].cpu().numpy() - self._told.position_at(now)
             damaged = base.episode.damage.damaged[0, things].cpu().numpy()
@@ -39,6 +40,17 @@ class Future:
         self._told, self._free = ahead(base), free
         return self._told
 
+    def _lasts(self, now: int) -> bool:
+        """Whether a future in which something was not yet picked up is kept: in tasks of homes, for a time.
+
+        What is gone from there no longer burns, which changes little; to predict a home takes seconds.
+        """
+        return self._env.base.task.several_rooms and self._told is not None and now - self._told.first < LASTS
+
+    def forget(self) -> None:
+        """Predict anew when it is asked next: something was done about the hazard."""
+        self._told = None
+
 
 class Truth:
     """The true state and future of a running episode, and how it gets into the map."""
@@ -47,6 +59,7 @@ class Truth:
         """Enter where things are into the map of `env` after every look; `only_known`: only those that it knows."""
         self.env, self._only_known = env, only_known
         self.aim: dict[int, NDArray[np.float32]] = {}  # where the map is to place some things instead [m], by index
+        self.also: set[int] = set()  # things that are entered beside targets and containers, by index
         self._future = Future(env)
         look = env.stage.look
 
@@ -69,6 +82,10 @@ class Truth:
         """The timeline from here on if nobody acts, predicted again when a target is not as predicted."""
         return self._future.timeline()
 
+    def forget(self) -> None:
+        """Predict the future anew when it is asked for next: something was done about the hazard."""
+        self._future.forget()
+
     def furnish(self) -> None:
         """Enter furniture and walls into the map.
 
@@ -83,7 +100,10 @@ class Truth:
         base, seen = self.env.base, self.env.seen
         world = base.world
         there = (world.target[0] & ~(world.safe | world.held | world.away)[0]).cpu().numpy()
-        there[[world.index(0, cart.name) for cart in base.specs[0].containers]] = True
+        there[[*(world.index(0, cart.name) for cart in base.specs[0].containers), *self.also]] = True
+        if base.task.mitigations and not self._only_known:
+            for number in range(len(base.specs[0].room.openings)):
+                self.env.stage.doors.enter(number, self.env.frame, self.env.maps)
         places, extents = world.position[0].cpu().numpy(), world.extent[0].cpu().numpy()
         damaged = base.episode.damage.damaged[0].cpu().numpy()
         made = {}

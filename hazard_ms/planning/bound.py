@@ -29,7 +29,7 @@ class Completion:
             late = problem.limit - frames + SLACK
             whole = min(problem.damaged_at[target] - frames + SLACK, late)
             offers.append((value, frames, 1 << target, -np.inf, whole))
-            offers.append((value * problem.damaged_share, frames, 1 << target, whole, late))
+            offers.append((value * problem.share(target), frames, 1 << target, whole, late))
         self._offers = sorted(
             (offer for offer in offers if offer[0] > 0 and offer[4] > offer[3] and offer[1] < np.inf),
             key=lambda offer: (-offer[0] / offer[1] if offer[1] else -np.inf, offer),

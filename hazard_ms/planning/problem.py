@@ -43,17 +43,20 @@ class Problem:
     damaged_share: float = 0.5  # of its value that a damaged target counts
     fading: float = 0.0  # share of its value by which a target counts less with every frame until it is safe
     spread: float = 0.0  # standard deviation of the frames that a plan takes, over their root [sqrt(frames)]
+    shares: Sequence[float] | None = None  # as `damaged_share`, of each target where they differ, [M]
+    gone_at: Sequence[float] | None = None  # last frame before each is carried off (averting.py); inf: never, [M]
 
     def __post_init__(self) -> None:
         """Raises ValueError for wrong lengths, for NaN, and for negative or infinite numbers that must not be."""
         targets, carts = self.travel.targets, self.travel.carts
         lengths = {"values": targets, "damaged_at": targets, "pick": targets, "drop": carts or targets}
+        lengths |= {name: targets for name in ("shares", "gone_at") if getattr(self, name) is not None}
         for name, length in lengths.items():
             numbers = np.array(getattr(self, name), np.float64)
             if numbers.shape != (length,):
                 raise ValueError(f"{name} must have shape ({length},), got {numbers.shape}")
             refuse_unless_frames(numbers, name)
-            if name != "damaged_at" and not np.isfinite(numbers).all():
+            if name not in ("damaged_at", "gone_at") and not np.isfinite(numbers).all():
                 raise ValueError(f"{name} must hold finite numbers, got {numbers.max()}")
             object.__setattr__(self, name, tuple(numbers.tolist()))
         for name in ("limit", "frame"):
@@ -61,6 +64,8 @@ class Problem:
                 raise ValueError(f"{name} must be a frame from 0 on, got {getattr(self, name)}")
         if not 0 <= self.damaged_share <= 1:
             raise ValueError(f"damaged_share must be from 0 to 1, got {self.damaged_share}")
+        if max(self.shares or (), default=0.0) > 1.0:
+            raise ValueError(f"shares must be from 0 to 1, got {max(self.shares or ())}")
         if not 0 <= self.fading * max(self.limit - self.frame, 1.0) <= 1:
             raise ValueError(f"fading must be from 0 to 1 over the frames up to the limit, got {self.fading}")
         if not 0 <= self.spread < np.inf:
@@ -72,8 +77,13 @@ class Problem:
         """The value that the target counts if it is safe at a frame, the limit not considered."""
         by = self.damaged_at[target]
         whole = self._in_time(safe, by) if safe <= by else 0.0
-        share = self.damaged_share + (1.0 - self.damaged_share) * whole
+        damaged = self.share(target)
+        share = damaged + (1.0 - damaged) * whole
         return self.values[target] * share * (1.0 - self.fading * (safe - self.frame)) * self._in_time(safe, self.limit)
+
+    def share(self, target: int) -> float:
+        """The share of its value that a target counts when it is damaged."""
+        return self.damaged_share if self.shares is None else self.shares[target]
 
     def _in_time(self, safe: float, by: float) -> float:
         """The chance that what is planned to be safe at the frame `safe` is so at the frame `by`."""

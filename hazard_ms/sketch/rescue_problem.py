@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.hazards.places import MOVED
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import MovingTravel, StaticTravel, Travel, straight_line
 from hazard_ms.simulation import building
@@ -55,11 +56,13 @@ class RescueScene:
         delays: NDArray[np.float64] | None = None,
         fading: float = 0.0,
         spread: float = 0.0,
+        carried_off: bool = False,
     ) -> Problem:
         """The problem of rescuing `targets`, indices [T] along B, worth `values` [T], from an outset on.
 
         `carts`: indices of the carts, [C], none if the safe place is the bag; `delays`: frames that each pick-up takes
-        longer than usual, [T]; `fading` and `spread` as for `Problem`. A thing in the hand must be among the targets.
+        longer than usual, [T]; `fading` and `spread` as for `Problem`; `carried_off`: it says when targets are carried
+        off. A thing in the hand must be among the targets.
         """
         extra = np.zeros(len(targets)) if delays is None else delays
         travel, saved = self._travel(future, targets, carts, outset)
@@ -74,7 +77,18 @@ class RescueScene:
             fading=fading,
             spread=spread,
             holding=None if outset.holding is None else targets.tolist().index(outset.holding),
+            gone_at=self.gone_at(future, targets).tolist() if carried_off else None,
         )
+
+    def gone_at(self, future: Timeline, targets: NDArray[np.int64]) -> NDArray[np.float64]:
+        """The last frame before each of `targets`, [T], is farther than MOVED from where it stood at the start, [T].
+
+        inf where it never is. What was put down elsewhere counts as carried off [ours: agents do not do that].
+        """
+        places = np.array([self.spec.things[t].position for t in targets], np.float64).reshape(len(targets), -1)
+        off = np.linalg.norm(future.positions(targets)[..., :2] - places[:, :2], axis=-1) > MOVED  # [S, T]
+        first = future.frames[off.argmax(axis=0)] - 1.0
+        return np.where(off.any(axis=0), np.maximum(first, 0.0), np.inf)
 
     def _travel(
         self, future: Timeline, targets: NDArray[np.int64], carts: NDArray[np.int64], outset: Outset

@@ -1,0 +1,139 @@
+"""The measures that there are in a running episode, as who sees everything knows them, and their ways."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.agents.mitigating import costs
+from hazard_ms.sketch.futures import seats
+from hazard_ms.sketch.futures.interventions import OUT, SHUT, fire_of
+from hazard_ms.sketch.futures.surroundings import Home, charge_of, inner_doors
+from hazard_ms.sketch.rescue_problem import RescueScene
+from hazard_ms.sketch.travel.ways import Ways
+from hazard_ms.spec import SceneSpec
+
+Array = NDArray[np.float64]
+FETCH = "fetch"
+THREAT = 3.0  # distance from a target that would be lost within which a fire is fought [m] [ours]
+MOST_FUTURES = 11  # beside that in which nobody acts [ours]
+SPRAY_FROM = 1.0  # from flames to where they are fought [m] [ours]
+ANY_WAY = 1e6  # longer than any way [m]
+
+
+class Seat(NamedTuple):
+    """A seat of fire as it is now."""
+
+    number: int
+    place: Array  # the middle of what burns [m], [2]
+    burning: int  # number of flames and things
+
+
+class Prospect(NamedTuple):
+    """Something that can be done: a tool fetched, seats of fire put out, a door shut."""
+
+    kind: str  # FETCH, OUT or SHUT
+    numbers: tuple[int, ...]  # of the thing along B, of the seats in their order, or of the opening along O
+    first: Array  # place at which it begins [m], [2]
+    last: Array  # place at which it ends [m], [2]
+    edge: float  # distance from these at which it is done, beyond that of walks [m]
+    frames: float  # that it takes there
+    jet: float = 0.0  # frames of discharge among these
+    charge: float = 0.0  # frames that a tool lasts
+
+
+def seats_of(base: Home) -> list[Seat]:
+    """The seats of fire that burn now."""
+    fire = fire_of(base.episode)
+    if fire is None:
+        return []
+    world = base.world
+    every = np.concatenate([seats.flames(fire, world.frame)[0].cpu(), seats.alight(fire, world)[0].cpu()])
+    places = np.concatenate([fire.flame_place[0, :, :2].cpu(), world.position[0, :, :2].cpu()]).astype(np.float64)
+    return [
+        Seat(int(n), places[every == n].mean(0), int((every == n).sum())) for n in np.unique(every[every >= 0]).tolist()
+    ]
+
+
+def tools_of(base: Home, scene: RescueScene) -> list[Prospect]:
+    """The extinguishers that still hold something: to fetch them."""
+    made, equipment = [], base.world.equipment
+    rows = [] if equipment is None else equipment.tool[0].nonzero()[:, 0].tolist()
+    for b in rows:
+        charge = charge_of(base, b)
+        if charge > 0.0:
+            at = base.world.position[0, b, :2].cpu().numpy().astype(np.float64)
+            made.append(Prospect(FETCH, (b,), at, at, float(scene.edges[b]), scene.pick, charge=charge))
+    return made
+
+
+def fights(base: Home, lost: Array, here: Array) -> list[Prospect]:
+    """Seats, pairs of them and all of them put out that threaten things at `lost` [m], [L, 2], nearest first."""
+    near = [seat for seat in seats_of(base) if _gap(seat.place, lost) <= THREAT]
+    near.sort(key=lambda seat: float(np.hypot(*(seat.place - here))))
+    sets: list[Sequence[Seat]] = [[seat] for seat in near]
+    sets += [near] if len(near) > 2 else []
+    sets += list(itertools.combinations(near, 2))
+    return [_fight(group) for group in sets]
+
+
+def _fight(group: Sequence[Seat]) -> Prospect:
+    jet = sum(costs.FLAME * seat.burning for seat in group)
+    numbers = tuple(seat.number for seat in group)
+    return Prospect(OUT, numbers, group[0].place, group[-1].place, SPRAY_FROM, costs.FIGHT * len(group) + jet, jet)
+
+
+def doors(base: Home, lost: Array) -> list[Prospect]:
+    """The open doors in inner walls: to shut them, those nearest to what would be `lost` [m], [L, 2], first."""
+    share = base.world.openings.share[0]
+    made = [
+        Prospect(SHUT, (number,), at, at, 0.0, costs.DOOR)
+        for number, at in inner_doors(base.world).items()
+        if float(share[number]) > 0.0
+    ]
+    return sorted(made, key=lambda door: _gap(door.first, lost))
+
+
+def _gap(place: Array, others: Array) -> float:
+    return float(np.hypot(*(others - place).T).min(initial=np.inf))
+
+
+def as_now(spec: SceneSpec, shares: Iterable[float], here: tuple[float, float]) -> SceneSpec:
+    """The scene with its doors as far open as `shares` say, [O], and the robot `here` [m]."""
+    rows = zip(spec.room.openings, shares, strict=True)
+    made = [dataclasses.replace(o, open=share) if o.kind == "door" else o for o, share in rows]
+    room = dataclasses.replace(spec.room, openings=tuple(made))
+    return dataclasses.replace(spec, room=room, agent_start=dataclasses.replace(spec.agent_start, position=here))
+
+
+def closes(
+    spec: SceneSpec, door: int, radius: float, here: tuple[float, float], goals: Array, edges: Array
+) -> list[int]:
+    """The numbers of the `goals` [m], [G, 2], that nobody gets to from `here` [m] once a door of `spec` is shut.
+
+    Limit: what lies within reach of a walk behind a thin wall counts as reached.
+    """
+    shares = [0.0 if number == door else o.share for number, o in enumerate(spec.room.openings)]
+    ways = Ways(as_now(spec, shares, here), radius=radius)
+    frames = ways.frames(np.array([here]), goals, edge=edges)
+    return [int(n) for n in np.flatnonzero(~np.isfinite(frames))]
+
+
+def ways_between(
+    scene: RescueScene, here: Array, goals: Array, edges: Array, made: Sequence[Prospect]
+) -> dict[str, Array]:
+    """The ways to and from what can be done, by the names that `Measures` has for them; `goals` [m], [G, 2]."""
+    ways, own = scene.ways, np.array([p.edge for p in made])
+    first, last = np.stack([p.first for p in made]), np.stack([p.last for p in made])
+    stands = np.vstack([ways.along(here[None], goals, ANY_WAY, edges), here[None]])
+    after = ways.along(here[None], last, ANY_WAY, own)
+    return {
+        "to": ways.frames(stands[:, None], first[None], edge=own),
+        "between": ways.frames(after[:, None], first[None], edge=own),
+        "onward": ways.frames(after[:, None], goals[None], edge=edges),
+    }

@@ -1,7 +1,7 @@
 """Whether inner walls of a scene stand between two places (Warp), as hazard_ms.simulation.walls has it for torch.
 
-Both say the same of every pair, bit for bit. In torch each wall, and each doorway in it, takes a dozen operations on all
-pairs; a kernel looks only at the walls that a line crosses.
+Both say the same of every pair, bit for bit. In torch each wall, and each doorway in it, takes a dozen operations on
+all pairs; a kernel looks only at the walls that a line crosses.
 """
 
 from __future__ import annotations

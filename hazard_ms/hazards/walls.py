@@ -76,6 +76,19 @@ def cut(
         pairs[e, m, p] = clear(e, here[e, m], there[e, p], walls)
 
 
+@wp.func
+def meets(e: int, x: float, y: float, half: float, walls: Partitions) -> bool:
+    """Whether a square of half the edge `half` [m] around `x`, `y` [m] overlaps a wall of environment `e`."""
+    for w in range(walls.wall.shape[1]):
+        wall = walls.wall[e, w]
+        place, along = x, y
+        if wall[0] > 0.0:
+            place, along = y, x
+        if wp.abs(place - wall[1]) < wall[2] + half and not fits(e, w, along, half, walls):
+            return True
+    return False
+
+
 @wp.kernel
 def touch(
     half: float,
@@ -86,15 +99,7 @@ def touch(
 ):
     """Set `found`, [E, N], to whether squares overlap a wall, see `within`."""
     e, n = wp.tid()
-    touched = False
-    for w in range(walls.wall.shape[1]):
-        wall = walls.wall[e, w]
-        place, along = float(x[e, n]), float(y[e, n])
-        if wall[0] > 0.0:
-            place, along = float(y[e, n]), float(x[e, n])
-        if wp.abs(place - wall[1]) < wall[2] + half and not fits(e, w, along, half, walls):
-            touched = True
-    found[e, n] = touched
+    found[e, n] = meets(e, x[e, n], y[e, n], half, walls)
 
 
 def cut_off(pairs: Tensor, walls: Walls, here: Tensor, there: Tensor) -> Tensor:

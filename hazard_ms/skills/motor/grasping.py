@@ -19,7 +19,7 @@ from hazard_ms.skills.motor.reaching import GRASP, STAND_OFF, Way, aims, arm_way
 from hazard_ms.skills.motor.routes import CLOSELY
 from hazard_ms.skills.motor.standing import better_place
 from hazard_ms.skills.motor.surface import NEARLY, Surface, place_of
-from hazard_ms.skills.motor.walking import known, way_to
+from hazard_ms.skills.motor.walking import behind_wall, known, way_to
 
 LIMIT = 2.5  # greatest distance from the shoulder to the thing at which a pick-up begins (docs/benchmark.md 3) [m]
 APPROACH_FRAMES = 120  # budget for coming near enough [frames]
@@ -89,14 +89,19 @@ def _refusal(stage: Stage, index: int, thing: int) -> str:
 def _within_span(stage: Stage, thing: NDArray[np.float64]) -> bool:
     x, y, _ = stage.robot.base()
     nearest, farthest = stage.robot.build.span(float(thing[2]))
-    return nearest <= float(np.hypot(thing[0] - x, thing[1] - y)) <= farthest
+    return nearest <= float(np.hypot(thing[0] - x, thing[1] - y)) <= farthest and not behind_wall(stage, thing)
 
 
 def come_near(stage: Stage, thing: NDArray[np.float64]) -> Skill:
-    """Drive to where the arm is long enough for `thing`, [3] [m], world frame; not at all if it stays too short."""
+    """Drive to where the arm is long enough for `thing`, [3] [m], world frame.
+
+    It does not drive at all if the arm stays too short, or if the way is too long.
+    """
     nearest, farthest = stage.robot.build.span(float(thing[2]))
     path = way_to(stage, (float(thing[0]), float(thing[1])), max(nearest, farthest * STAND_OFF))
     if path is None or not len(path.points) or path.short > farthest + GRASP_REACH:
+        return Result(False, failures.NO_PATH)
+    if path.length > APPROACH_FRAMES * stage.robot.build.forward_step:
         return Result(False, failures.NO_PATH)
     return (yield from drive(stage, path.points, APPROACH_FRAMES))
 

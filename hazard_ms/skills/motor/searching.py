@@ -205,7 +205,7 @@ def tied(cells: NDArray[np.int64], spent: NDArray[np.float64], cost: NDArray[np.
 def straighten(cells: NDArray[np.int64], cost: NDArray[np.float64]) -> NDArray[np.int64]:
     """The fewest cells of a path over costs [Y, X] whose straight connections cost no more, and cross no dearer cell.
 
-    `cells` are those of the path, (y, x), [P, 2].
+    `cells` are those of the path, (y, x) [-], [P, 2]; the ones that are kept [-], [K, 2], begin and end it.
     """
     steps = np.hypot(*np.diff(cells, axis=0).T) * (cost[tuple(cells[1:].T)] + cost[tuple(cells[:-1].T)]) / 2
     spent = np.concatenate([[0.0], np.cumsum(steps)])

@@ -9,11 +9,12 @@ the other.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import torch
 from torch import Tensor
 
+from hazard_ms.kernels.launch import Launches
 from hazard_ms.spec import Opening, Partition, SceneSpec
 
 NOWHERE = 1e6  # where a wall that does not exist is [m]: farther than any place
@@ -29,6 +30,7 @@ class Walls:
     doorway: Tensor
     # numbers of the doorways that each wall has in any scene, [W]; empty: it may have any. Others are not looked at
     ways: tuple[tuple[int, ...], ...] = ()
+    launches: Launches = field(default_factory=Launches, compare=False, repr=False)  # of kernels that ask about them
 
     @classmethod
     @torch.inference_mode(False)
@@ -54,7 +56,7 @@ class Walls:
 
     def part(self, rows: Tensor | slice) -> Walls:
         """The walls of the environments `rows`, indices [R] or a slice."""
-        return Walls(self.any, self.wall[rows], self.doorway[rows], self.ways)
+        return Walls(self.any, self.wall[rows], self.doorway[rows], self.ways, self.launches)
 
     def doorways_of(self, wall: int) -> Sequence[int]:
         """Numbers of the doorways that may be in the wall of this number."""
@@ -113,22 +115,3 @@ def blocked(walls: Walls, here: Tensor, there: Tensor) -> Tensor:
 def _across(across: Tensor, place: Tensor) -> Tensor:
     """The coordinate of `place` along y where `across` holds, else along x."""
     return torch.where(across, place[..., 1], place[..., 0])
-
-
-def within(walls: Walls, x: Tensor, y: Tensor, half: float) -> Tensor:
-    """Whether squares of half the edge `half` [m] around `x`, `y` [m], [E, ...], overlap a wall: [E, ...], bool.
-
-    In a doorway, and in what is open of a door, they do not.
-    """
-    x, y = torch.broadcast_tensors(x, y)
-    found = torch.zeros(x.shape, dtype=torch.bool, device=x.device)
-    like = (-1, *[1] * (x.ndim - 1))
-    for w in range(walls.wall.shape[1]):
-        axis, at, thick = (v.view(like) for v in walls.wall[:, w].unbind(-1))
-        place, along = torch.where(axis > 0, y, x), torch.where(axis > 0, x, y)
-        through = torch.zeros_like(found)
-        for d in walls.doorways_of(w):
-            number, low, high, sill, _ = (v.view(like) for v in walls.doorway[:, d].unbind(-1))
-            through |= (number == w) & (sill <= 0.0) & (along - half >= low) & (along + half <= high)
-        found |= ((place - at).abs() < thick + half) & ~through
-    return found

@@ -43,7 +43,7 @@ class Brief:
     random_seed: int  # seed of the agent's own randomness, derived one-way from that of the episode
     mitigations: tuple[str, ...] = ()  # verbs of the task beyond the six of the benchmark
     damaged_share: float = DAMAGED_SHARE  # of its value that a target counts when it is rescued damaged
-    several_rooms: bool = False  # whether doors divide the place
+    several_rooms: bool = False  # whether doors or doorways divide the place
 
 
 def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
@@ -61,8 +61,13 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
         radius=base.agent.build.radius,
         random_seed=random_seed(int(base.world.chance.seed[0])),
         mitigations=base.task.mitigations,
-        several_rooms=base.task.several_rooms,
+        several_rooms=has_several_rooms(base),
     )
+
+
+def has_several_rooms(base: Any) -> bool:
+    """Whether doors or doorways divide the place of the episode in the HazardEnv `base`: a home, or a flat."""
+    return bool(base.task.several_rooms or base.specs[0].room.partitions)
 
 
 def random_seed(seed: int) -> int:

@@ -18,7 +18,7 @@ from hazard_ms.sensing.detection.perception import TRUTH, camera_of
 from hazard_ms.sensing.detection.perception import perception as perception_of
 from hazard_ms.sensing.semantic_map import CEILING, LINTELS, SemanticMap, cells_for
 from hazard_ms.skills.actions import skill
-from hazard_ms.skills.brief import Brief, brief_of
+from hazard_ms.skills.brief import Brief, brief_of, has_several_rooms
 from hazard_ms.skills.context import LowLevel, Skill, Stage
 from hazard_ms.skills.decision import PICK_UP, STOP, Action, Decision, Images, Result, available
 from hazard_ms.skills.failures import EPISODE_OVER, NOT_A_TARGET, REFUSED
@@ -114,7 +114,7 @@ class SkillEnv:
         cells, hazards = cells_for(self.base.specs[0].room.size), len(self.base.task.hazards)
         carts = [t.name for t in self.base.specs[0].things if t.category in self.base.task.safe_place.containers]
         self._labeller = self._perception.labeller(world, carts)
-        ceiling = LINTELS if self.base.task.several_rooms else CEILING
+        ceiling = LINTELS if has_several_rooms(self.base) else CEILING
         self._seen = SemanticMap(start, self._labeller.loose, cells=cells, hazards=hazards, ceiling=ceiling)
         self.maps = [self._seen]
         self.stage = Stage(self.base, self._seen, self.look, self._labeller)

@@ -75,7 +75,8 @@ class Task:
     splits: tuple[str, ...] = ("train", "test")
     name: str = ""  # "HazardFire-v1"; filled in by the registry, as is the next
     max_frames: int = 1500
-    several_rooms: bool = False  # doors divide the place: maps end below their lintels, and agents count on walls
+    # doors divide its places: maps end below their lintels, and agents count on walls, as in any scene with inner walls
+    several_rooms: bool = False
     # (Situation, environments that begin, [R]) -> None: puts robots elsewhere than their scenes say; None: it does not
     arrange: Callable[[Any, Any], None] | None = None
     # verbs of `hazard_ms.registry.mitigations` that its agents have, beyond the six of the benchmark

@@ -11,9 +11,9 @@ import warp as wp
 
 from hazard_ms.hazards import presets
 from hazard_ms.hazards.base import Hazard
-from hazard_ms.hazards.walls import Partitions, clear
+from hazard_ms.hazards.walls import Partitions, clear, cut_off, within
 from hazard_ms.kernels.launch import Launches
-from hazard_ms.simulation.walls import Walls, blocked, within
+from hazard_ms.simulation.walls import Walls, blocked
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Partition, Room, SceneSpec
 from tests.worlds.fire_worlds import room_world
@@ -81,10 +81,39 @@ def test_a_straight_line_passes_a_wall_in_its_doorway_alone(axis: str) -> None:
     assert torch.equal(~same, found)
 
 
+@pytest.mark.parametrize("device", ["cpu", pytest.param("cuda", marks=pytest.mark.gpu)])
+def test_the_kernel_cuts_off_what_the_operations_in_torch_call_blocked(device: str) -> None:
+    """In three environments with walls of both axes, doorways, a window and a door that is half open."""
+    inner = Partition("other", "x", 2.5)
+    door = Opening("door", "other", 4.6, 0.8, 2.0, open=0.5)
+    window = Opening("doorway", "inner", 4.5, 1.0, 1.0, sill=0.9)
+    base = spec_with(room_world(), DOORWAY, window)
+    room = dataclasses.replace(base.room, partitions=(*base.room.partitions, inner), openings=(DOORWAY, window, door))
+    specs = (base, dataclasses.replace(base, room=room), spec_with(room_world(), walls=False))
+    walls = Walls.of(specs, device)
+    made = torch.Generator().manual_seed(4)
+    here, there = (torch.rand(3, n, 3, generator=made) * torch.tensor([6.0, 6.0, 2.6]) for n in (70, 90))
+    asked = (torch.rand(3, 70, 90, generator=made) < 0.7).to(device)
+    expected = asked & ~blocked(walls, here.to(device), there.to(device))
+    left = cut_off(asked.clone(), walls, here.to(device), there.to(device))
+    assert torch.equal(left, expected)
+    lost = (asked & ~left).flatten(1).sum(1).tolist()
+    assert lost[0] > 1000 and lost[1] > lost[0] and lost[2] == 0
+    part = cut_off(asked[1:2].clone(), walls.part(slice(1, 2)), here[1:2].to(device), there[1:2].to(device))
+    assert torch.equal(part, left[1:2])
+    with pytest.raises(ValueError, match=r"there must have the shape \[3, 90, 3\]"):
+        cut_off(asked, walls, here.to(device), here.to(device))
+
+
 def test_floor_under_a_wall_is_found_and_that_in_a_doorway_is_free() -> None:
     walls = Walls.of((spec_with(room_world(), DOORWAY),), "cpu")
     x, y = torch.tensor([[2.9, 2.8, 3.1, 3.0, 3.0]]), torch.tensor([[5.0, 5.0, 5.0, 2.0, 1.6]])
     assert within(walls, x, y, 0.1).tolist() == [[True, False, True, False, True]]
+    high = dataclasses.replace(DOORWAY, sill=0.5, height=1.5)
+    walls = Walls.of((spec_with(room_world(), DOORWAY, axis="x"), spec_with(room_world(), high)), "cpu")
+    x, y = torch.tensor([2.0, 2.0, 1.6, 5.0]).expand(2, 4), torch.tensor([2.9]).expand(2, 4)
+    assert within(walls, x, y, 0.1).tolist() == [[False, False, True, True], [False, False, False, False]]
+    assert within(walls, y, x, 0.1)[1].all()  # a window leaves no floor
     assert not Walls.none(2).any and not blocked(Walls.none(1), torch.zeros(1, 1, 3), torch.ones(1, 1, 3)).any()
 
 

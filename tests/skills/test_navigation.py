@@ -145,9 +145,9 @@ def test_a_gap_is_tried_where_the_map_is_too_coarse_to_tell_whether_the_robot_fi
 
 
 def test_a_detour_is_worth_it_where_only_its_end_is_near_enough() -> None:
-    """Before the wall the robot gets to 1.1 m from its goal; behind it, to the goal."""
+    """Before the wall, over which an arm reaches, the robot gets to 1.1 m from its goal; behind it, to the goal."""
     height, seen = grid()
-    box(height, (-0.1, 0.1), (-4.0, 1.5), 2.0)
+    box(height, (-0.1, 0.1), (-4.0, 1.5), 1.2)
     lazy = plan(height, seen, CELL, ORIGIN, (-1.5, -1.0), (0.6, -1.0), RADIUS, 0.5)
     assert lazy is not None and lazy.points[-1, 0] < 0.0 and 0.9 < lazy.short <= 1.1
     eager = plan(height, seen, CELL, ORIGIN, (-1.5, -1.0), (0.6, -1.0), RADIUS, 0.5, 0.8)

@@ -9,7 +9,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.fire.spread import CELL, STEP
-from hazard_ms.simulation.walls import within
+from hazard_ms.hazards.walls import within
 from hazard_ms.simulation.world import World, rotate
 
 SHEET = 0.05  # height below which fixtures (rugs) do not stop a fire [m] [ours]

@@ -17,7 +17,8 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from hazard_ms.simulation.walls import Walls, blocked
+from hazard_ms.hazards.walls import cut_off
+from hazard_ms.simulation.walls import Walls
 
 _TINY = 1e-30  # least sum of weights [1/m^2], so that 0 / 0 cannot occur
 # Most weights worked on at a time on a CPU: 1 MB stays in its cache, four times faster than 1,024 environments at once
@@ -64,7 +65,7 @@ class Mean:
         weight.clamp_(min=self.nearest**2).reciprocal_()
         weight[:, : points.shape[1]].diagonal(dim1=1, dim2=2).zero_()
         if walls.any:
-            weight.masked_fill_(blocked(walls, place, points), 0.0)
+            weight.masked_fill_(~cut_off(weight > 0.0, walls, place, points), 0.0)
         total = weight.sum(1).add_(self.room_weight / self.reach**2).clamp_(min=_TINY)
         # the excess over the room: a scene at the room's temperature stays there exactly; sums, not products of
         # matrices, whose rounding depends on how many environments there are

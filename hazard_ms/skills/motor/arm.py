@@ -11,7 +11,7 @@ from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.failures import BLOCKED, MAX_FRAMES, UNREACHABLE
 from hazard_ms.skills.motor.kinematics import Posture, shifted, solve
-from hazard_ms.skills.motor.motion import BACK_OFF, CLOSE, finite, wrap
+from hazard_ms.skills.motor.motion import BACK_OFF, CLOSE, finite, turn_by, wrap
 from hazard_ms.skills.motor.routes import Route, quickest
 from hazard_ms.skills.motor.surface import Leg, Place, Surface
 
@@ -24,6 +24,8 @@ STALLED_FRAMES = 4  # frames without progress after which something must be in t
 HOVER = 0.1  # height above a thing from which the hand comes down on it [m] [ours]
 WITHDRAWN = 0.2  # distance before a thing in furniture from which the hand goes in to it [m] [ours]
 SPARE = 0.1  # how much more room than that of its elbow an arm may need, as the map makes furniture wider [m] [ours]
+# turns of the base [rad], and how far it draws back [m], where something holds up the arm that folds [ours]
+AWAY = ((0.0, 0.0), (0.0, BACK_OFF), (np.deg2rad(45.0), BACK_OFF), (np.deg2rad(-90.0), BACK_OFF))
 LEG_ROOM = 0.4  # lower furniture does not hinder the unfolding arm [m]
 
 
@@ -137,6 +139,20 @@ def fold(stage: Stage, place: Place) -> Skill:
         return moved
     freed = yield from go(stage, tucked, REACH_FRAMES, close=CARRIED, forward=-BACK_OFF)
     return Result(freed.ok, freed.reason, moved.frames + freed.frames)
+
+
+def fold_until(stage: Stage, done: Callable[[], bool]) -> Skill:
+    """Fold the arm beside the torso until `done`; BLOCKED where it cannot.
+
+    Where something holds it up, the base draws back, then turns to one side, and to the other.
+    """
+    used = 0
+    for turn, back in AWAY:
+        used += (yield from turn_by(stage, turn)).frames if turn else 0
+        used += (yield from go(stage, stage.robot.tucked, REACH_FRAMES, done, forward=-back)).frames
+        if done():
+            return Result(True, frames=used)
+    return Result(False, BLOCKED, used)
 
 
 def lacking(stage: Stage, turn: float = 0.0) -> float:

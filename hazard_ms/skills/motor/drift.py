@@ -17,16 +17,17 @@ class Drift:
     def __init__(self, stage: Stage, index: int) -> None:
         """Begin with the thing `index` where it is."""
         self._stage, self._index = stage, index
-        self._places = [stage.position(index)]
+        self._places = [(stage.position(index), 0)]  # and the frames from one to the next
 
-    def note(self) -> None:
-        """Note the present place, once a frame."""
-        self._places = [*self._places[-DRIFT_FRAMES:], self._stage.position(self._index)]
+    def note(self, frames: int = 1) -> None:
+        """Note the present place, `frames` after the last one."""
+        self._places = [*self._places[-DRIFT_FRAMES:], (self._stage.position(self._index), frames)]
 
     def ahead(self, frames: float) -> NDArray[np.float64]:
         """The way over the floor [m], [3], world frame, that the thing makes in `frames`; 0 for what lies still."""
-        moved = self._places[-1] - self._places[0]
+        moved = self._places[-1][0] - self._places[0][0]
         moved[2] = 0.0
-        if np.abs(moved).max() <= STILL:
+        passed = sum(since for _, since in self._places[1:])
+        if np.abs(moved).max() * DRIFT_FRAMES <= STILL * max(passed, DRIFT_FRAMES):
             return np.zeros(3)
-        return np.asarray(moved * (frames / (len(self._places) - 1)))
+        return np.asarray(moved * (frames / passed))

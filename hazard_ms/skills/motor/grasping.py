@@ -19,7 +19,7 @@ from hazard_ms.skills.motor.reaching import GRASP, STAND_OFF, Way, aims, arm_way
 from hazard_ms.skills.motor.routes import CLOSELY
 from hazard_ms.skills.motor.standing import better_place
 from hazard_ms.skills.motor.surface import NEARLY, Surface, place_of
-from hazard_ms.skills.motor.walking import known, way_to
+from hazard_ms.skills.motor.walking import behind_wall, known, way_to
 
 LIMIT = 2.5  # greatest distance from the shoulder to the thing at which a pick-up begins (docs/benchmark.md 3) [m]
 APPROACH_FRAMES = 120  # budget for coming near enough [frames]
@@ -38,6 +38,7 @@ TRIES = 2  # number of postures that are tried
 GIVE_UP = 90  # frames after which no other posture is tried from the same place [ours]
 ELSEWHERE = 60  # frames, those to a first better place included, after which nothing is tried from another one [ours]
 APART = 0.15  # distance of that place from the first [m] [ours]
+SLOWER = 0.7  # share of the base's speed up to which it drives after a thing that moves out of reach [-] [ours]
 CHASES = 5  # number of times that the arm is led to where a moving thing will be [ours]
 GIVE_UP_CHASE = 45  # frames after which neither that nor another way is tried [ours]
 MISSED = 0.2  # distance between where a thing will be and where the hand goes at which the hand is led anew [m] [ours]
@@ -52,10 +53,12 @@ def pick_up(stage: Stage, index: int) -> Skill:
         return Result(False, reason, (yield from turn_to(stage, (x, y))).frames)
     if reason:
         return Result(False, reason)
-    place = stage.position(thing)
+    place, drift = stage.position(thing), Drift(stage, thing)
     used = 0 if _within_span(stage, place) else (yield from come_near(stage, place)).frames
     used += (yield from turn_to(stage, stage.position(thing)[:2])).frames
-    taken = yield from _take(stage, thing)
+    if used:
+        drift.note(used)
+    taken = yield from _take(stage, thing, drift)
     return Result(taken.ok, taken.reason, used + taken.frames)
 
 
@@ -86,21 +89,40 @@ def _refusal(stage: Stage, index: int, thing: int) -> str:
 def _within_span(stage: Stage, thing: NDArray[np.float64]) -> bool:
     x, y, _ = stage.robot.base()
     nearest, farthest = stage.robot.build.span(float(thing[2]))
-    return nearest <= float(np.hypot(thing[0] - x, thing[1] - y)) <= farthest
+    return nearest <= float(np.hypot(thing[0] - x, thing[1] - y)) <= farthest and not behind_wall(stage, thing)
 
 
 def come_near(stage: Stage, thing: NDArray[np.float64]) -> Skill:
-    """Drive to where the arm is long enough for `thing`, [3] [m], world frame; not at all if it stays too short."""
+    """Drive to where the arm is long enough for `thing`, [3] [m], world frame.
+
+    It does not drive at all if the arm stays too short, or if the way is too long.
+    """
     nearest, farthest = stage.robot.build.span(float(thing[2]))
     path = way_to(stage, (float(thing[0]), float(thing[1])), max(nearest, farthest * STAND_OFF))
     if path is None or not len(path.points) or path.short > farthest + GRASP_REACH:
         return Result(False, failures.NO_PATH)
+    if path.length > APPROACH_FRAMES * stage.robot.build.forward_step:
+        return Result(False, failures.NO_PATH)
     return (yield from drive(stage, path.points, APPROACH_FRAMES))
 
 
-def _take(stage: Stage, index: int) -> Skill:
+def _catch_up(stage: Stage, index: int, drift: Drift) -> Generator[LowLevel, None, int]:
+    """Drive after a thing that moves away more slowly than the base drives, and face it; the frames."""
+    step, place = stage.robot.build.forward_step, stage.position(index)
+    speed = float(np.linalg.norm(drift.ahead(1.0)))
+    if not 0.0 < speed < SLOWER * step:
+        return 0
+    left = float(np.hypot(*(place[:2] - stage.robot.base()[:2]))) - STAND_OFF * stage.robot.build.span(place[2])[1]
+    used = (yield from come_near(stage, place + drift.ahead(max(left, 0.0) / (step - speed)))).frames
+    used += (yield from turn_to(stage, stage.position(index))).frames
+    if used:
+        drift.note(used)
+    return used
+
+
+def _take(stage: Stage, index: int, drift: Drift) -> Skill:
     """Reach for the thing from where the base stands; the arm is folded at the end, with or without the thing."""
-    place, drift = place_of(stage, index), Drift(stage, index)
+    place = place_of(stage, index)
     used, chases, tried = 0, 0, set[int]()
     stage.robot.use_hand(stage.position(index))
     way, moved = yield from _first_way(stage, index, drift)
@@ -120,6 +142,9 @@ def _take(stage: Stage, index: int) -> Skill:
             freed = before(stage, stage.robot.arm(), Surface(stage, place_of(stage, index)), FREE)
             used += (yield from go(stage, freed, AGAIN_FRAMES, close=CLOSELY)).frames
         way = arm_way_where_it_will_be(stage, index, tried, drift)
+        if way is None and chases < CHASES and drift.ahead(1.0).any():
+            chases, used = chases + 1, used + (yield from _catch_up(stage, index, drift))
+            way = arm_way_where_it_will_be(stage, index, tried, drift)
     again = stage.held != index and used > 0 and used + moved <= ELSEWHERE and not chases
     if used:
         used += (yield from fold(stage, place)).frames
@@ -158,8 +183,11 @@ def _first_way(stage: Stage, index: int, drift: Drift) -> Generator[LowLevel, No
     Where the way is not clean, the base first goes to a better place, if there is one.
     """
     way, moved = arm_way_where_it_will_be(stage, index, set(), drift), 0
+    if way is None and drift.ahead(1.0).any():
+        moved = yield from _catch_up(stage, index, drift)
+        way = arm_way_where_it_will_be(stage, index, set(), drift)
     if drift.ahead(1.0).any() or (way is not None and way.route.hits <= CLEAN):
-        return way, 0
+        return way, moved
     path = better_place(stage, index, NO_WAY if way is None else way.cost + RISK * way.route.hits, PASSABLE)
     if path is not None:
         moved = yield from _go_to(stage, index, path)

@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage, sparse
 
-from hazard_ms.skills.motor.searching import Aim, by_graph, cheapest, graph_of, tied, trace
+from hazard_ms.skills.motor.searching import Aim, by_graph, cheapest, graph_of, straighten, tied, trace
+from hazard_ms.skills.sightlines import behind
 
 STEEPNESS = 10.0  # growth of the cost with height [1/m] (docs/benchmark.md 3: exponential in the height)
 FLOOR = 0.03  # heights below this count as floor, given the noise of a 16 bit depth image [m]
@@ -43,7 +44,7 @@ class Path:
 
     points: NDArray[np.float64]  # [P, 2] [m], without the start
     length: float  # [m]
-    short: float  # horizontal distance that is left to the goal at its end [m]
+    short: float  # horizontal distance that is left to the goal at its end [m]; infinite behind a wall
 
 
 def plan(
@@ -60,8 +61,8 @@ def plan(
     """The best path from `start` to within `near` [m] of `goal`, or as near as a robot gets without a long detour.
 
     `height` [Y, X] [m], `explored` [Y, X], `cell` [m], `origin`: south-west corner of cell 0, 0 [m]; `radius` of the
-    robot [m]. It is worth any detour to end within `enough` [m] of the goal; None: AT_MOST more than `near`. None if
-    start or goal lies outside the grid, or if nothing brings the robot nearer.
+    robot [m]. It is worth any detour to end within `enough` [m] of the goal, not behind a wall; None: AT_MOST more than
+    `near`. None if start or goal lies outside the grid, or if nothing brings the robot nearer.
     """
     return Ways(height, explored, cell, origin, start, (goal,), radius).path(goal, near, enough)
 
@@ -99,18 +100,41 @@ class Ways:
         self._centres = self._grid.centres(np.stack(np.divmod(self._number, self._cost.shape[1]), -1))
 
     def _end(self, goal: tuple[float, float], near: float, enough: float) -> tuple[int, float] | None:
-        """Number of the cell where the best path to `goal` ends, and the distance left from it [m]; None: no path."""
+        """Number of the cell where the best path to `goal` ends, and the distance left from it [m]; None: no path.
+
+        It is infinite where a wall stands between them.
+        """
         if not self._grid.holds:
             return None
         if self._single:
             x, y = np.asarray(goal) - self._grid.centres(np.zeros((1, 2), np.int64))[0]
             self._search(Aim(x, y, near, max(near, enough), SHORT, FAR_SHORT))
+        best = self._best(goal, near, enough)
+        hidden = best is not None and bool(self._behind(np.array([best]), goal)[0])
+        if hidden:
+            if self._single:
+                self._search(None)
+            best = self._best(goal, near, enough, walls=True)
+            hidden = bool(self._behind(np.array([best]), goal)[0])
+        if best is None:
+            return None
+        return int(self._number[best]), np.inf if hidden else float(np.hypot(*(self._centres[best] - goal)))
+
+    def _best(self, goal: tuple[float, float], near: float, enough: float, walls: bool = False) -> int | None:
+        """Index of the best end of a path to `goal` among the cells that were reached; `walls`: whether they count."""
         if not len(self._number):
             return None
         far = np.hypot(*(self._centres - np.asarray(goal)).T)
-        missed = np.maximum(far - near, 0.0)
-        best = int(np.argmin(self._spent + np.where(far <= max(near, enough), SHORT, FAR_SHORT) * missed))
-        return int(self._number[best]), float(far[best])
+        good = far <= max(near, enough)
+        cost = self._spent + np.where(good, SHORT, FAR_SHORT) * np.maximum(far - near, 0.0)
+        if walls:
+            good = np.flatnonzero(good)
+            cost[good[self._behind(good, goal)]] += FAR_SHORT * AT_MOST
+        return int(np.argmin(cost))
+
+    def _behind(self, ends: NDArray[np.int64], goal: tuple[float, float]) -> NDArray[np.bool_]:
+        """Whether a wall stands between each of `ends`, indices of cells that were reached, [N], and `goal`: [N]."""
+        return behind(self._grid.height, self._grid.cell, self._grid.origin, self._centres[ends], goal)
 
     def _cells(self, end: int) -> NDArray[np.int64]:
         """Cells (y, x) of the cheapest path to the cell `end`, [P, 2]; scipy chooses among equally cheap ones."""
@@ -125,7 +149,7 @@ class Ways:
         if end is None:
             return None
         cells = self._cells(end[0])
-        points = self._grid.centres(_straighten(cells, self._cost))[1:]
+        points = self._grid.centres(straighten(cells, self._cost))[1:]
         whole = np.vstack([self._start[None], points])
         return Path(points, float(np.hypot(*np.diff(whole, axis=0).T).sum()), end[1])
 
@@ -210,27 +234,3 @@ def _costs(
     cost = np.where(lacking > 1.0, np.where(here & free, LEAVING_COST, OBSTACLE_COST), cost)
     cost[start] = min(cost[start], LEAVING_COST)
     return cost
-
-
-def _straighten(cells: NDArray[np.int64], cost: NDArray[np.float64]) -> NDArray[np.int64]:
-    """The fewest of the `cells` whose straight connections cost no more, and cross no dearer cell, than the path."""
-    steps = np.hypot(*np.diff(cells, axis=0).T) * (cost[tuple(cells[1:].T)] + cost[tuple(cells[:-1].T)]) / 2
-    spent = np.concatenate([[0.0], np.cumsum(steps)])
-    kept, at = [0], 0
-    while at < len(cells) - 1:
-        ahead = len(cells) - 1
-        while ahead > at + 1 and not _clear(
-            cells[at], cells[ahead], cost, cost[tuple(cells[at : ahead + 1].T)].max(), spent[ahead] - spent[at]
-        ):
-            ahead -= 1
-        kept.append(ahead)
-        at = ahead
-    return cells[kept]
-
-
-def _clear(a: NDArray[np.int64], b: NDArray[np.int64], cost: NDArray[np.float64], dearest: float, most: float) -> bool:
-    """Whether the line from `a` to `b` costs at most `most` and crosses no cell dearer than `dearest`."""
-    steps = int(np.abs(b - a).max()) * 2 + 1
-    line = np.rint(a + (b - a) * np.linspace(0.0, 1.0, steps)[:, None]).astype(int)
-    crossed = cost[tuple(line.T)]
-    return bool(crossed.max() <= dearest and crossed.mean() * np.hypot(*(b - a)) <= most * (1.0 + 1e-9))

@@ -200,3 +200,30 @@ def tied(cells: NDArray[np.int64], spent: NDArray[np.float64], cost: NDArray[np.
     before = paid[cells[:-1, 0] + 1, cells[:-1, 1] + 1]
     same = (paid[y + dy, x + dx] + step == paid[y, x]) & (paid[y + dy, x + dx] == before[:, None])
     return bool((same.sum(axis=1) > 1).any())
+
+
+def straighten(cells: NDArray[np.int64], cost: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The fewest cells of a path over costs [Y, X] whose straight connections cost no more, and cross no dearer cell.
+
+    `cells` are those of the path, (y, x) [-], [P, 2]; the ones that are kept [-], [K, 2], begin and end it.
+    """
+    steps = np.hypot(*np.diff(cells, axis=0).T) * (cost[tuple(cells[1:].T)] + cost[tuple(cells[:-1].T)]) / 2
+    spent = np.concatenate([[0.0], np.cumsum(steps)])
+    kept, at = [0], 0
+    while at < len(cells) - 1:
+        ahead = len(cells) - 1
+        while ahead > at + 1 and not _clear(
+            cells[at], cells[ahead], cost, cost[tuple(cells[at : ahead + 1].T)].max(), spent[ahead] - spent[at]
+        ):
+            ahead -= 1
+        kept.append(ahead)
+        at = ahead
+    return cells[kept]
+
+
+def _clear(a: NDArray[np.int64], b: NDArray[np.int64], cost: NDArray[np.float64], dearest: float, most: float) -> bool:
+    """Whether the line from `a` to `b` costs at most `most` and crosses no cell dearer than `dearest`."""
+    steps = int(np.abs(b - a).max()) * 2 + 1
+    line = np.rint(a + (b - a) * np.linspace(0.0, 1.0, steps)[:, None]).astype(int)
+    crossed = cost[tuple(line.T)]
+    return bool(crossed.max() <= dearest and crossed.mean() * np.hypot(*(b - a)) <= most * (1.0 + 1e-9))

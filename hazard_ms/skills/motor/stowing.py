@@ -19,7 +19,7 @@ from hazard_ms.simulation.world import rotate
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
-from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, follow, go, lacking
+from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, fold_until, follow, go, lacking
 from hazard_ms.skills.motor.grasping import LIMIT, SHUT_FRAMES, come_near
 from hazard_ms.skills.motor.kinematics import Posture, lifted, solve
 from hazard_ms.skills.motor.motion import turn_to
@@ -66,7 +66,7 @@ class Way:
 def drop(stage: Stage, cart: int | None = None) -> Skill:
     """Let go of what the hand holds: into the bag, or in the basket of the cart that the map knows as `cart`.
 
-    It fails as CART_UNREACHABLE, with the thing still in the hand, if it cannot be brought over the basket.
+    It fails with the thing in the hand: as CART_UNREACHABLE where that cannot get over the basket, else as BLOCKED.
     """
     held = stage.held
     if held < 0:
@@ -81,9 +81,10 @@ def _into_bag(stage: Stage) -> Skill:
         mouth = stage.robot.bag_position()[0].cpu().numpy()
         return bool(np.linalg.norm(stage.robot.hand() - mouth) < OVER_BAG)
 
-    moved = yield from go(stage, stage.robot.tucked, REACH_FRAMES, over)
-    opened = yield from _open(stage, stage.robot.tucked)
-    return Result(True, frames=moved.frames + opened.frames)
+    folded = yield from fold_until(stage, over)
+    if not folded.ok:  # the thing would fall to the floor
+        return folded
+    return Result(True, frames=folded.frames + (yield from _open(stage, stage.robot.tucked)).frames)
 
 
 def _into_cart(stage: Stage, index: int, held: int) -> Skill:

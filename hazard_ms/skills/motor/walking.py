@@ -10,6 +10,7 @@ from hazard_ms.skills.decision import Result
 from hazard_ms.skills.failures import BLOCKED, MAX_FRAMES, NO_PATH, UNKNOWN
 from hazard_ms.skills.motor.motion import drive, turn_to
 from hazard_ms.skills.motor.navigation import AT_MOST, Path, plan
+from hazard_ms.skills.sightlines import behind
 from hazard_ms.spec.robot import GRASP_REACH
 
 WALK_FRAMES = 100  # budget of one walk (docs/benchmark.md 3) [frames]
@@ -29,6 +30,12 @@ def way_to(stage: Stage, goal: tuple[float, float], near: float, enough: float |
     x, y, _ = stage.robot.base()
     seen, radius = stage.seen, stage.robot.build.radius
     return plan(stage.obstacles(), seen.explored, seen.cell, seen.origin, (x, y), goal, radius, near, enough)
+
+
+def behind_wall(stage: Stage, goal: tuple[float, float] | NDArray[np.float64]) -> bool:
+    """Whether a wall on the map stands between the base and `goal` [m], [2] or [3], world frame."""
+    seen = stage.seen
+    return bool(behind(seen.height, seen.cell, seen.origin, np.array([stage.robot.base()[:2]]), goal)[0])
 
 
 def walk_to(stage: Stage, index: int, frames: int = WALK_FRAMES, whole: bool = True) -> Skill:
@@ -70,7 +77,7 @@ def _path(stage: Stage, goal: tuple[float, float], edge: float, height: float) -
     """
     x, y, _ = stage.robot.base()
     near = ARRIVED + edge
-    if np.hypot(goal[0] - x, goal[1] - y) <= near:
+    if np.hypot(goal[0] - x, goal[1] - y) <= near and not behind_wall(stage, goal):
         return Path(np.zeros((0, 2)), 0.0, 0.0)
     arm = max(ARRIVED, stage.robot.build.span(height)[1]) + GRASP_REACH
     path = way_to(stage, goal, near, min(near + AT_MOST, arm + edge))

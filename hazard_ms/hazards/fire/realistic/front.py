@@ -51,6 +51,8 @@ def warm(state: BlazeState, world: World, fires: radiation.Fires, room: float, s
 def advance(state: BlazeState, world: World) -> None:
     """Light the cells that are hot enough; new flames appear in the next frame."""
     hot = state.free & (state.floor_temperature >= state.floor_ignition[:, None, None, None])
+    if none_set(hot):
+        return
     if world.openings.inner:  # floor under a closed door waits
         x, y = floor.centres(state.anchor, state.free.shape[-1])
         hot = hot & ~floor.shut(world, *torch.broadcast_tensors(x[..., None], y[..., None, :]))

@@ -21,7 +21,8 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from hazard_ms.simulation.walls import Walls, blocked
+from hazard_ms.hazards.walls import cut_off
+from hazard_ms.simulation.walls import Walls
 from hazard_ms.spec import rounding
 
 GRAVITY = 9.81  # acceleration of gravity [m/s^2]
@@ -102,7 +103,7 @@ def _flux(fires: Fires, walls: Walls, points: Tensor, ceiling: Tensor) -> Tensor
     given = point_source(fires.power[..., None], fires.radiant[..., None], square).clamp(max=FLAME_FLUX)
     if walls.any:
         source = torch.cat([fires.place[..., :2], (fires.place[..., 2] + raised)[..., None]], -1)
-        given = given.masked_fill(blocked(walls, source, points), 0.0)
+        given = given.masked_fill(~cut_off(given > 0.0, walls, source, points), 0.0)
     return given.sum(1)
 
 

@@ -17,7 +17,8 @@ from hazard_ms.hazards.fire.realistic import fuels
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.radiation import AIR, GRAVITY, KELVIN, Fires, alight, in_blocks
 from hazard_ms.hazards.fire.realistic.twozone import balance, network, zones
-from hazard_ms.simulation.walls import Walls, blocked
+from hazard_ms.hazards.walls import cut_off
+from hazard_ms.simulation.walls import Walls
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import rounding
 
@@ -124,7 +125,7 @@ def _under_ceiling(fires: Fires, walls: Walls, points: Tensor, ceiling: Tensor) 
     inside = (fires.power > 0)[..., None] & (below >= 0)[:, None] & (below[:, None] < JET_DEPTH * high)
     if walls.any:
         top = torch.cat([fires.place[..., :2], ceiling[:, None, None].expand_as(fires.place[..., :1])], -1)
-        inside &= ~blocked(walls, top, points)
+        inside = cut_off(inside, walls, top, points)
     return torch.where(inside, jet_rise(fires.power[..., None], aside, high), 0.0).amax(1)
 
 
@@ -151,7 +152,7 @@ def _above(room: float, fires: Fires, walls: Walls, points: Tensor) -> Tensor:
     wide = fires.diameter[..., None] / 2 + PLUME_WIDTH * height
     inside = (height >= 0) & (aside <= wide.square()) & (fires.power > 0)[..., None]
     if walls.any:
-        inside &= ~blocked(walls, fires.place, points)
+        inside = cut_off(inside, walls, fires.place, points)
     rise = plume_rise(fires.power[..., None], fires.radiant[..., None], fires.diameter[..., None], height, room)
     return torch.where(inside, rise, 0.0).amax(1)
 

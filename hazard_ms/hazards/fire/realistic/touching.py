@@ -9,7 +9,8 @@ from torch import Tensor
 
 from hazard_ms.hazards.fire import floor, spread
 from hazard_ms.hazards.fire.realistic import radiation
-from hazard_ms.simulation.walls import Walls, blocked
+from hazard_ms.hazards.walls import cut_off
+from hazard_ms.simulation.walls import Walls
 from hazard_ms.simulation.world import World
 
 LEAN = 0.05  # how far a flame leans over [m] [ours]
@@ -42,5 +43,5 @@ def _touched(
     other = number[:, None] != torch.arange(bodies, device=number.device)
     near = beside & level & (fires.power > 0)[..., None] & other
     if walls.any:
-        near &= ~blocked(walls, fires.place, position)
+        near = cut_off(near, walls, fires.place, position)
     return near.any(1)

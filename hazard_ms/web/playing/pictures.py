@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.panels import MapPanel, hazard_panel, strongest
+from hazard_ms.pictures.spectator import Spectator
 from hazard_ms.pictures.told import told
 from hazard_ms.sensing.camera import relabel
-from hazard_ms.simulation.drawing.viewpoint import corner_view, following_view
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.web.playing.link import HAZARD, HEAD, MAP, ROOM
 
@@ -35,7 +35,8 @@ class Pictures:
         self._map = MapPanel(*PLAN, self._levels)
         self._path: list[tuple[float, float]] = []
         self._count = 0
-        self._camera = next(iter(env.base.scene.human_render_cameras.values()))
+        self._spectator = Spectator(env, near=True)
+        self._camera = self._spectator.camera
         self._labels: NDArray[np.int64] | None = None
         self._look()
 
@@ -62,13 +63,11 @@ class Pictures:
             yield MAP, _jpeg(self._plan(goal))
 
     def _take_room(self) -> Pixels:
-        base, spec = self._env.base, self._env.base.specs[0]
-        if spec.room.open_air:
-            x, y, _ = self._env.stage.robot.base()
-            self._camera.camera.set_local_pose(following_view(corner_view(spec), (x, y)))
+        base = self._env.base
         base.observer.show()
-        base.scene.update_render(update_sensors=False, update_human_render_cameras=True)
-        self._camera.capture()
+        with self._spectator.looking():
+            base.scene.update_render(update_sensors=False, update_human_render_cameras=True)
+            self._camera.capture()
         self._labels, self._stale = None, True
         return np.ascontiguousarray(self._camera.get_obs(**_only("rgb"))["rgb"][0].cpu().numpy())
 

@@ -26,7 +26,8 @@ class Rooms:
 
     def __init__(self) -> None:
         self._anchors: dict[int, tuple[int, int]] = {}  # a cell, y and x, of each room by its number
-        self._labels = np.zeros((1, 1), np.int32)  # the room of each cell, [Y, X]; 0: none
+        self._labels = self._near = np.zeros((1, 1), np.int32)  # the room of each cell, [Y, X]; 0: none
+        self._origin, self._cell = np.zeros(2), 1.0  # of the map [m]
 
     def see(self, seen: SemanticMap, openings: tuple[KnownOpening, ...]) -> None:
         """Find the rooms of the map `seen`, which `openings` divide."""

@@ -1,7 +1,8 @@
 """A home as a doll's house, for spectators: without its ceiling, and with its walls cut at the height of a table.
 
 While it is cut, walls, doors and windows of the shell stand only up to CUT, with dark tops as plans show cut walls.
-What hangs higher, and soot, which lies on what is taken off, are not drawn. Nothing but the picture changes, and the robot's own eyes never see it so.
+What hangs higher, and soot, which lies on what is taken off, are not drawn. Nothing but the picture changes, and the
+robot's own eyes never see it so.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The eye of the third person: it overlooks a room, follows the robot in the open, and sees homes cut open from above."""
+"""The eye of the third person: it overlooks a room, follows the robot in the open, and looks into homes from above."""
 
 from __future__ import annotations
 

@@ -62,6 +62,7 @@ def system_text(brief: Brief, macro: bool) -> str:
         macro=macro,
         rooms=brief.several_rooms and bool(brief.mitigations),
         averted=brief.averted,
+        text=brief.text,
         mitigations=[(verb.replace("_", " "), MITIGATIONS[verb].text) for verb in brief.mitigations],
     )
 

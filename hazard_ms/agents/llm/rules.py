@@ -118,7 +118,7 @@ def _tries(block: Block, text: str) -> int:
 
 
 def _fought(block: Block) -> str | None:
-    """The letter with which a fire is fought: for what is hot, the extinguisher, or to put it down; None for neither."""
+    """The letter with which a fire is fought: for what is hot, the extinguisher, or to put it down; None for none."""
     tools, hot = rows(block.get("tools", [["option"]])), rows(block.get("hot", [["option"]]))
     if any(tool["tool"] == block["held"] for tool in tools):
         for row in hot:

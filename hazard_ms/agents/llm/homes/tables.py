@@ -1,4 +1,4 @@
-"""Tables of a prompt for tasks with mitigations: where the robot is and what it bears, doors, tools, and what is hot."""
+"""Tables of a prompt for tasks with mitigations: what the robot bears where it is, doors, tools, and what is hot."""
 
 from __future__ import annotations
 

@@ -21,6 +21,7 @@ from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import EXPLORE, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.failures import UNFINISHED
+from hazard_ms.skills.mitigations.offers import tools
 
 RATE = 24.0  # pictures of a film per second
 NEWS_SHOTS = 45  # pictures for which news stay: nearly 2 s
@@ -104,6 +105,8 @@ class Film(Watcher):
                 level=view.level,
                 told=self._told,
                 map=env.seen,
+                openings=env.stage.doors.rows(),
+                tools=tuple(env.labeller.index(tool.name) for tool in tools(env.stage) if not tool.held),
                 names=env.labeller.names,
                 targets=self._targets(now),
                 frame=env.frame,

@@ -14,6 +14,7 @@ from hazard_ms.pictures.spectator import Spectator
 from hazard_ms.pictures.told import told
 from hazard_ms.sensing.camera import relabel
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.mitigations.offers import tools
 from hazard_ms.web.playing.link import HAZARD, HEAD, MAP, ROOM
 
 SIZE = (400, 300)  # of the third person [pixels]: larger ones are too few a second on two cores [measured]
@@ -80,6 +81,8 @@ class Pictures:
     def _plan(self, goal: str | None) -> Pixels:
         env, labeller = self._env, self._env.labeller
         targets = labeller.targets(env.seen.seen_damaged)
+        self._map.openings = env.stage.doors.rows()
+        self._map.tools = [labeller.index(tool.name) for tool in tools(env.stage) if not tool.held]
         return self._map.draw(env.seen, targets, labeller.names, env.stage.robot.base(), self._path, goal)
 
     def thing_at(self, picture: str, across: float, down: float) -> str | None:
@@ -103,12 +106,14 @@ class Pictures:
         return self._labels
 
     def _on_map(self, x: float, y: float) -> str | None:
-        seen, names = self._env.seen, self._env.labeller.names
+        names = self._env.labeller.names
         if not self._map.window:
             return None
-        away = {i: float(np.hypot(*np.subtract(self._map.pixel(s.position), (x, y)))) for i, s in seen.objects.items()}
-        best = min(away, key=lambda i: away[i], default=-1)
-        return names[best] if best >= 0 and away[best] <= NEAR else None
+        places = {names[i]: sighting.position for i, sighting in self._env.seen.objects.items()}
+        places |= {o.name: np.array(o.position) for o in self._env.stage.doors.rows()}
+        away = {n: float(np.hypot(*np.subtract(self._map.pixel(at), (x, y)))) for n, at in places.items()}
+        best = min(away, key=lambda n: away[n], default=None)
+        return best if best is not None and away[best] <= NEAR else None
 
 
 def _only(wanted: str) -> dict[str, bool]:

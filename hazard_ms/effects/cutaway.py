@@ -1,6 +1,6 @@
 """A home as a doll's house, for spectators: without its ceiling, and with its walls cut at the height of a table.
 
-While it is cut, walls, doors and windows of the shell stand only up to CUT, with dark tops as plans show cut walls.
+While it is cut, walls, doors and windows stand only up to CUT, with dark tops as plans show cut walls.
 What hangs higher, and soot, which lies on what is taken off, are not drawn. Nothing but the picture changes, and the
 robot's own eyes never see it so.
 """
@@ -14,7 +14,7 @@ import sapien
 from sapien.render import RenderBodyComponent, RenderMaterial
 
 from hazard_ms.effects.soot import SHEET
-from hazard_ms.scenes.shell import ShellBox, shell
+from hazard_ms.scenes.shell import ShellBox, leaf, shell
 from hazard_ms.simulation.drawing.textured_box import surface_material, textured_box
 from hazard_ms.simulation.names import plain_name
 from hazard_ms.spec import SceneSpec
@@ -23,7 +23,10 @@ CUT = 1.1  # height at which walls are cut [m] [ours: above tables, below the ha
 TOP = 0.02  # thickness of the dark top of a cut wall [m] [ours]
 TABLE = (80.0, 0.1, -0.4)  # edge, thickness and height of the dark ground that a home is seen on [m] [ours]
 DARK = (0.004, 0.005, 0.007, 1.0)  # of the tops and the ground: linear red, green, blue, opacity [ours]
+DOOR_TOP = (0.60, 0.22, 0.04, 1.0)  # of the tops of doors, which stand out from those of walls [ours]
 SOLID = ("floor", "enclosure")  # kinds of boxes that stay
+
+Part = tuple[sapien.Entity, sapien.Entity, sapien.Pose]  # a leaf, a part of a lower one, its place in the leaf's frame
 
 
 class Cutaway:
@@ -48,9 +51,31 @@ class Cutaway:
                 material = surface_material(box.material)
                 self._cut.append(_box(scene, (wide, deep, CUT - TOP - low), (a, b, (low + CUT - TOP) / 2), material))
                 self._cut.append(_box(scene, (wide, deep, TOP), (a, b, CUT - TOP / 2), dark))
+        self._leaves = list(self._doors(scene, spec))
         self.__exit__()
 
+    def _doors(self, scene: sapien.Scene, spec: SceneSpec) -> Iterator[Part]:
+        """Note the leaves of doors and build lower ones: each leaf, each part of a lower one, and its place there."""
+        top = RenderMaterial(base_color=list(DOOR_TOP), roughness=0.9, specular=0.0)
+        found = {plain_name(e.name): e for e in scene.entities}
+        for number, opening in enumerate(spec.room.openings):
+            entity = found.get(f"leaf_{number}")
+            if entity is None:
+                continue
+            self._whole += _bodies(entity)
+            box = leaf(spec.room, opening)
+            low, middle = box.centre[2] - box.size[2] / 2, box.centre[2]
+            for (bottom, high), material in (
+                ((low, CUT - TOP), surface_material(box.material)),
+                ((CUT - TOP, CUT), top),
+            ):
+                body = _box(scene, (*box.size[:2], high - bottom), (0.0, 0.0, 0.0), material)
+                self._cut.append(body)
+                yield entity, body.entity, sapien.Pose([0.0, 0.0, (bottom + high) / 2 - middle])
+
     def __enter__(self) -> Cutaway:
+        for entity, part, place in self._leaves:
+            part.set_pose(entity.pose * place)
         self._show(whole=0.0, cut=1.0)
         return self
 

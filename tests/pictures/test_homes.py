@@ -68,10 +68,15 @@ def test_a_home_is_open_for_its_picture_alone(tmp_path: Path) -> None:
                 for e in frozen._scene.entities
                 if (body := e.find_component_by_type(RenderBodyComponent)) is not None and body.visibility > 0.0
             ]
-            high = [
-                plain_name(e.name) for e, body in drawn if plain_name(e.name).startswith("shell_") and e.pose.p[2] > CUT
-            ]
-            assert high == []
+            names = {plain_name(e.name): e.pose.p for e, _ in drawn}
+            assert [name for name, at in names.items() if name.startswith("shell_") and at[2] > CUT] == []
+            assert not any(name.startswith("leaf_") for name in names), "they are higher than the cut"
+            leaves = [e.pose.p for e in frozen._scene.entities if plain_name(e.name).startswith("leaf_")]
+            cut = np.array([e.pose.p for e, _ in drawn if e.name == "cutaway"])
+            assert len(leaves) >= 5 and cut[:, 2].max() < CUT
+            for leaf in leaves:
+                same = np.abs(cut[:, :2] - leaf[:2]).max(1) < 1e-5
+                assert same.sum() == 2, "a lower leaf and its top stand where each leaf stands"
 
 
 @pytest.mark.render

@@ -9,7 +9,7 @@ import pytest
 from hazard_ms.evaluation.result import EpisodeResult
 from tests.worlds.serving import asked, browsing, choose, decisions, needs_browser, serving, text, until
 
-pytestmark = [pytest.mark.long, pytest.mark.render, pytest.mark.timeout(900), needs_browser]
+pytestmark = [pytest.mark.long, pytest.mark.render, pytest.mark.timeout(1800), needs_browser]
 
 
 def test_a_door_is_shut_and_an_extinguisher_picked_up(tmp_path: Path) -> None:
@@ -42,8 +42,8 @@ def test_a_door_is_shut_and_an_extinguisher_picked_up(tmp_path: Path) -> None:
         until(lambda: "The hand is empty" in text(browser, "#play"))
         asked(browser)
         choose(browser, "stop")
-        until(lambda: "%" in text(browser, "#play .averted"))
-        until(lambda: "exact" in text(browser, "#play .film"))
+        until(lambda: "%" in text(browser, "#play .averted"), 600)  # the same episode is played with nobody acting
+        until(lambda: "exact" in text(browser, "#play .film"), 600)
         assert [line for line in browser.get_log("browser") if line["level"] == "SEVERE"] == []
     result = EpisodeResult.read(next(folder.glob("*.json")))
     verbs = [(d.verb, d.target) for d in result.decisions if d.ok]

@@ -99,7 +99,7 @@ class Rooms:
 
     def joined(self, opening: KnownOpening) -> list[str]:
         """The names of the rooms on the two sides of an opening, as far as they are known."""
-        found = []
+        found: list[str] = []
         middle = np.array(opening.position[:2])
         for axis in (0, 1):
             sides = [self.at(middle + side * STEP * np.eye(2)[axis]) for side in (-1, 1)]

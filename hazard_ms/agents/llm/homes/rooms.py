@@ -91,7 +91,7 @@ class Rooms:
         return np.where(away * self._cell <= BESIDE, of_label[nearest], 0).astype(np.int32)
 
     def at(self, place: NDArray[np.floating] | tuple[float, ...]) -> str | None:
-        """The name of the room at a place x, y [m], "room_1"; None where none is known."""
+        """The name of the room, "room_1", at a `place` [m], [2] or [3], world frame; None where none is known."""
         y, x = self._at(place)
         inside = 0 <= y < self._near.shape[0] and 0 <= x < self._near.shape[1]
         number = int(self._near[y, x]) if inside else 0

@@ -27,7 +27,7 @@ Told = Callable[[float, str], float | int | None]  # a level in its unit, as pro
 
 
 def here(brief: Brief, decision: Decision, rooms: Rooms, columns: Sequence[str], told: Told) -> dict[str, Any]:
-    """Where the robot is, and the highest levels that were seen within its REACH; `columns`: their names."""
+    """The room that the robot of `decision` is in, and the highest levels seen within REACH; `columns`: their names."""
     made: dict[str, Any] = {"room": rooms.at(decision.agent_position)} if brief.several_rooms else {}
     seen = decision.map
     for number, (column, hazard) in enumerate(zip(columns, brief.hazards, strict=True)):
@@ -47,7 +47,7 @@ def _most_around(decision: Decision, number: int) -> float:
 
 
 def rise(seen: Sighting, number: int, unit: str, told: Told) -> float | int | None:
-    """How much a level rose in PER frames between the last two looks, in its unit; None where it was seen once."""
+    """The rise of the level of hazard `number` in PER frames between the last two looks, in its `unit`; None after one."""
     looks = [(frame, levels[number]) for frame, levels in seen.history if number < len(levels)]
     if len(looks) < 2 or looks[-1][0] == looks[-2][0]:
         return None

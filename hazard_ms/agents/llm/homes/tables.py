@@ -47,7 +47,7 @@ def _most_around(decision: Decision, number: int) -> float:
 
 
 def rise(seen: Sighting, number: int, unit: str, told: Told) -> float | int | None:
-    """The rise of the level of hazard `number` in PER frames between the last two looks, in its `unit`; None after one."""
+    """The rise of the level of hazard `number` in PER frames between the last two looks, in `unit`; None after one."""
     looks = [(frame, levels[number]) for frame, levels in seen.history if number < len(levels)]
     if len(looks) < 2 or looks[-1][0] == looks[-2][0]:
         return None

@@ -16,7 +16,7 @@ import numpy as np
 import sapien
 from sapien.render import RenderMaterial, RenderShapeTriangleMesh, RenderTexture2D
 
-from hazard_ms.effects.entities import Effect, make_effect
+from hazard_ms.effects.entities import PREFIX, Effect, make_effect
 from hazard_ms.effects.shaders.common import SOOT
 from hazard_ms.effects.textures import noise
 from hazard_ms.simulation.building import wall_pieces
@@ -27,6 +27,7 @@ EVERY = 30  # frames from one state of the map to the next
 TIME = 700.0  # frames of one burning cell of floor that blacken what is right above it by 63 % [ours]
 # widths of the stain above one cell [m], and their weights: the plume, and the smoke below the ceiling [ours]
 SPREADS = ((0.45, 1.0), (1.5, 0.10))
+SHEET = PREFIX + "soot_"  # of the names of the quads' entities
 APART = 0.006  # of the quads from what they blacken [m]
 LARGEST = 2.0  # edge of a quad [m]
 FAINT = 0.03  # amount that is not shown
@@ -51,6 +52,7 @@ class Soot:
             corners = np.array(quads, np.float32)
             effect = make_effect(scene, self._texture, partial(_mesh, corners, self._extent), number)
             if effect is not None:
+                effect.entity.name = f"{SHEET}{number}"
                 self._sheets.append((effect, *self._part(corners)))
 
     def show(self, place: Array, burnt: Array, frame: int) -> None:

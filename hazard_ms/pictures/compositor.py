@@ -27,7 +27,8 @@ from hazard_ms.pictures.drawing import (
     text_width,
     write,
 )
-from hazard_ms.pictures.panels import MapPanel, cover, hazard_panel, strongest
+from hazard_ms.pictures.panels import MapPanel, cover, hazard_panel, high_value, strongest
+from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.spec import Level
@@ -61,6 +62,8 @@ class Shot:
     note: str  # why the agent chose this
     held: str | None
     value: float  # share of the value rescued so far
+    openings: tuple[KnownOpening, ...] = ()  # doors and windows that were seen
+    tools: tuple[int, ...] = ()  # things that can be used, as the map refers to them
     news: str = ""  # shown over the main view for a while: a rescue, a failure
     good_news: bool = True
 
@@ -88,6 +91,7 @@ class Compositor:
         head = cover(shot.head, SIDE, SIDE)
         place(sheet, self._hazard(head, shot), (left + SIDE + GAP, TOP))
         place(sheet, self._labelled(head, "head camera"), (left, TOP))
+        self._map.openings, self._map.tools = shot.openings, shot.tools
         plan = self._map.draw(shot.map, shot.targets, shot.names, shot.agent, shot.path, shot.target)
         place(sheet, self._labelled(plan, "what the robot has seen"), (left, TOP + SIDE + GAP))
         self._caption(sheet, shot)
@@ -126,10 +130,11 @@ class Compositor:
     def _targets(self, sheet: Pixels, shot: Shot, x: int, y: int) -> None:
         """One square per target: filled green when rescued, red when damaged; a gold edge marks the high value."""
         side = 22 if len(shot.targets) <= 18 else 14
+        worth = high_value([target.value for target in shot.targets])
         for i, target in enumerate(shot.targets):
             left = x + i * (side + 6)
             fill = GOOD if target.rescued else BAD if target.damaged else ACCENT if target.held else EDGE
-            edge = GOLD if target.value > 1 else SOFT
+            edge = GOLD if target.value >= worth else SOFT
             paint(sheet, rounded(side, side, 5), (left, y + 4), edge)
             paint(sheet, rounded(side - 4, side - 4, 4), (left + 2, y + 6), fill)
             if target.rescued and target.damaged:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
@@ -97,6 +98,22 @@ def dot(image: Pixels, at: tuple[int, int], radius: float, colour: Colour) -> No
     """A disc around `at`, in place."""
     mask = disc(radius)
     paint(image, mask, (at[0] - mask.shape[1] // 2, at[1] - mask.shape[0] // 2), colour)
+
+
+def door(image: Pixels, at: tuple[int, int], name: str, shut: bool, broken: bool) -> None:
+    """A square with a `name` for a door: filled while it is `shut`, a frame while it is open, red if it is `broken`."""
+    x, y = at
+    colour = BAD if broken else TEXT
+    cv2.rectangle(image, (x - 6, y - 6), (x + 6, y + 6), PANEL, -1)
+    cv2.rectangle(image, (x - 4, y - 4), (x + 4, y + 4), colour, -1 if shut and not broken else 1)
+    write(image, name, (min(x + 8, image.shape[1] - 20), max(y - 7, 2)), 12, colour)
+
+
+def tool(image: Pixels, at: tuple[int, int]) -> None:
+    """An upright red bar with a white edge for an extinguisher."""
+    x, y = at
+    cv2.rectangle(image, (x - 4, y - 7), (x + 4, y + 7), TEXT, -1)
+    cv2.rectangle(image, (x - 2, y - 5), (x + 2, y + 5), BAD, -1)
 
 
 def chip(

@@ -14,13 +14,14 @@ from hazard_ms.machine.files import Draft
 from hazard_ms.machine.video import Video
 from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import Pixels
+from hazard_ms.pictures.spectator import Spectator
 from hazard_ms.pictures.told import told
 from hazard_ms.sensing.target_table import Target
-from hazard_ms.simulation.drawing.viewpoint import corner_view, following_view
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import EXPLORE, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.failures import UNFINISHED
+from hazard_ms.skills.mitigations.offers import tools
 
 RATE = 24.0  # pictures of a film per second
 NEWS_SHOTS = 45  # pictures for which news stay: nearly 2 s
@@ -47,7 +48,7 @@ class Film(Watcher):
         base = env.base
         speed = self._every * RATE * base.control_timestep
         title, subtitle = f"{base.task.name}   {base.specs[0].name}", f"{self._subtitle}, {speed:g}x speed"
-        self._env = env
+        self._env, self._spectator = env, Spectator(env)
         self._video = self._files.enter_context(Video(self._draft, (WIDTH, HEIGHT), RATE))
         self._compositor = Compositor(title, subtitle, tuple(h.shown_level for h in base.task.hazards))
         self._look()
@@ -91,8 +92,8 @@ class Film(Watcher):
             self._look()
         self._shots += 1
         rgb, view = self._head
-        self._follow()
-        room = base.render()[0].cpu().numpy()
+        with self._spectator.looking():
+            room = base.render()[0].cpu().numpy()
         now = fates(env)
         self._tell_rescues(now)
         shown = self._news if self._news_left > 0 else ""
@@ -104,6 +105,8 @@ class Film(Watcher):
                 level=view.level,
                 told=self._told,
                 map=env.seen,
+                openings=env.stage.doors.rows(),
+                tools=tuple(env.labeller.index(tool.name) for tool in tools(env.stage) if not tool.held),
                 names=env.labeller.names,
                 targets=self._targets(now),
                 frame=env.frame,
@@ -126,13 +129,6 @@ class Film(Watcher):
         """Look through the head camera."""
         self._head = self._env.base.observer.look()
         self._told = told(self._env.base, self._head[1])
-
-    def _follow(self) -> None:
-        """In the open, where the robot would be a dot, move the camera along with it."""
-        spec, (x, y, _heading) = self._env.base.specs[0], self._env.stage.robot.base()
-        if spec.room.open_air:
-            for camera in self._env.base.scene.human_render_cameras.values():
-                camera.camera.set_local_pose(following_view(corner_view(spec), (x, y)))
 
     def _targets(self, now: tuple[Fate, ...]) -> tuple[Target, ...]:
         """The target table as it is at this frame.

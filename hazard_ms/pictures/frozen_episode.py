@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from functools import cached_property
 from typing import Any
 
@@ -12,11 +12,12 @@ import numpy as np
 import sapien
 from mani_skill.utils.sapien_utils import look_at
 
+from hazard_ms.effects.cutaway import Cutaway
 from hazard_ms.effects.entities import FRAMES_PER_SECOND
 from hazard_ms.effects.raytracing.still import Image, Photographer, Viewpoint
 from hazard_ms.evaluation.runner import played_to
 from hazard_ms.pictures.options import IDLE, RenderOptions
-from hazard_ms.simulation.drawing.viewpoint import corner_view
+from hazard_ms.simulation.drawing.viewpoint import HOUSE_ANGLE, corner_view, house_view
 from hazard_ms.skills.executor import SkillEnv
 
 THIRD_ANGLE = 1.15  # vertical, of the third person's eye, as in the environment [rad]
@@ -55,11 +56,19 @@ class FrozenEpisode:
             self.env.advance(still)
 
     def view(self, camera: str, width: int, height: int) -> Viewpoint:
-        """The view from the corner (third), or through the robot's head camera (head), of a size in pixels."""
+        """The view from the corner (third), of an open home (home), or through the head camera (head), in pixels.
+
+        Raises ValueError for `home` in a scene that has no rooms.
+        """
         if camera == "head":
             eye = self.env.observer.camera.camera._render_cameras[0]
             return Viewpoint(eye.global_pose, float(eye.fovy), width, height, spectator=False)
-        return Viewpoint(corner_view(self.env.specs[0]), THIRD_ANGLE, width, height)
+        spec = self.env.specs[0]
+        if camera != "home":
+            return Viewpoint(corner_view(spec), THIRD_ANGLE, width, height)
+        if not spec.room.areas:
+            raise ValueError(f"camera home needs a scene with several rooms, got {spec.name}")
+        return Viewpoint(house_view(spec, width / height), HOUSE_ANGLE, width, height, open_home=True)
 
     def around(self, share: float, width: int, height: int) -> Viewpoint:
         """The view from a circle around the middle of the scene; `share` of a turn, 0 to 1."""
@@ -78,7 +87,10 @@ class FrozenEpisode:
         Yields what takes a picture, given the samples per pixel.
         """
         self.env.observer.show(view.spectator)
-        with self._photographer.ready(view, shader, self.frame / FRAMES_PER_SECOND) as take:
+        with (
+            self._cutaway if view.open_home else nullcontext(),
+            self._photographer.ready(view, shader, self.frame / FRAMES_PER_SECOND) as take,
+        ):
             yield take
 
     def picture(self, view: Viewpoint, shader: str, samples: int) -> Image:
@@ -89,6 +101,10 @@ class FrozenEpisode:
     @cached_property
     def _photographer(self) -> Photographer:
         return Photographer(self._scene)
+
+    @cached_property
+    def _cutaway(self) -> Cutaway:
+        return Cutaway(self._scene, self.env.specs[0])
 
     @property
     def _scene(self) -> sapien.Scene:

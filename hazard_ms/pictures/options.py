@@ -34,8 +34,8 @@ class RenderOptions:
     """Samples per pixel, ray-traced."""
     size: str = "1024"
     """Width and height in pixels, as 1024 or 1024x768."""
-    camera: Literal["third", "head"] = "third"
-    """Third person, or the camera of the robot's head."""
+    camera: Literal["third", "head", "home"] = "third"
+    """Third person; the camera of the robot's head; or all rooms of a home from above, without its ceiling."""
     turns: int = 48
     """Pictures of the turntable."""
 

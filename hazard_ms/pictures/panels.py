@@ -21,13 +21,16 @@ from hazard_ms.pictures.drawing import (
     Colour,
     Pixels,
     chip,
+    door,
     dot,
     paint,
     rounded,
     shorten,
     text_width,
+    tool,
     write,
 )
+from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.spec import Level
@@ -37,7 +40,14 @@ WALL = np.array((208, 213, 221), np.float32)  # of 2 m and more
 LOW = 0.05  # share of the way from floor to wall up to which a cell is floor: 0.1 m [ours]
 AROUND = (5, 5)  # cells around one of the floor that tell whether it was seen as a point or in an area [ours]
 POINTS, AREA = 0.2, 0.5  # shares of these cells that were seen, of a row of points and of an area [ours]
+FEW, MANY = 5.0, 10.0  # value from which a thing is worth much: where 5 is the most, and where values reach 20 [ours]
+SHUT = 0.1  # share of its width up to which an open door is drawn as shut [ours]
 TINTED = 0.9  # share of a hazard's tint on the map, at most
+
+
+def high_value(values: Sequence[float]) -> float:
+    """The value from which a thing is drawn as worth much, where all have these `values` [-]."""
+    return MANY if max(values, default=0.0) > FEW else FEW
 
 
 def cover(image: Pixels, width: int, height: int) -> Pixels:
@@ -112,6 +122,8 @@ class MapPanel:
     height: int
     levels: tuple[Level, ...]  # of the hazards of the map
     window: list[float] = field(default_factory=list)  # west, south, east, north [m]
+    openings: Sequence[KnownOpening] = ()  # of which doors are drawn, with their numbers
+    tools: Sequence[int] = ()  # things that can be used, as `seen.objects` knows them
     # south-west and north-east of all that was explored [m]
     _reach: list[NDArray[np.float64]] = field(default_factory=list)
 
@@ -133,13 +145,20 @@ class MapPanel:
         if len(path) > 1:
             line = np.array([self.pixel(p) for p in path], np.int32)
             cv2.polylines(image, [line], False, BLUE, 2, cv2.LINE_AA)
+        for opening in self.openings:
+            if opening.kind == "door":
+                door(image, self.pixel(opening.position), str(opening.number), opening.open < SHUT, opening.broken)
+        for index in self.tools:
+            if index in seen.objects:
+                tool(image, self.pixel(seen.objects[index].position))
+        worth = high_value([target.value for target in targets])
         for target in sorted(targets, key=lambda t: t.name == goal):  # the goal last, so that nothing hides its name
-            self._target(image, seen, target, target.name == goal)
+            self._target(image, seen, target, target.name == goal, worth)
         if goal in names and names.index(goal) in seen.objects and goal not in {t.name for t in targets}:
             position = seen.objects[names.index(goal)].position
             cv2.circle(image, self.pixel(position), 9, SOFT, 2, cv2.LINE_AA)
         self._agent(image, agent)
-        self._legend(image)
+        self._legend(image, worth)
         return image
 
     def pixel(self, position: NDArray[np.floating] | tuple[float, ...]) -> tuple[int, int]:
@@ -194,12 +213,12 @@ class MapPanel:
         drawn = cv2.warpAffine(cells.astype(np.uint8), matrix, size, flags=cv2.INTER_NEAREST, borderValue=PANEL)
         return drawn.astype(np.uint8, copy=False)
 
-    def _target(self, image: Pixels, seen: SemanticMap, target: Target, wanted: bool) -> None:
+    def _target(self, image: Pixels, seen: SemanticMap, target: Target, wanted: bool, worth: float) -> None:
         sighting = seen.objects.get(target.index)
         if sighting is None or target.rescued or target.held:
             return
         x, y = self.pixel(sighting.position)
-        colour = BAD if target.damaged else GOLD if target.value > 1 else GOOD
+        colour = BAD if target.damaged else GOLD if target.value >= worth else GOOD
         dot(image, (x, y), 6.5, PANEL)
         dot(image, (x, y), 5.0, colour)
         if wanted:
@@ -215,8 +234,9 @@ class MapPanel:
         cv2.fillPoly(image, [(points * 16).astype(np.int32)], BLUE, cv2.LINE_AA, shift=4)
         cv2.polylines(image, [(points * 16).astype(np.int32)], True, TEXT, 1, cv2.LINE_AA, shift=4)
 
-    def _legend(self, image: Pixels) -> None:
-        entries: tuple[tuple[str, Colour], ...] = (("value 5", GOLD), ("value 1", GOOD), ("damaged", BAD))
+    def _legend(self, image: Pixels, worth: float) -> None:
+        high, low = ("value 5", "value 1") if worth == FEW else (f"value {worth:g} and more", "less")
+        entries: tuple[tuple[str, Colour], ...] = ((high, GOLD), (low, GOOD), ("damaged", BAD))
         width = sum(text_width(text, 12) + 30 for text, _ in entries) + 4
         x, y = self.width - width - 8, self.height - 30
         paint(image, rounded(width, 22, 8) * 0.8, (x, y), PANEL)

@@ -44,6 +44,7 @@ class Brief:
     mitigations: tuple[str, ...] = ()  # verbs of the task beyond the six of the benchmark
     damaged_share: float = DAMAGED_SHARE  # of its value that a target counts when it is rescued damaged
     several_rooms: bool = False  # whether doors or doorways divide the place
+    averted: bool = False  # whether it counts what is averted: what would be lost if nobody acted, and is not
 
 
 def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
@@ -62,6 +63,7 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
         random_seed=random_seed(int(base.world.chance.seed[0])),
         mitigations=base.task.mitigations,
         several_rooms=has_several_rooms(base),
+        averted=base.task.averted,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -13,6 +14,7 @@ LETTERS = "ABCDEFGHIJKLMNOPQRST"
 MACRO, FULL = "macro", "full"
 MOVES = (MACRO, FULL)
 PLACES = 4  # to search that are offered at most [ours]
+NEAREST = 3  # doors to open and to shut, and things to act on, that are offered of each at most [ours]
 ARM = 2.2  # distance from which a pick-up may begin [m], as for `planner` [ours]
 FETCH, PICK, BRING, PUT, SEARCH, LOOK, END = "fetch", "pick up", "bring to", "put into", "search at", "look", "stop"
 PUT_DOWN = "put down"  # a tool
@@ -99,15 +101,30 @@ def menu(
 
 
 def _mitigations(decision: Decision) -> list[Move]:
-    """What can be done about the hazard itself, and the tools that can be fetched; empty in most tasks."""
+    """What can be done about the hazard itself, and the tools that can be fetched; empty in most tasks.
+
+    Of each verb the NEAREST few, in the order in which they are available.
+    """
     tools = {tool.name for tool in decision.tools}
     made: list[Move] = []
-    for action in decision.available:
-        if action.verb not in VERBS:
-            made.append((action.verb.replace("_", " "), action.target, action))
-        elif action.verb == PICK_UP and action.target in tools:
-            made.append((FETCH, action.target, Action(WALK_TO, action.target)))
+    for verb in dict.fromkeys(action.verb for action in decision.available):
+        if verb not in VERBS:
+            rows = [action for action in decision.available if action.verb == verb]
+            near = sorted(rows, key=lambda action: _away(decision, action.target))[:NEAREST]
+            made += [(verb.replace("_", " "), action.target, action) for action in rows if action in near]
+        elif verb == PICK_UP:
+            rows = [action for action in decision.available if action.verb == verb and action.target in tools]
+            made += [(FETCH, action.target, Action(WALK_TO, action.target)) for action in rows]
     return made
+
+
+def _away(decision: Decision, name: str | None) -> float:
+    """How far it is to a thing or an opening [m]; inf where that is not known."""
+    opening = next((o for o in decision.openings if o.name == name), None)
+    if opening is not None:
+        return math.dist(opening.position[:2], decision.agent_position)
+    seen = decision.map.objects.get(decision.index(name)) if name in decision.names else None
+    return math.inf if name is None or seen is None else distance(decision, seen)
 
 
 def _drops(decision: Decision, carts: Iterable[str]) -> list[Move]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from hazard_ms.agents.base import distance
+from hazard_ms.agents.llm.homes.rooms import Rooms
 from hazard_ms.agents.search.memory import Memory as Believed
 from hazard_ms.skills.decision import WALK_TO, Action, Decision
 from hazard_ms.skills.failures import UNFINISHED
@@ -33,6 +34,7 @@ class Memory:
     def __init__(self, seed: int) -> None:
         """Begin an episode; `seed` fixes the futures of a fire that forecasts draw."""
         self.believed = Believed(seed)
+        self.rooms = Rooms()
         self.done: list[tuple[str, str, int]] = []  # move in words, outcome in words, frames
         self._sights: dict[str, list[Sight]] = {}
         self._move: tuple[str, str | None] | None = None  # the words of the last action, and what it was for
@@ -41,6 +43,8 @@ class Memory:
     def note(self, decision: Decision) -> None:
         """Enter how the last action ended, and where the targets were seen."""
         self.believed.note(decision)
+        if decision.openings:
+            self.rooms.see(decision.map, decision.openings)
         result = decision.last_result
         if self._move is not None and result is not None:
             self.done = [*self.done, (self._move[0], _outcome(result.ok, result.reason), result.frames)][-LAST:]

@@ -23,6 +23,7 @@ VERSIONS = ("llm-1", "llm-2", "llm-3", "llm-2-image")
 HISTORIES = ("llm-2", "llm-3", "llm-2-image")  # versions that tell of earlier sightings
 FORECAST, IMAGE = "llm-3", "llm-2-image"  # the version that tells our forecast, and the one that shows the picture
 BUDGETS = {"llm-1": 1250, "llm-2": 1500, "llm-3": 1500, "llm-2-image": 1500}  # of a prompt without picture [tokens]
+MITIGATING = 1250  # further tokens for tasks with mitigations: doors, tools, and more to choose from [ours]
 PICTURE = 512  # edge of the picture that is sent, at most [px]
 QUALITY = 85  # of its JPEG, 0 to 100 [ours]
 DANGERS = {
@@ -59,6 +60,9 @@ def system_text(brief: Brief, macro: bool) -> str:
         pick=round(times.pick),
         look=round(times.explore),
         macro=macro,
+        rooms=brief.several_rooms and bool(brief.mitigations),
+        averted=brief.averted,
+        text=brief.text,
         mitigations=[(verb.replace("_", " "), MITIGATIONS[verb].text) for verb in brief.mitigations],
     )
 
@@ -71,9 +75,10 @@ def messages(
     `picture`: that of the head camera, [H, W, 3], uint8, for versions that show it.
     """
     rest: Block | None = told
+    budget = BUDGETS[version] + (MITIGATING if "here" in told else 0)
     while True:
         text = _filled(version, block=as_text(told), ask=ask)
-        rest = shortened(told) if estimate(system) + estimate(text) > BUDGETS[version] else None
+        rest = shortened(told) if estimate(system) + estimate(text) > budget else None
         if rest is None:
             break
         told = rest

@@ -10,13 +10,17 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from hazard_ms.agents.llm.choices import BRING, END, FETCH, LOOK, PICK, PUT, SEARCH
+from hazard_ms.agents.llm.choices import BRING, END, FETCH, LOOK, PICK, PUT, PUT_DOWN, SEARCH
 from hazard_ms.agents.llm.scene_text import SAFE, Block
 
 FENCED = re.compile(r"```json\n(.*?)\n```", re.DOTALL)
 HANDLING = 1.0  # what picking up costs, as a distance [m], as for `greedy`
 LOYALTY = 0.8  # factor on the cost of what it is on its way to, as for `greedy`
 DAMAGED = 0.5  # share of its value that a damaged thing counts
+SHUT, OPEN, PUSH, EXTINGUISH = "shut ", "open ", "push ", "extinguish "  # begin options of mitigations
+TRIES = 2  # of one option of a mitigation among the actions that are told [ours]
+DOOR = 6.0  # distance up to which a door is worth shutting [m] [ours]
+WET = 0.02  # depth of water around the robot from which rooms are shut [m] [ours]
 WALK = 62.0  # frames for a metre, to tell which forecasts come too late
 
 
@@ -53,7 +57,18 @@ def greedy(block: Block) -> str:
     return _search(block)
 
 
-RULES: dict[str, Callable[[Block], str]] = {"first": first, "greedy": greedy}
+def mitigates(block: Block) -> str:
+    """The letter of an option against the hazard itself where one makes sense, else that of `greedy`.
+
+    It puts out what is hot, shuts the doors of rooms in danger behind itself, pushes carts to things, and opens doors
+    where it knows of nothing to fetch.
+    """
+    if not block["last_actions"][1:]:
+        return greedy(block)
+    return _fought(block) or _turned(block, SHUT, _shields) or _pushed(block) or _opened(block) or greedy(block)
+
+
+RULES: dict[str, Callable[[Block], str]] = {"first": first, "greedy": greedy, "mitigates": mitigates}
 
 
 def rows(table: list[list[Any]]) -> list[dict[str, Any]]:
@@ -95,6 +110,62 @@ def _search(block: Block) -> str:
         return str(best["option"])
     looked = block["last_actions"][1:] and block["last_actions"][-1][0] == LOOK
     return (None if looked else _letter(block, LOOK)) or _letter(block, END) or first(block)
+
+
+def _tries(block: Block, text: str) -> int:
+    """How often an option that begins so was taken and did not pause, of the actions that are told."""
+    return sum(done[0].startswith(text) and done[1] != "paused" for done in block["last_actions"][1:])
+
+
+def _fought(block: Block) -> str | None:
+    """The letter with which a fire is fought: for what is hot, the extinguisher, or to put it down; None for none."""
+    tools, hot = rows(block.get("tools", [["option"]])), rows(block.get("hot", [["option"]]))
+    if any(tool["tool"] == block["held"] for tool in tools):
+        for row in hot:
+            if row["option"] is not None and _tries(block, f"{EXTINGUISH}{row['thing']}") < TRIES:
+                return str(row["option"])
+        return _letter(block, PUT_DOWN)
+    full = [tool for tool in tools if tool["option"] is not None and tool["percent_left"] > 0]
+    new = [row for row in hot if _tries(block, f"{EXTINGUISH}{row['thing']}") < TRIES]
+    if block["held"] is not None or not full or not new:
+        return None
+    near = min(full, key=lambda tool: tool["metres"])
+    return None if _tries(block, f"{FETCH} {near['tool']}") >= TRIES else str(near["option"])
+
+
+def _turned(block: Block, verb: str, fits: Callable[[Block, dict[str, Any]], bool]) -> str | None:
+    """The letter for the nearest door that `fits` and can be turned; None for none. Each is tried once."""
+    for door in sorted(rows(block.get("doors", [["door"]])), key=lambda row: row["metres"]):
+        text = f"{verb}{door['door']}"
+        letter = next((letter for letter, told in block["options"].items() if told == text), None)
+        if letter is not None and not _tries(block, text) and fits(block, door):
+            return letter
+    return None
+
+
+def _shields(block: Block, door: dict[str, Any]) -> bool:
+    """Whether a shut door would part what burns, or water, from the room that the robot is in."""
+    here = block["here"].get("room")
+    if door["metres"] > DOOR or here is None or door["door"].startswith("window"):
+        return False
+    burning = {row["room"] for row in rows(block.get("hot", [["room"]]))}
+    if burning:
+        return here not in burning and bool(burning & set(door["joins"]))
+    return bool((block["here"].get("water_level_m") or 0.0) >= WET and not _tries(block, SHUT))
+
+
+def _pushed(block: Block) -> str | None:
+    return _letter(block, PUSH) if block["targets"][1:] and not _tries(block, PUSH) else None
+
+
+def _opened(block: Block) -> str | None:
+    """The letter for the nearest shut door where there is nothing to fetch; None for none."""
+    wanted = [row for row in rows(block["targets"]) if row["option"] is not None]
+    return None if wanted or block["held"] is not None else _turned(block, OPEN, _is_door)
+
+
+def _is_door(block: Block, door: dict[str, Any]) -> bool:
+    return bool(door["door"].startswith("door_") and door["percent_open"] < 50)
 
 
 def _on_the_way(block: Block) -> str:

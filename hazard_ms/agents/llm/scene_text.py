@@ -14,6 +14,7 @@ from typing import Any
 
 from hazard_ms.agents.base import distance, known, open_targets
 from hazard_ms.agents.llm.choices import BRING, FETCH, PICK, PUT, SEARCH, Menu
+from hazard_ms.agents.llm.homes import tables
 from hazard_ms.agents.llm.memory import Memory
 from hazard_ms.agents.search.forecast import Forecast
 from hazard_ms.sensing.sighting import Sighting
@@ -77,7 +78,7 @@ def block(
             for mark in sorted(menu.places, key=lambda mark: decision.index(mark.name))
         ),
     ]
-    told |= _mitigation(decision, menu, names)
+    told |= _mitigation(brief, decision, memory, menu, names)
     told["options"] = {
         choice.letter: choice.move if choice.thing is None else f"{choice.move} {names.get(choice.thing, choice.thing)}"
         for choice in menu.choices
@@ -87,19 +88,19 @@ def block(
     return told
 
 
-def _mitigation(decision: Decision, menu: Menu, names: dict[str, str]) -> Block:
-    """Doors and tools in tables; empty in tasks without mitigations."""
-    made: Block = {}
+def _mitigation(brief: Brief, decision: Decision, memory: Memory, menu: Menu, names: dict[str, str]) -> Block:
+    """What tasks with mitigations add: where the robot is, doors, tools and what is hot; empty in others."""
+    if not brief.mitigations:
+        return {}
+    rooms = memory.rooms
+    columns = [_column(h.title, h.unit) for h in brief.hazards]
+    made: Block = {"here": tables.here(brief, decision, rooms, columns, _rounded)}
     if decision.openings:
-        x, y = decision.agent_position
-        rows = [
-            [o.name, _metres(math.hypot(o.position[0] - x, o.position[1] - y)), round(100 * o.open), int(o.broken)]
-            for o in decision.openings
-        ]
-        made["doors"] = _without_zeros([["door", "metres", "percent_open", "broken"], *rows], ("broken",))
+        made["doors"] = _without_zeros(tables.doors(decision, rooms), ("broken",))
     if decision.tools:
-        tools = [[menu.letter(FETCH, t.name), names[t.name], t.kind, round(100 * t.left)] for t in decision.tools]
-        made["tools"] = [["option", "tool", "kind", "percent_left"], *tools]
+        made["tools"] = tables.tools(decision, menu, names, rooms)
+    if found := tables.hot(brief, decision, menu, names, rooms):
+        made["hot"] = found
     return made
 
 
@@ -146,6 +147,8 @@ def _targets(
     """The known targets: those on offer, and those that are not, as while something is held."""
     header = ["option", "thing", "value", "metres", *(_column(h.title, h.unit) for h in brief.hazards)]
     header += ["frames_ago", "damaged", "failures"] + (["damaged_from_frame"] if forecast else [])
+    rises = [f"{_column(h.title, h.unit)}{tables.RISE}" for h in brief.hazards if brief.mitigations]
+    header += [*rises, *(["room"] if brief.mitigations and brief.several_rooms else [])]
     ahead = Forecast(brief, decision, memory.believed.fire) if forecast else None
     rows: list[list[Any]] = []
     for name, seen in sorted(known(decision, open_targets(decision)).items(), key=lambda each: decision.index(each[0])):
@@ -158,8 +161,10 @@ def _targets(
         if ahead is not None:
             until = ahead.whole_until(target, seen)
             row.append(round(until) if math.isfinite(until) else SAFE)
+        row += [tables.rise(seen, number, brief.hazards[number].unit, _rounded) for number in range(len(rises))]
+        row += [memory.rooms.at(seen.position)] if brief.mitigations and brief.several_rooms else []
         rows.append(row)
-    return _without_zeros([header, *rows], ("damaged", "failures"))
+    return _without_zeros([header, *rows], ("damaged", "failures", *rises))
 
 
 def _without_zeros(table: list[list[Any]], columns: Sequence[str]) -> list[list[Any]]:
@@ -186,7 +191,11 @@ def _column(title: str, unit: str) -> str:
 
 def _level(seen: Sighting, number: int, unit: str) -> float | int | None:
     """A level as it is told: whole degrees, else to 0.01 of its unit; None where it is unknown."""
-    level = seen.levels[number] if number < len(seen.levels) else math.nan
+    return _rounded(seen.levels[number] if number < len(seen.levels) else math.nan, unit)
+
+
+def _rounded(level: float, unit: str) -> float | int | None:
+    """The same of a level in its unit."""
     if not math.isfinite(level):
         return None
     return round(level) if unit == "°C" else round(level, 2)

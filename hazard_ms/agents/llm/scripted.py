@@ -23,6 +23,7 @@ from hazard_ms.agents.llm.scene_text import Block
 BEHAVIOURS = {
     "first": "the first option",
     "greedy": "the option with the most value for its way",
+    "mitigates": "as greedy, but puts out fires, shuts doors between it and them, opens others, and pushes carts first",
     "sees": "as greedy, but refuses a prompt without a picture that is small enough",
     "letter-in-prose": "as greedy, in free text whatever was asked for",
     "wrong-letter": "a letter that is not on offer",
@@ -185,6 +186,8 @@ def _letter(block: Block, model: str) -> str:
         return "Z"
     if model == "injected" and (found := ORDER.search(json.dumps(block))):
         return found[1]
+    if model == "mitigates":
+        return RULES[model](block)
     return RULES["first" if model in ("first", "injected") else "greedy"](block)
 
 

@@ -97,6 +97,8 @@ def after(failures: int) -> float:
 
 def _seen(decision: Decision, name: str) -> Place | None:
     """The place where a thing was seen last; None if it is not on the map."""
+    if name not in decision.names:  # an opening, of which nothing moves
+        return None
     sighting = decision.map.objects.get(decision.index(name))
     return None if sighting is None else (float(sighting.position[0]), float(sighting.position[1]))
 

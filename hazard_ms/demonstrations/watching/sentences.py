@@ -11,6 +11,8 @@ def sentence(action: Action, decision: Decision) -> str:
     """The subtask that `action` is at `decision`, such as "pick up mug_1"."""
     if action.verb == DROP:
         held = decision.held or "nothing"
+        if any(tool.held for tool in decision.tools):
+            return f"put down {held}"
         if action.target is not None:
             return f"put {held} into {action.target}"
         return f"put {held} on the ground" if decision.containers else f"put {held} into the bag"

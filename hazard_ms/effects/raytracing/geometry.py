@@ -91,7 +91,8 @@ def undress(scene: sapien.Scene, added: list[sapien.Entity]) -> None:
 def shown_effects(scene: sapien.Scene) -> list[tuple[sapien.Entity, RenderShapeTriangleMesh]]:
     """The effect entities that can be seen, with their meshes."""
     shown = [e for e in scene.entities if e.name.startswith(PREFIX) and e.pose.p[2] > meshes.NOWHERE / 2]
-    return [(e, e.find_component_by_type(RenderBodyComponent).render_shapes[0]) for e in shown]
+    bodies = [(e, e.find_component_by_type(RenderBodyComponent)) for e in shown]
+    return [(e, body.render_shapes[0]) for e, body in bodies if body.visibility > 0.0]
 
 
 def _entity(scene: sapien.Scene, shape: RenderShapeTriangleMesh) -> sapien.Entity:

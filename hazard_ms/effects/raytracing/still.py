@@ -31,6 +31,7 @@ class Viewpoint:
     width: int
     height: int
     spectator: bool = True  # not the robot's own eyes
+    open_home: bool = False  # whether a home is cut open for it (`hazard_ms.effects.cutaway`)
 
 
 class Photographer:

@@ -1,6 +1,12 @@
-"""The third person: from where a camera overlooks a whole scene, or follows the robot where that is too large."""
+"""The third person: from where a camera overlooks a whole scene, or follows the robot where that is too large.
+
+Homes are seen from high above their longer side, as a doll's house is, with the ceiling taken off
+(`hazard_ms.effects.cutaway`).
+"""
 
 from __future__ import annotations
+
+import itertools
 
 import numpy as np
 import sapien
@@ -14,6 +20,9 @@ from hazard_ms.spec import SceneSpec
 TALL, BESIDE = 1.3, 0.4
 HIDING = 12.0  # one box in the view weighs as much as being this much nearer to the agent [m] [ours]
 EYES_OUTDOORS = 6.0  # height of the camera that watches a scene in the open [m] [ours]
+HOUSE_ANGLE, HOUSE_PITCH = 0.6, 1.1  # of the camera above a home: vertical angle, and downwards [rad] [ours]
+HOUSE_HIGH, HOUSE_MARGIN = 2.1, 0.03  # height that it must see [m], and what stays free at each edge of it [-] [ours]
+ROUND = (3.4, 2.4)  # half sizes of the part of a home around the robot that is followed, along x and y [m] [ours]
 BEHIND, ABOVE = 4.5, 3.2  # of a camera that follows the robot: how far from it, and how high [m] [ours]
 
 
@@ -22,6 +31,34 @@ def following_view(whole: sapien.Pose, place: tuple[float, float]) -> sapien.Pos
     ahead = whole.to_transformation_matrix()[:2, 0]
     eye = np.append(np.asarray(place) - BEHIND * ahead / np.linalg.norm(ahead), ABOVE)
     return look_at(eye, [*place, 0.6]).sp
+
+
+def house_view(spec: SceneSpec, aspect: float, place: tuple[float, float] | None = None) -> sapien.Pose:
+    """Pose of a camera above a home, with the vertical angle HOUSE_ANGLE, whose picture just holds all of it.
+
+    `aspect`: width of the picture by its height [-]; with a `place` [m] it holds what is ROUND that.
+    """
+    middle, half = np.array(spec.room.size) / 2, np.array(spec.room.size) / 2
+    if place is not None:
+        half = np.minimum(half, ROUND if spec.room.size[0] >= spec.room.size[1] else ROUND[::-1])
+        middle = np.clip(place, half, 2 * middle - half)
+    deep, high, wide = np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
+    if spec.room.size[1] > spec.room.size[0]:  # from the east
+        deep, wide = np.array([-1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+    ahead = np.cos(HOUSE_PITCH) * deep - np.sin(HOUSE_PITCH) * high
+    up = np.sin(HOUSE_PITCH) * deep + np.cos(HOUSE_PITCH) * high
+    signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+    corners = signs * [*half, HOUSE_HIGH / 2]
+    tall = np.tan(HOUSE_ANGLE / 2) * (1.0 - 2 * HOUSE_MARGIN)
+    # a corner is in the picture if its distance from the axis is at most `tall` of that along the axis; the eye is
+    # as near, and as far up in its picture, as the uppermost and the lowest corner allow
+    first, last = (corners @ ahead) * tall - corners @ up, (corners @ ahead) * tall + corners @ up
+    shift = (first.min() - last.min()) / 2
+    far = max(
+        -(first.min() + last.min()) / (2 * tall), np.max(np.abs(corners @ wide) / (tall * aspect) - corners @ ahead)
+    )
+    eye = np.array([*middle, HOUSE_HIGH / 2]) - far * ahead - shift * up
+    return look_at(eye, eye + ahead, up).sp
 
 
 def corner_view(spec: SceneSpec) -> sapien.Pose:

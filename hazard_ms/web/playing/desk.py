@@ -16,6 +16,7 @@ from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.failures import UNFINISHED
+from hazard_ms.skills.mitigations.offers import tools
 from hazard_ms.web import rescue as rescues
 from hazard_ms.web.playing.link import PICTURES, Link
 from hazard_ms.web.playing.menu import Choice, Choices
@@ -147,7 +148,7 @@ class Desk(Watcher):
             }
             for t in known
         ]
-        asking = phase == "asking"
+        asking, doors = phase == "asking", env.stage.doors.rows()
         self.link.say(
             "state",
             phase=phase,
@@ -156,6 +157,8 @@ class Desk(Watcher):
             value=Tally.of(fates(env)).value,
             held=env.labeller.held,
             targets=targets,
+            doors=[{"name": o.name, "open": o.open, "broken": o.broken} for o in doors if o.kind == "door"],
+            tools=[{"name": t.name, "left": t.left, "held": t.held} for t in tools(env.stage)],
             choices=[c.row() for c in self.choices.options] if asking else [],
             things=self.choices.things() if asking else [],
             runs_on=self.runs_on,
@@ -218,5 +221,7 @@ class Desk(Watcher):
     def _why_not(self, name: str) -> str:
         if self.phase != "asking":
             return "the robot is busy"
-        known = name in self._env.labeller.names and self._env.labeller.index(name) in self._env.seen.objects
+        env = self._env
+        known = name in env.labeller.names and env.labeller.index(name) in env.seen.objects
+        known |= env.stage.doors.find(name) is not None
         return "nothing can be done with it now" if known else "the robot has not seen it yet"

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from hazard_ms.agents.thinking import OFF
 from hazard_ms.demonstrations import claims, store
 from hazard_ms.demonstrations.card import write_card
 from hazard_ms.demonstrations.layout import MANIFEST
@@ -22,6 +23,8 @@ from hazard_ms.demonstrations.repair import repair
 from hazard_ms.demonstrations.watching.foresight import Foresight
 from hazard_ms.demonstrations.watching.recorder import Recorder
 from hazard_ms.evaluation.attempts import Recorded
+from hazard_ms.evaluation.averted.account import Account
+from hazard_ms.evaluation.averted.loss import Loss
 from hazard_ms.evaluation.options import EnvOptions, EpisodeOptions
 from hazard_ms.evaluation.page import address, page
 from hazard_ms.evaluation.replay import EXACT, compare
@@ -31,7 +34,9 @@ from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.machine.files import drafts, make_folder, write_together
 from hazard_ms.pictures.compositor import RENDERED
 from hazard_ms.pictures.film import Film
+from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.skills.context import LowLevel
+from hazard_ms.skills.decision import STOP
 from hazard_ms.skills.executor import SkillEnv
 
 EVERY = 6  # frames from one picture of the film to the next, as `hazard-ms play` takes them
@@ -72,6 +77,12 @@ def kept(folder: Path, name: str) -> tuple[Path, EpisodeResult] | None:
         with contextlib.suppress(ValueError):
             return path, EpisodeResult.read(path)
     return None
+
+
+def lost_alone(options: EpisodeOptions) -> Loss | None:
+    """The loss in the episode of `options` if nobody acts, which is played for that; None if its simulation broke."""
+    alone = replace(options, agent="random", clock=OFF, perception=TRUTH)
+    return play(alone, [Account()], Recorded(((STOP, None),), "random")).lost
 
 
 def film(

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.panels import MapPanel, hazard_panel, strongest
+from hazard_ms.pictures.spectator import Spectator
 from hazard_ms.pictures.told import told
 from hazard_ms.sensing.camera import relabel
-from hazard_ms.simulation.drawing.viewpoint import corner_view, following_view
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.mitigations.offers import tools
 from hazard_ms.web.playing.link import HAZARD, HEAD, MAP, ROOM
 
 SIZE = (400, 300)  # of the third person [pixels]: larger ones are too few a second on two cores [measured]
@@ -35,7 +36,8 @@ class Pictures:
         self._map = MapPanel(*PLAN, self._levels)
         self._path: list[tuple[float, float]] = []
         self._count = 0
-        self._camera = next(iter(env.base.scene.human_render_cameras.values()))
+        self._spectator = Spectator(env, near=True)
+        self._camera = self._spectator.camera
         self._labels: NDArray[np.int64] | None = None
         self._look()
 
@@ -62,13 +64,11 @@ class Pictures:
             yield MAP, _jpeg(self._plan(goal))
 
     def _take_room(self) -> Pixels:
-        base, spec = self._env.base, self._env.base.specs[0]
-        if spec.room.open_air:
-            x, y, _ = self._env.stage.robot.base()
-            self._camera.camera.set_local_pose(following_view(corner_view(spec), (x, y)))
+        base = self._env.base
         base.observer.show()
-        base.scene.update_render(update_sensors=False, update_human_render_cameras=True)
-        self._camera.capture()
+        with self._spectator.looking():
+            base.scene.update_render(update_sensors=False, update_human_render_cameras=True)
+            self._camera.capture()
         self._labels, self._stale = None, True
         return np.ascontiguousarray(self._camera.get_obs(**_only("rgb"))["rgb"][0].cpu().numpy())
 
@@ -81,6 +81,8 @@ class Pictures:
     def _plan(self, goal: str | None) -> Pixels:
         env, labeller = self._env, self._env.labeller
         targets = labeller.targets(env.seen.seen_damaged)
+        self._map.openings = env.stage.doors.rows()
+        self._map.tools = [labeller.index(tool.name) for tool in tools(env.stage) if not tool.held]
         return self._map.draw(env.seen, targets, labeller.names, env.stage.robot.base(), self._path, goal)
 
     def thing_at(self, picture: str, across: float, down: float) -> str | None:
@@ -104,12 +106,14 @@ class Pictures:
         return self._labels
 
     def _on_map(self, x: float, y: float) -> str | None:
-        seen, names = self._env.seen, self._env.labeller.names
+        names = self._env.labeller.names
         if not self._map.window:
             return None
-        away = {i: float(np.hypot(*np.subtract(self._map.pixel(s.position), (x, y)))) for i, s in seen.objects.items()}
-        best = min(away, key=lambda i: away[i], default=-1)
-        return names[best] if best >= 0 and away[best] <= NEAR else None
+        places = {names[i]: sighting.position for i, sighting in self._env.seen.objects.items()}
+        places |= {o.name: np.array(o.position) for o in self._env.stage.doors.rows()}
+        away = {n: float(np.hypot(*np.subtract(self._map.pixel(at), (x, y)))) for n, at in places.items()}
+        best = min(away, key=lambda n: away[n], default=None)
+        return best if best is not None and away[best] <= NEAR else None
 
 
 def _only(wanted: str) -> dict[str, bool]:

@@ -60,7 +60,8 @@ def play(link: Link, rescue: Rescue, folder: Path) -> None:
 
 def _play(link: Link, rescue: Rescue, folder: Path) -> EpisodeResult | None:
     """Play the rescue. Returns its result, None if the page has ended it."""
-    from hazard_ms.evaluation.runner import Runner, environment, result_of
+    from hazard_ms.evaluation.averted.account import Account
+    from hazard_ms.evaluation.runner import Runner, environment, fates, result_of
     from hazard_ms.web.playing.desk import Desk, EndedError
     from hazard_ms.web.playing.pictures import SIZE
     from hazard_ms.web.playing.player import Player
@@ -69,13 +70,18 @@ def _play(link: Link, rescue: Rescue, folder: Path) -> EpisodeResult | None:
     desk = Desk(link, rescue, folder)
     camera = {"width": SIZE[0], "height": SIZE[1]}
     env = environment(options, render_mode="rgb_array", human_render_camera_configs=camera)
+    account = Account() if env.base.task.averted else None
     try:
-        played = Runner(env, Player(rescue, desk), [desk]).run(options.seed, options.reset_options)
+        watchers = [desk] if account is None else [desk, account]
+        played = Runner(env, Player(rescue, desk), watchers).run(options.seed, options.reset_options)
         keep(folder, replace(desk.so_far(), over=True))
         desk.tell_rows(played)
         desk.tell("over", ended=played.ended)
         desk.show(everything=True)
-        return replace(result_of(options, env, played), wall_seconds=time.perf_counter() - start)
+        result = result_of(options, env, played)
+        if account is not None:
+            result = replace(result, **account.closed(lambda: fates(env)))
+        return replace(result, wall_seconds=time.perf_counter() - start)
     except EndedError:
         return None
     finally:
@@ -110,6 +116,11 @@ def _finish(link: Link, rescue: Rescue, folder: Path, path: Path, result: Episod
 
     link.say("over", ended=result.ended, summary=summary(result), files=_links(path, (".html", ".json")))
     os.nice(POLITE)
+    if result.lost is not None and result.lost_alone is None:
+        result = replace(result, lost_alone=keeping.lost_alone(rescue.episode))
+        keeping.keep(path, result)
+    if result.averted is not None:
+        link.say("averted", share=result.averted)
     told = lambda frame: link.say("filming", frame=frame, of=result.frames)  # noqa: E731
     verdict, demonstration = keeping.film(path, rescue.episode, result, told, teaches=rescue.kind == PLAY)
     journal(folder, rescue.name).unlink(missing_ok=True)

@@ -28,6 +28,9 @@ export class Rescue {
     this.value = element("b", { class: "large" }, "–")
     this.meter = element("progress", { max: 1, value: 0, "aria-label": "Frames that have passed" })
     this.held = element("span", {})
+    this.averted = element("b", { class: "large" }, "–")
+    this.avertedCard = element("div", { class: "card averted", hidden: true }, this.averted, "averted: of what would be lost if nobody acted")
+    this.doors = element("ul", { class: "targets doors", "aria-label": "Doors and tools" })
     this.targets = element("ul", { class: "targets", "aria-label": "Things to rescue" })
     this.now = element("p", { class: "now", role: "status", "aria-live": "polite" })
     this.note = element("p", { class: "soft note" })
@@ -48,8 +51,8 @@ export class Rescue {
         element("div", { class: "side" },
           element("div", { class: "cards" },
             element("div", { class: "card" }, this.value, "value rescued"),
-            element("div", { class: "card" }, this.clock, this.meter)),
-          this.targets, element("p", {}, this.held), this.now, this.note, this.buttons, this.asking, this.files)),
+            element("div", { class: "card" }, this.clock, this.meter), this.avertedCard),
+          this.targets, this.doors, element("p", {}, this.held), this.now, this.note, this.buttons, this.asking, this.files)),
       element("details", { open: true }, element("summary", {}, "Decisions"),
         element("div", { class: "wide", tabIndex: 0, role: "region", "aria-label": "Decisions" },
           element("table", {}, element("thead", {}, element("tr", {}, ...head)), this.log))))
@@ -142,11 +145,19 @@ export class Rescue {
   on_state(message) {
     this.state = message
     this.on_tick(message)
+    const worth = Math.max(...message.targets.map(target => target.value)) > 5 ? 10 : 5 // as on the map
     this.targets.replaceChildren(...message.targets.map(target => {
       const how = target.rescued ? (target.damaged ? "rescued, damaged" : "rescued") : target.held ? "in the hand" : target.damaged ? "damaged" : target.seen ? "seen" : "not seen yet"
       const kind = target.rescued ? "is-rescued" : target.damaged ? "is-damaged" : target.held ? "is-held" : ""
-      return element("li", { class: `${kind} ${target.value > 1 ? "is-worth" : ""}` }, `${target.name} (${target.value}): ${how}`)
+      return element("li", { class: `${kind} ${target.value >= worth ? "is-worth" : ""}` }, `${target.name} (${target.value}): ${how}`)
     }))
+    const doors = (message.doors || []).map(door => {
+      const how = door.broken ? "gone" : door.open < 0.1 ? "shut" : door.open > 0.9 ? "open" : "ajar"
+      return this.chip(door.name, how, how === "shut" ? "is-shut" : door.broken ? "is-damaged" : "")
+    })
+    const tools = (message.tools || []).map(tool => this.chip(tool.name, `${Math.round(100 * tool.left)} % left`, tool.held ? "is-held" : ""))
+    this.doors.replaceChildren(...doors, ...tools)
+    if (doors.length) this.pictures.m.closest("figure").querySelector("figcaption").textContent = `${PICTURES.m}: squares are doors, filled while shut, red bars are extinguishers`
     const words = { asking: "It is your turn.", doing: `The robot is at it: ${message.intent}.`, thinking: "The agent is thinking.",
       paused: `Paused. The agent would: ${message.intent}.`, over: `The rescue is over: ${message.ended}.` }
     const last = message.last && !message.last.ok ? `${message.last.action} was not done: ${message.last.reason.replaceAll("_", " ")}. ` : ""
@@ -158,6 +169,10 @@ export class Rescue {
     this.things.replaceChildren(element("option", { value: "" }, "choose a thing"), ...message.things.map(name => element("option", { value: name }, name)))
     this.things.value = same
     this.menu.replaceChildren()
+  }
+
+  chip(name, how, kind) { // of a door or a tool; a click tells what can be done with it
+    return element("li", { class: kind }, element("button", { class: "chip", onclick: () => this.about(name) }, `${name}: ${how}`))
   }
 
   button(choice, at) {
@@ -219,6 +234,11 @@ export class Rescue {
     this.asking.hidden = true
     this.root.classList.add("over")
     if (message.files) this.link(message.files)
+  }
+
+  on_averted(message) {
+    this.averted.textContent = `${Math.round(100 * message.share)} %`
+    this.avertedCard.hidden = false
   }
 
   on_filming(message) { this.progress(`The film is being made, by simulating the rescue again: frame ${message.frame} of ${message.of}.`) }

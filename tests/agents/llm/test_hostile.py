@@ -20,6 +20,7 @@ UNREADABLE = {"calls": 6, "invalid": 6, "fallbacks": 3}
 COUNTED = {
     "first": {"calls": 3},
     "greedy": {"calls": 3},
+    "mitigates": {"calls": 3},
     "injected": {"calls": 3},
     "429-then-ok": {"calls": 3, "retries": 3},
     "letter-in-prose": UNREADABLE,

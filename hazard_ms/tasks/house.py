@@ -16,6 +16,9 @@ from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks.rescue import rescue
 
 DOORS = ("open", "shut")
+# Frames in which water of `paper` rises by a step: four times those in rooms, since homes have four times the floor
+# (72 to 120 m2) for the same inflow [ours]
+EVERY = 40
 
 
 def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
@@ -25,7 +28,8 @@ def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
 
 def hazard_house_flood(physics: str = "paper", severity: str = USUAL) -> Task:
     """The task HazardHouseFlood-v1 with the physics of a preset. Raises ValueError for unknown names."""
-    return _in_homes([flood(physics, severity)], "put_on")
+    water = flood(physics, severity)
+    return _in_homes([dataclasses.replace(water, every=EVERY) if physics == "paper" else water], "put_on")
 
 
 def _in_homes(hazards: Sequence[Hazard], *mitigations: str) -> Task:

@@ -8,6 +8,7 @@ simulator.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -23,16 +24,15 @@ from hazard_ms.scenes.walls import WALLS, on_wall, thickness_of
 from hazard_ms.simulation import building
 from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.travel.ways import Ways
-from hazard_ms.spec import Area, Opening, SceneSpec
+from hazard_ms.spec import Area, Body, Opening, SceneSpec
 from results.scene_futures import FIRE, Change
 
 FETCH, PUT_OUT, SHUT = 100.0, 100.0, 200.0  # frames, without ways [ours: of the first tries in the simulator]
 PUT_DOWN = 30.0  # frames in which an extinguisher is put down [ours]
 FIRES_EACH = 2  # fires that one extinguisher puts out [ours]
-NEXT_DOOR = 150.0  # frames of the way from a door to the next of the same rooms [ours]
 JET = 1.0  # reach of a jet beyond where a walk ends [m] [ours]
 BESIDE = 1e-4  # what a rescue counts that averts nothing: it decides among equals only
-EFFORT = (1, 10)  # labels and beam of plans with measures: those of the solver's first beam of 30, or better
+EFFORT = (400, 40)  # labels and beam of plans with measures
 LIMIT = 3000.0
 
 
@@ -62,9 +62,13 @@ OVER_NEAREST, OVER_PLAIN, MOST_BEST = 0.25, 0.10, 0.97
 
 
 def changes(env_id: str, spec: SceneSpec) -> list[Change]:
-    """The measures that a scene offers: each fire put out; each group of joined rooms, and each room, shut."""
+    """The measures that a scene offers: fires put out, one or two; each group of joined rooms, and each room, shut.
+
+    Two fires together may hold what neither would without the other, since both heat what is between them.
+    """
     if env_id == FIRE:
-        return [Change(fires=(k,)) for k in range(len(spec.fires))]
+        every = range(len(spec.fires))
+        return [Change(fires=f) for f in (*((k,) for k in every), *itertools.combinations(every, 2))]
     doors = {number: _room(spec, o) for number, o in enumerate(spec.room.openings) if _inner(o) and o.share > 0.0}
     groups = [tuple(d for d, room in doors.items() if room in group) for group in joined(spec)]
     return [Change(doors=group) for group in dict.fromkeys((*groups, *((d,) for d in doors))) if group]
@@ -88,9 +92,11 @@ def play(
         return Play(0.0, 1.0, 1.0, 1.0, 0)
     times = skill_times.shipped("fetch")
     pick, bag = (times.typical(skill)[1] for skill in (skill_times.PICK_UP, skill_times.BAG))
-    measures, places, edges = _measures(spec, made)
-    table = _table(spec, places, edges)
+    table = _table(spec)
     count, total = len(values), len(values) + 1
+    taken = _measures(spec, made, table[total:, total:])
+    measures, enter, leave = ([*row] for row in zip(*taken, strict=True))
+    enter, leave = np.array(enter) + total, np.array(leave) + total
     problem = Problem(
         StaticTravel(table[:total, :total]),
         values=values,
@@ -99,11 +105,11 @@ def play(
         drop=[bag] * count,
         limit=LIMIT,
     )
-    parts = table[:total, total:], table[total:, total:], table[total:, :count]
     saved = nearest_first(table[:total, :total], values, np.where(lost, alone, np.inf), pick + bag)
     share, nearest = risk / float(values.sum()), float(values[saved & lost].sum()) / risk
     whole = risk * (1.0 - problem.damaged_share)
-    offered = Measures(measures, *parts, put_down=PUT_DOWN)
+    ways = table[:total][:, enter], table[leave][:, enter], table[leave, :count]
+    offered = Measures(measures, *ways, put_down=PUT_DOWN)
     plain = (best_course(problem, offered, 0, beside=BESIDE).value - kept(problem)) / whole
     best, steps = plain, 0
     if not quick or Play(share, nearest, plain, MOST_BEST, 0).tells(env_id):  # else measures make no difference
@@ -131,37 +137,44 @@ def nearest_first(
 
 
 def _measures(
-    spec: SceneSpec, made: Sequence[tuple[Change, NDArray[np.float64]]]
-) -> tuple[list[Measure], list[tuple[float, float]], list[float]]:
-    """The measures, and where each is taken [m], and how far from there a walk may end [m]."""
-    tools = [b for b in spec.bodies if b.category == "fire_extinguisher"]
-    nothing = [0.0] * len(spec.targets)
-    measures, places, edges = [], [], []
-    for tool in tools:
-        measures.append(Measure(f"fetch {tool.name}", FETCH, nothing, charge=FIRES_EACH * PUT_OUT))
-        places.append(tool.position[:2])
-        edges.append(0.0)
+    spec: SceneSpec, made: Sequence[tuple[Change, NDArray[np.float64]]], ways: NDArray[np.float64]
+) -> list[tuple[Measure, int, int]]:
+    """The measures, each with the numbers of the places where it begins and ends; `ways` from place to place [frames].
+
+    Places are extinguishers, then fires, then openings, in the order of the scene.
+    """
+    tools, nothing = _tools(spec), [0.0] * len(spec.targets)
+    first_door = len(tools) + len(spec.fires)
+    found = [
+        (Measure(f"fetch {tool.name}", FETCH, nothing, charge=FIRES_EACH * PUT_OUT), k, k)
+        for k, tool in enumerate(tools)
+    ]
     for change, lost in made:
         until = np.where(lost <= LIMIT, lost - 1.0, np.inf).tolist()
-        for fire in change.fires:
-            for tool in range(len(tools)):
-                measures.append(Measure(f"put out {fire}", PUT_OUT, until, needs=tool, uses=PUT_OUT))
-                places.append(spec.fires[fire])
-                edges.append(JET)
+        for order in itertools.permutations([len(tools) + fire for fire in change.fires]):
+            uses = PUT_OUT * len(order)
+            frames = uses + sum(float(ways[pair]) for pair in itertools.pairwise(order))
+            for tool in range(len(tools) if order else 0):
+                found.append((Measure(f"out {order}", frames, until, needs=tool, uses=uses), order[0], order[-1]))
         if change.doors:
-            frames = SHUT * len(change.doors) + NEXT_DOOR * (len(change.doors) - 1)
-            measures.append(Measure(f"shut {change.doors}", frames, until))
-            o = spec.room.openings[change.doors[0]]
-            places.append(on_wall(spec.room, o.wall, o.centre, 0.0, thickness_of(spec.room, o.wall) / 2)[:2])
-            edges.append(0.0)
-    return measures, places, edges
+            places = [first_door + door for door in change.doors]
+            frames = SHUT * len(places) + sum(float(ways[pair]) for pair in itertools.pairwise(places))
+            found.append((Measure(f"shut {change.doors}", frames, until), places[0], places[-1]))
+    return found
 
 
-def _table(spec: SceneSpec, places: Sequence[tuple[float, float]], edges: Sequence[float]) -> NDArray[np.float64]:
-    """Frames of walks from each to each: targets, the start, then `places` [m] of measures."""
+def _tools(spec: SceneSpec) -> list[Body]:
+    return [b for b in spec.bodies if b.category == "fire_extinguisher"]
+
+
+def _table(spec: SceneSpec) -> NDArray[np.float64]:
+    """Frames of walks from each to each: targets, the start, then the places of measures."""
+    room = spec.room
+    doors = [on_wall(room, o.wall, o.centre, 0.0, thickness_of(room, o.wall) / 2)[:2] for o in room.openings]
+    places = [*(tool.position[:2] for tool in _tools(spec)), *spec.fires, *doors]
     at = np.array([*(t.position[:2] for t in spec.targets), spec.agent_start.position, *places])
     sizes = [float(np.hypot(*building.extent_of(t)[:2])) / 2 for t in spec.targets]
-    edge = np.array([*sizes, 0.0, *edges])
+    edge = np.array([*sizes, 0.0, *[0.0] * len(_tools(spec)), *[JET] * len(spec.fires), *[0.0] * len(doors)])
     made = Ways(spec).frames(at[:, None], at[None], edge=np.broadcast_to(edge, (len(at), len(at))))
     np.fill_diagonal(made, 0.0)
     return made

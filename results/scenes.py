@@ -34,11 +34,12 @@ MOST = 12  # candidates for one scene
 GRID = tuple(
     {"fires": fires, "fire_distance": distance, "fire_reach": reach, "targets": targets}
     for fires, distance, reach, targets in (
+        ((2, 3), 0.5, 1.5, (14, 20)),
         ((3,), 1.0, 2.0, (16, 20)),
         ((3,), 1.5, 2.5, (16, 20)),
         ((3,), 1.5, 3.5, (16, 20)),
         ((3,), 2.0, 3.5, (16, 20)),
-        ((4,), 1.5, 2.5, (16, 20)),
+        ((4,), 1.5, 2.5, (18, 20)),
     )
 )
 GRID_HOMES = tuple(f"house_test_1/{n:02d}" for n in range(6))

@@ -11,7 +11,7 @@ import hashlib
 
 from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes
-from hazard_ms.scenes.floor import Grid, cells, doorways, free_for, take
+from hazard_ms.scenes.floor import doorways, free_for, take
 from hazard_ms.scenes.generate.arrangement import MIN_GAP, RESTING_HEIGHT, NoPlaceError, models_of
 from hazard_ms.scenes.generate.draw import STREAM, Draw
 from hazard_ms.scenes.generate.hazard_placement import (
@@ -31,7 +31,7 @@ from hazard_ms.spec.catalogue import CATEGORIES, FIRE_POOL, LEAST_VALUE, MOST_VA
 
 HELD_OUT = "held_out"
 ATTEMPTS = 200  # at one scene [ours]: one in 3 to 10 fits, and takes 0.1 s
-NEAR_FRONT_DOOR = 2.5  # distance from the front door within which the rescuer starts [m] [ours]
+NEAR_FRONT_DOOR = 2.5  # from the front door: the rescuer starts, and an extinguisher stands, within it [m] [ours]
 FROM_CORNER = 0.3  # of a place along a wall for an extinguisher [m] [ours]
 EXTINGUISHER = "fire_extinguisher"  # a tool: it is in no pool of targets
 SIZE, MASS = 0.75, 3.3  # of one with 2 kg of powder: 0.41 m high; its mass when full [kg] [data sheets: 3.2 to 3.5]
@@ -98,7 +98,7 @@ def layout_of(place: str, split: str) -> House:
         targets=(16, 20),
         burning_kinds=3,
         bodies=120 - len(EXTINGUISHERS),
-        fires=(4,),
+        fires=(3, 4),
         inflows=2,
         plans=PLANS,
     )
@@ -110,11 +110,12 @@ def _attempt(layout: House, name: str, split: str, seed: str, attempt: int) -> S
     made = build(layout, plan, draw)
     scatter = Scatter(made, layout, anywhere=False)
     areas = {area.name: area for area in made.room.areas}
+    entrance = _entrance(made.room, areas["hall"])
     for where in EXTINGUISHERS:
-        _stand(scatter, areas[where], where == "hall", draw)
+        _stand(scatter, entrance if where == "hall" else areas[where], where == "hall", draw)
     chosen = fill(scatter, layout)
     room, standing = made.room, (made.boxes, scatter.boxes)
-    agent = start(free_for(room, *standing, START_RADIUS) & scatter.free & _entrance(room, areas["hall"]), draw)
+    agent = start(free_for(room, *standing, START_RADIUS) & scatter.free & within(entrance, room.size), draw)
     values = _values(scatter.bodies, chosen, Draw(STREAM, f"{seed}/values", attempt))
     burns = {name: v for name, v in values.items() if CATEGORIES[name.rpartition("_")[0]].flammable}
     targets = [
@@ -140,11 +141,12 @@ def _values(bodies: list[Body], chosen: tuple[str, ...], draw: Draw) -> dict[str
     return {name: float(draw.whole(int(LEAST_VALUE), int(MOST_VALUE))) for name in names}
 
 
-def _entrance(room: Room, hall: Area) -> Grid:
-    """The cells of the hall, [X, Y], that are near the front door, which is at one of its ends."""
-    x, _ = cells(room.size)
+def _entrance(room: Room, hall: Area) -> Area:
+    """The part of the hall that is near the front door, which is at one of its ends."""
     wall = next(o.wall for o in room.openings if o.kind == "door" and o.wall in ("west", "east"))
-    return within(hall, room.size) & ((x if wall == "west" else room.size[0] - x) < NEAR_FRONT_DOOR)
+    if wall == "west":
+        return Area("hall", hall.min, (hall.min[0] + NEAR_FRONT_DOOR, hall.max[1]))
+    return Area("hall", (hall.max[0] - NEAR_FRONT_DOOR, hall.min[1]), hall.max)
 
 
 def _stand(scatter: Scatter, area: Area, along: bool, draw: Draw) -> None:

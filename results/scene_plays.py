@@ -48,13 +48,13 @@ class Play:
 
     def tells(self, env_id: str) -> bool:
         """Whether the scene tells agents apart, and nobody saturates."""
+        return self.margin(env_id) >= 0.0 and self.best - self.plain >= OVER_PLAIN
+
+    def margin(self, env_id: str) -> float:
+        """By how much all criteria are met, but for what measures gain; below 0 if one is not."""
         most = MOST_RISK[env_id == FIRE]
-        return (
-            LEAST_RISK <= self.risk <= most
-            and self.best - self.nearest >= OVER_NEAREST
-            and self.best - self.plain >= OVER_PLAIN
-            and self.best <= MOST_BEST
-        )
+        ahead = self.best - self.nearest - OVER_NEAREST
+        return min(self.risk - LEAST_RISK, most - self.risk, ahead, MOST_BEST - self.best)
 
 
 LEAST_RISK, MOST_RISK = 0.35, (0.9, 0.75)  # most: flood, fire

@@ -4,7 +4,8 @@
     search   goes through candidates for the scenes of `test` and `held_out` until one of each tells agents apart
     table    prints what the chosen scenes are like
 
-Candidates are numbered; number 0 is the scene if none is found. `search` adds a row to scenes.csv for each candidate
+Candidates are numbered. The scene is the first that meets all criteria, else, of those looked at, the one that fits
+best but for what measures gain; number 0 if none was looked at. `search` adds a row to scenes.csv for each candidate
 that it has looked at, and resumes where it stopped; then it writes the numbers of the chosen ones into the package.
 What is played: results/scene_plays.py; what is lost: results/scene_futures.py. Criteria: `Play.tells`, for fires.
 """
@@ -97,7 +98,18 @@ def search(minutes: float) -> None:
                 csv.writer(file, lineterminator="\n").writerow(row)
             done[name] = read(name)
         print(f"{sum(any(r['chosen'] == '1' for r in rows) for rows in done.values())} chosen", flush=True)
-    write({name: int(r["number"]) for name, rows in done.items() for r in rows if r["chosen"] == "1"})
+    write({name: int(max(rows, key=fitness)["number"]) for name, rows in done.items() if rows})
+
+
+def fitness(row: dict[str, str]) -> float:
+    """How well a candidate fits: by its worst margin, measures left aside unless it meets all criteria."""
+    found = played(row)
+    return float(found.tells(FIRE)) + found.margin(FIRE)
+
+
+def played(row: dict[str, str]) -> Play:
+    """What a row says."""
+    return Play(*(float(row[k]) for k in COLUMNS[2:6]), int(row["measures"]))
 
 
 def candidate(name: str, split: str, number: int) -> SceneSpec:
@@ -125,17 +137,19 @@ def table() -> None:
     """Print what the scenes are like, from scenes.csv for fires, and played anew for floods."""
     with ROWS.open(newline="") as file:
         rows = list(csv.DictReader(file))
-    print("| scenes | candidates looked at | tell agents apart | at risk | nearest | plain | best |")
-    print("|---|---|---|---|---|---|---|")
+    print("| scenes | candidates | tell | but for measures | at risk | nearest | plain | best |")
+    print("|---|---|---|---|---|---|---|---|")
     for split in SPLITS:
         names = scene_names(split, "house")
         mine = [r for r in rows if r["scene"] in names]
-        kept = [Play(*(float(r[k]) for k in COLUMNS[2:6]), int(r["measures"])) for r in mine if r["chosen"] == "1"]
-        means = " | ".join(f"{mean:.0f}" for mean in means_of(kept))
-        print(f"| fire, `{split}` | {len(mine)} | {len(kept)} of {len(names)} | {means} |")
+        kept = [played(r) for r in mine if int(r["number"]) == chosen.CHOSEN.get(r["scene"], 0)]
+        if kept:
+            means = " | ".join(f"{mean:.0f}" for mean in means_of(kept))
+            told, nearly = sum(p.tells(FIRE) for p in kept), sum(p.margin(FIRE) >= 0.0 for p in kept)
+            print(f"| fire, `{split}` | {len(mine)} of {len(kept)} scenes | {told} | {nearly} | {means} |")
     names = scene_names("test", "house")[::5]
     means = " | ".join(f"{mean:.0f}" for mean in means_of(plays(FLOOD, [scene(name) for name in names])))
-    print(f"| flood, every fifth of `test` | - | - | {means} |")
+    print(f"| flood, every fifth of `test` | {len(names)} | - | - | {means} |")
 
 
 def main(command: str, minutes: str = "10") -> None:

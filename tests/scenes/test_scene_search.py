@@ -100,4 +100,7 @@ def test_what_tells_agents_apart() -> None:
     good = Play(0.5, 0.3, 0.5, 0.8, 2)
     assert good.tells(FIRE)
     for wrong in ({"risk": 0.3}, {"risk": 0.8}, {"nearest": 0.6}, {"plain": 0.75}, {"best": 1.0}):
-        assert not dataclasses.replace(good, **wrong).tells(FIRE), wrong
+        bad = dataclasses.replace(good, **wrong)
+        assert not bad.tells(FIRE), wrong
+        assert (bad.margin(FIRE) < 0.0) == ("plain" not in wrong), "what measures gain is left aside"
+    assert good.margin(FIRE) == pytest.approx(0.15)

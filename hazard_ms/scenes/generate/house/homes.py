@@ -98,7 +98,7 @@ def layout_of(place: str, split: str) -> House:
         targets=(16, 20),
         burning_kinds=3,
         bodies=120 - len(EXTINGUISHERS),
-        fires=(3, 4),
+        fires=(4,),
         inflows=2,
         plans=PLANS,
     )

@@ -28,9 +28,8 @@ def outbreaks(
 ) -> tuple[Vec2, ...]:
     """Places of the fires of a home [m], on cells of `bare`, [X, Y], in different `rooms`.
 
-    `targets`: the boxes of all, each with its value if it burns, else 0. Rooms are drawn by the square of the
-    value in them that burns: what one fire threatens is to be much. Raises NoPlaceError if fewer rooms than there are
-    to be fires have such value and a place for one.
+    `targets`: the boxes of all, each with its value if it burns, else 0. Rooms are drawn by the value in them that
+    burns. Raises NoPlaceError if fewer rooms than there are to be fires have such value and a place for one.
     """
     x, y = cells(size)
     apart = np.array([box.distance(x, y) for box, _ in targets])
@@ -42,7 +41,7 @@ def outbreaks(
     if len(left) < number:
         raise NoPlaceError(f"{number} rooms must have something that burns and a place for a fire, got {len(left)}")
     for _ in range(number):
-        places, _ = left.pop(draw.weighted(range(len(left)), [value**2 for _, value in left]))
+        places, _ = left.pop(draw.weighted(range(len(left)), [value for _, value in left]))
         near = sum(value * (far[places] <= layout.fire_reach) for far, (_, value) in zip(apart, targets, strict=True))
         best = np.argsort(-np.asarray(near), kind="stable")[: max(1, int(BEST_SHARE * places.sum()))]
         i, j = np.argwhere(places)[best[draw.whole(0, len(best) - 1)]]

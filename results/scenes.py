@@ -2,7 +2,8 @@
 
     grid     plays six homes for each of a few settings of their generator, and prints a row each
     search   goes through candidates for the scenes of `test` and `held_out` until one of each tells agents apart
-    table    prints what the chosen scenes are like
+    table    prints what the chosen scenes are like, from the rows of the search
+    flood    plays every fifth scene of `test` in floods
 
 Candidates are numbered. The scene is the first that meets all criteria, else, of those looked at, the one that fits
 best but for what measures gain; number 0 if none was looked at. `search` adds a row to scenes.csv for each candidate
@@ -134,7 +135,7 @@ def write(numbers: dict[str, int]) -> None:
 
 
 def table() -> None:
-    """Print what the scenes are like, from scenes.csv for fires, and played anew for floods."""
+    """Print what the scenes are like, from scenes.csv."""
     with ROWS.open(newline="") as file:
         rows = list(csv.DictReader(file))
     print("| scenes | candidates | tell | but for measures | at risk | nearest | plain | best |")
@@ -142,20 +143,26 @@ def table() -> None:
     for split in SPLITS:
         names = scene_names(split, "house")
         mine = [r for r in rows if r["scene"] in names]
-        kept = [played(r) for r in mine if int(r["number"]) == chosen.CHOSEN.get(r["scene"], 0)]
+        looked = len(mine)
+        mine = [r for r in mine if int(r["number"]) == chosen.CHOSEN.get(r["scene"], 0)]
+        kept = [played(r) for r in mine]
         if kept:
             means = " | ".join(f"{mean:.0f}" for mean in means_of(kept))
-            told, nearly = sum(p.tells(FIRE) for p in kept), sum(p.margin(FIRE) >= 0.0 for p in kept)
-            print(f"| fire, `{split}` | {len(mine)} of {len(kept)} scenes | {told} | {nearly} | {means} |")
-    names = scene_names("test", "house")[::5]
-    means = " | ".join(f"{mean:.0f}" for mean in means_of(plays(FLOOD, [scene(name) for name in names])))
-    print(f"| flood, every fifth of `test` | {len(names)} | - | - | {means} |")
+            told, nearly = sum(r["chosen"] == "1" for r in mine), sum(p.margin(FIRE) >= 0.0 for p in kept)
+            print(f"| `{split}` | {looked} of {len(kept)} scenes | {told} | {nearly} | {means} |")
+
+
+def flood() -> None:
+    """Print what every fifth scene of `test` is like in floods."""
+    found = plays(FLOOD, [scene(name) for name in scene_names("test", "house")[::5]])
+    print("| at risk | nearest | plain | best |\n|---|---|---|---|")
+    print(f"| {' | '.join(f'{mean:.0f}' for mean in means_of(found))} |")
 
 
 def main(command: str, minutes: str = "10") -> None:
     """Do what the command says; `minutes` that a search may take."""
     torch.set_num_threads(1)
-    {"grid": grid, "table": table, "search": lambda: search(float(minutes))}[command]()
+    {"grid": grid, "table": table, "flood": flood, "search": lambda: search(float(minutes))}[command]()
 
 
 if __name__ == "__main__":

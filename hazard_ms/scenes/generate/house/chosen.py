@@ -1,3 +1,3 @@
-"""Which of the candidates for a scene of `test` or `held_out` is the scene, as results/scenes.py has chosen them."""
+"""The numbers of the candidates that are the scenes of `test` and `held_out`, as results/scenes.py has chosen them."""
 
 CHOSEN: dict[str, int] = {}

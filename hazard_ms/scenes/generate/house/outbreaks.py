@@ -1,4 +1,4 @@
-"""Where fires begin in homes: each in another room, near to much value that burns, but not at it."""
+"""Places of the first fires of homes: each in another room, near to much value that burns, but not at it."""
 
 from __future__ import annotations
 

@@ -11,11 +11,12 @@ import pytest
 from hazard_ms.scenes.check import check
 from hazard_ms.scenes.floor import cell_of, connected, free_floor
 from hazard_ms.scenes.generate.house import homes
+from hazard_ms.scenes.generate.house.chosen import CHOSEN
 from hazard_ms.scenes.schema import from_json, to_json
 from hazard_ms.scenes.splits import scene, scene_names
 from hazard_ms.scenes.walls import WALLS, on_wall, thickness_of
 from hazard_ms.spec import Area, SceneSpec
-from hazard_ms.spec.catalogue import FIRE_POOL
+from hazard_ms.spec.catalogue import CATEGORIES, FIRE_POOL
 
 SPLITS = ("train", "test", "held_out")
 NAMES = [name for split in SPLITS for name in scene_names(split, "house")]
@@ -25,7 +26,7 @@ LONG = [*scene_names("train", "house")[::23], *scene_names("test", "house"), *sc
 MORE = [pytest.param(name, marks=pytest.mark.long) for name in LONG if name not in SAMPLE]
 EACH = pytest.mark.parametrize("name", [*sorted(SAMPLE), *MORE])
 RADIUS = 0.3  # of a disc in which Fetch's base, 0.28 m, fits [m]
-HELD_OUT_DIGEST = "0d8380abcf010bee00768a54f873510cb85cc7b2045bc22f20af5f85a9709f51"
+HELD_OUT_DIGEST = "014765394d022564b3cdd763f094b4e1c581675f835f1d5096dab9dce9e8572d"
 
 
 def rooms_of(spec: SceneSpec) -> list[Area]:
@@ -111,9 +112,10 @@ def test_with_all_doors_shut_no_rescuer_gets_around() -> None:
 
 
 @EACH
-def test_there_are_12_to_20_targets_with_values_1_to_20_and_two_extinguishers(name: str) -> None:
+def test_there_are_16_to_20_targets_with_values_1_to_20_and_two_extinguishers(name: str) -> None:
     spec = scene(name)
-    assert 12 <= len(spec.targets) <= 20 and {t.category for t in spec.targets} <= set(FIRE_POOL)
+    assert sum(CATEGORIES[c].flammable for c in spec.target_categories) == 3 and len(spec.target_categories) == 4
+    assert 16 <= len(spec.targets) <= 20 and {t.category for t in spec.targets} <= set(FIRE_POOL)
     values = [t.value for t in spec.targets]
     assert all(v is not None and 1 <= v <= 20 and v == int(v) for v in values) and len(set(values)) >= 5
     assert all(b.value is None for b in spec.bodies if b.category not in spec.target_categories)
@@ -124,10 +126,15 @@ def test_there_are_12_to_20_targets_with_values_1_to_20_and_two_extinguishers(na
 
 
 @EACH
-def test_fires_begin_in_rooms_and_water_at_two_outer_doors(name: str) -> None:
+def test_fires_begin_in_different_rooms_and_water_at_two_outer_doors(name: str) -> None:
+    """Fires are 1.5 m or more from targets, each in a room where something burns (docs/benchmark.md 1.1)."""
     spec = scene(name)
-    assert 3 <= len(spec.fires) <= 4
-    assert all(any(in_area(room, fire) for room in rooms_of(spec)) for fire in spec.fires)
+    burning = [room for room in rooms_of(spec) if any(in_area(room, fire) for fire in spec.fires)]
+    assert len(spec.fires) == len(burning) == 4
+    for room in burning:
+        assert any(CATEGORIES[t.category].flammable and in_area(room, t.position) for t in spec.targets), room.name
+    apart = [np.hypot(t.position[0] - x, t.position[1] - y) for t in spec.targets for x, y in spec.fires]
+    assert min(apart) >= 1.5
     doors = {o.wall for o in spec.room.openings if o.kind == "door" and o.wall in WALLS}
     assert {spec.flood_side, spec.second_flood_side} == doors and len(doors) == 2
     (hall,) = (a for a in spec.room.areas if a.name == "hall")
@@ -154,6 +161,21 @@ def test_scenes_that_are_held_out_are_what_they_were_and_follow_from_a_hash() ->
     assert homes.seed_of("house_test_1/00", "test") == "house_test_1/00"
     plain = homes.make("house_held_out_1", "house_held_out_1/00", "test")
     assert plain.bodies != scene("house_held_out_1/00").bodies
+
+
+def test_candidates_differ_and_only_scenes_of_test_and_held_out_are_chosen() -> None:
+    """Number 0 is drawn from the name alone, the others from it and their number (docs/benchmark.md 1.1)."""
+    assert homes.seed_of("house_test_1/00", "test", 3) == "house_test_1/00 candidate 3"
+    known = hashlib.sha256(b"hazard_ms held out house_held_out_1/00 candidate 3").hexdigest()
+    assert homes.seed_of("house_held_out_1/00", "held_out", 3) == known
+    layout = homes.layout_of("house_test_1", "test")
+    first, other = (homes.candidate(layout, "house_test_1/00", "test", number) for number in (0, 1))
+    assert first.fires != other.fires and first.bodies != other.bodies
+    assert set(CHOSEN) <= {*scene_names("test", "house"), *scene_names("held_out", "house")}
+    assert all(number > 0 for number in CHOSEN.values())
+    for name, number in list(CHOSEN.items())[:1]:
+        split = "test" if "test" in name else "held_out"
+        assert scene(name) == homes.candidate(homes.layout_of(name.split("/")[0], split), name, split, number)
 
 
 @pytest.mark.long

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 
 from hazard_ms.tasks import task_of
@@ -35,3 +37,12 @@ def test_one_hazard_that_needs_the_open_takes_all_outside(hazards: tuple[str, ..
 def test_what_tells_others_something_advances_before_them(hazards: tuple[str, ...]) -> None:
     names = [h.name for h in task_of("HazardCompound-v1", "paper", hazards).hazards]
     assert sorted(names) == ["fire", "flood", "wind"] and names[-1] == "fire"  # it uses the water and the air
+
+
+def test_water_of_paper_rises_four_times_as_slowly_in_homes_and_nothing_else_differs() -> None:
+    """docs/benchmark.md 1.1: four times the floor at the same inflow."""
+    for physics in ("paper", "shipped", "realistic"):
+        (home,), (room,) = (task_of(f"Hazard{kind}Flood-v1", physics).hazards for kind in ("House", ""))
+        slower = {"every": 40} if physics == "paper" else {}
+        assert room.every == 10
+        assert home == dataclasses.replace(room, **slower), physics

@@ -149,6 +149,7 @@ class Layout:
     pool: tuple[str, ...]  # categories that may be targets
     things: tuple[str, ...] = ()  # categories of other objects, besides those of the pool
     targets: tuple[int, int] = (6, 14)  # number of target objects
+    burning_kinds: int = 1  # of the four categories of targets, at least these many burn; at least one does not
     bodies: int = 60  # number of objects; the same in every scene, so that scenes can share a batch
     fires: tuple[int, ...] = (1, 2, 3)  # numbers of fire sources, equally likely
     inflows: int = 1  # number of walls from which water comes: 1 or 2

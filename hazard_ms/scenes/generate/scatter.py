@@ -212,7 +212,7 @@ def fill(scatter: Scatter, layout: Layout) -> tuple[str, ...]:
 def wanted_things(layout: Layout, draw: Draw) -> tuple[list[str], tuple[str, ...]]:
     """The categories of the objects of a scene, one entry per object, and the categories that are targets."""
     pool = [c for c in layout.pool if models_of(c)]
-    chosen, others = choose_targets(pool, draw)
+    chosen, others = choose_targets(pool, draw, layout.burning_kinds)
     targets = list(chosen) + [draw.one(chosen) for _ in range(draw.whole(*layout.targets) - len(chosen))]
     variety = draw.shuffled(others + [c for c in layout.things if models_of(c) and c not in pool])
     again = [c for c in variety if _length(c) <= BULKY_LENGTH]  # one of each bulky kind is enough
@@ -220,21 +220,23 @@ def wanted_things(layout: Layout, draw: Draw) -> tuple[list[str], tuple[str, ...
     return targets + (variety + again * (1 + more // len(again)))[:more], chosen
 
 
-def choose_targets(pool: list[str], draw: Draw) -> tuple[tuple[str, ...], list[str]]:
+def choose_targets(pool: list[str], draw: Draw, burning: int = 1) -> tuple[tuple[str, ...], list[str]]:
     """Four categories to be rescued, and the others of the pool.
 
-    Both values are among the four, and things that burn as well as things that do not. Raises ValueError for a pool
-    that has no such four.
+    Both values are among the four, and things that burn, `burning` categories of them at least, as well as things that
+    do not. Raises ValueError for a pool that has no such four.
     """
     kinds = [CATEGORIES[c] for c in pool]
-    if len(pool) <= TARGET_KINDS or len({k.value for k in kinds}) < 2 or len({k.flammable for k in kinds}) < 2:
+    able = burning <= sum(k.flammable for k in kinds) < len(kinds) and 1 <= burning < TARGET_KINDS
+    if len(pool) <= TARGET_KINDS or len({k.value for k in kinds}) < 2 or not able:
         raise ValueError(
-            f"pool must have more than {TARGET_KINDS} categories, of both values, flammable and not, got {pool}"
+            f"pool must have more than {TARGET_KINDS} categories, of both values, {burning} flammable ones and others "
+            f"that are not, got {pool}"
         )
     while True:
         pile = draw.shuffled(pool)
         four = [CATEGORIES[c] for c in pile[:TARGET_KINDS]]
-        if len({k.value == HIGH_VALUE for k in four}) == 2 and len({k.flammable for k in four}) == 2:
+        if len({k.value == HIGH_VALUE for k in four}) == 2 and burning <= sum(k.flammable for k in four) < TARGET_KINDS:
             return tuple(sorted(pile[:TARGET_KINDS])), pile[TARGET_KINDS:]
 
 

@@ -11,26 +11,27 @@ import hashlib
 
 from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes
-from hazard_ms.scenes.floor import Grid, cells, doorways, free_for, take
+from hazard_ms.scenes.floor import doorways, free_for, take
 from hazard_ms.scenes.generate.arrangement import MIN_GAP, RESTING_HEIGHT, NoPlaceError, models_of
 from hazard_ms.scenes.generate.draw import STREAM, Draw
 from hazard_ms.scenes.generate.hazard_placement import (
     FLAME_RADIUS,
     MIN_DOORWAY_DISTANCE,
     START_RADIUS,
-    fires,
     start,
 )
+from hazard_ms.scenes.generate.house.chosen import CHOSEN
+from hazard_ms.scenes.generate.house.outbreaks import outbreaks, within
 from hazard_ms.scenes.generate.house.plan import House, Plan, build
 from hazard_ms.scenes.generate.room_things import TEST_THINGS, TRAIN_THINGS
 from hazard_ms.scenes.generate.scatter import TRIES, Scatter, fill
 from hazard_ms.scenes.walls import WALLS
 from hazard_ms.spec import Area, Body, Room, SceneSpec
-from hazard_ms.spec.catalogue import FIRE_POOL, LEAST_VALUE, MOST_VALUE
+from hazard_ms.spec.catalogue import CATEGORIES, FIRE_POOL, LEAST_VALUE, MOST_VALUE
 
 HELD_OUT = "held_out"
 ATTEMPTS = 200  # at one scene [ours]: one in 3 to 10 fits, and takes 0.1 s
-NEAR_FRONT_DOOR = 2.5  # distance from the front door within which the rescuer starts [m] [ours]
+NEAR_FRONT_DOOR = 2.5  # from the front door: the rescuer starts, and an extinguisher stands, within it [m] [ours]
 FROM_CORNER = 0.3  # of a place along a wall for an extinguisher [m] [ours]
 EXTINGUISHER = "fire_extinguisher"  # a tool: it is in no pool of targets
 SIZE, MASS = 0.75, 3.3  # of one with 2 kg of powder: 0.41 m high; its mass when full [kg] [data sheets: 3.2 to 3.5]
@@ -60,17 +61,27 @@ PLANS = (
 
 def make(place: str, name: str, split: str) -> SceneSpec:
     """The scene `name` of the `place` in a `split`; the plans take turns. Raises ValueError if nothing fits."""
+    return candidate(layout_of(place, split), name, split, CHOSEN.get(name, 0))
+
+
+def candidate(layout: House, name: str, split: str, number: int) -> SceneSpec:
+    """The scene of this `number` of those that may be the scene `name`. Raises ValueError if nothing fits."""
+    seed = seed_of(name, split, number)
     for attempt in range(ATTEMPTS):
         try:
-            return _attempt(place, name, split, attempt)
+            return _attempt(layout, name, split, seed, attempt)
         except NoPlaceError as problem:
             last = problem
     raise ValueError(f"{name} must fit into its rooms, got no arrangement in {ATTEMPTS} attempts; the last: {last}")
 
 
-def seed_of(name: str, split: str) -> str:
-    """The text from which all randomness of the scene `name` derives: a hash of it for those that are held out."""
-    return hashlib.sha256(f"hazard_ms held out {name}".encode()).hexdigest() if split == HELD_OUT else name
+def seed_of(name: str, split: str, number: int = 0) -> str:
+    """The text from which all randomness of a candidate for the scene `name` derives.
+
+    It is a hash for those that are held out.
+    """
+    text = f"{name} candidate {number}" if number else name
+    return hashlib.sha256(f"hazard_ms held out {text}".encode()).hexdigest() if split == HELD_OUT else text
 
 
 def layout_of(place: str, split: str) -> House:
@@ -84,59 +95,58 @@ def layout_of(place: str, split: str) -> House:
         walls=("plaster", "paint_white", "paint_green", "paint_blue"),
         pool=FIRE_POOL,
         things=tuple(t for t in things if t != EXTINGUISHER),
-        targets=(12, 20),
+        targets=(16, 20),
+        burning_kinds=3,
         bodies=120 - len(EXTINGUISHERS),
-        fires=(3, 4),
+        fires=(4,),
         inflows=2,
         plans=PLANS,
     )
 
 
-def _attempt(place: str, name: str, split: str, attempt: int) -> SceneSpec:
-    layout, seed = layout_of(place, split), seed_of(name, split)
+def _attempt(layout: House, name: str, split: str, seed: str, attempt: int) -> SceneSpec:
     draw = Draw(STREAM, seed, attempt)
     plan = layout.plans[int(name.rpartition("/")[2]) % len(layout.plans)]
     made = build(layout, plan, draw)
     scatter = Scatter(made, layout, anywhere=False)
     areas = {area.name: area for area in made.room.areas}
+    entrance = _entrance(made.room, areas["hall"])
     for where in EXTINGUISHERS:
-        _stand(scatter, areas[where], where == "hall", draw)
+        _stand(scatter, entrance if where == "hall" else areas[where], where == "hall", draw)
     chosen = fill(scatter, layout)
     room, standing = made.room, (made.boxes, scatter.boxes)
-    agent = start(free_for(room, *standing, START_RADIUS) & scatter.free & _entrance(room, areas["hall"]), draw)
-    targets = [box for body, box in zip(scatter.bodies, standing[1], strict=True) if body.category in chosen]
+    agent = start(free_for(room, *standing, START_RADIUS) & scatter.free & within(entrance, room.size), draw)
+    values = _values(scatter.bodies, chosen, Draw(STREAM, f"{seed}/values", attempt))
+    burns = {name: v for name, v in values.items() if CATEGORIES[name.rpartition("_")[0]].flammable}
+    targets = [
+        (box, burns.get(body.name, 0.0))
+        for body, box in zip(scatter.bodies, standing[1], strict=True)
+        if body.name in values
+    ]
     bare = take(free_for(room, *standing, FLAME_RADIUS), room.size, doorways(room), MIN_DOORWAY_DISTANCE)
-    bare &= ~_within(areas["hall"], room)  # it begins in a room
-    burning = fires(draw.one(layout.fires), scatter.free, bare, agent, targets, room.size, draw)
+    rooms = [area for area in room.areas if area.name != "hall"]
+    burning = outbreaks(layout, bare, rooms, agent, targets, room.size, draw)
     side, second = draw.shuffled(sorted({o.wall for o in room.openings if o.kind == "door" and o.wall in WALLS}))
     clear = ((agent.position, START_RADIUS), *((fire, FLAME_RADIUS) for fire in burning))
     scatter.put_down("vacuum_cleaner", clear, Draw(STREAM, f"{seed}/floor", attempt))
-    bodies = _valued(scatter.bodies, chosen, Draw(STREAM, f"{seed}/values", attempt))
+    bodies = tuple(
+        dataclasses.replace(b, value=values.get(b.name)) for b in sorted(scatter.bodies, key=lambda b: b.name)
+    )
     return SceneSpec(name, room, tuple(made.fixtures), bodies, chosen, burning, agent, split, side, second)
 
 
-def _valued(bodies: list[Body], chosen: tuple[str, ...], draw: Draw) -> tuple[Body, ...]:
-    """The bodies by name, each target with a value of its own."""
-    ordered = sorted(bodies, key=lambda b: b.name)
-    return tuple(
-        dataclasses.replace(b, value=float(draw.whole(int(LEAST_VALUE), int(MOST_VALUE))))
-        if b.category in chosen
-        else b
-        for b in ordered
-    )
+def _values(bodies: list[Body], chosen: tuple[str, ...], draw: Draw) -> dict[str, float]:
+    """The value of each target, by name."""
+    names = sorted(body.name for body in bodies if body.category in chosen)
+    return {name: float(draw.whole(int(LEAST_VALUE), int(MOST_VALUE))) for name in names}
 
 
-def _within(area: Area, room: Room) -> Grid:
-    """The cells of the floor in an `area`, [X, Y]."""
-    x, y = cells(room.size)
-    return (x >= area.min[0]) & (x <= area.max[0]) & (y >= area.min[1]) & (y <= area.max[1])
-
-
-def _entrance(room: Room, hall: Area) -> Grid:
-    """The cells of the hall, [X, Y], that are near the front door, which is at one of its ends."""
-    x, _ = cells(room.size)
+def _entrance(room: Room, hall: Area) -> Area:
+    """The part of the hall that is near the front door, which is at one of its ends."""
     wall = next(o.wall for o in room.openings if o.kind == "door" and o.wall in ("west", "east"))
-    return _within(hall, room) & ((x if wall == "west" else room.size[0] - x) < NEAR_FRONT_DOOR)
+    if wall == "west":
+        return Area("hall", hall.min, (hall.min[0] + NEAR_FRONT_DOOR, hall.max[1]))
+    return Area("hall", (hall.max[0] - NEAR_FRONT_DOOR, hall.min[1]), hall.max)
 
 
 def _stand(scatter: Scatter, area: Area, along: bool, draw: Draw) -> None:

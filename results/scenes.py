@@ -1,0 +1,169 @@
+"""Searches for homes that tell agents apart: `python results/scenes.py grid`, then `search`, then `table`.
+
+    grid     plays six homes for each of a few settings of their generator, and prints a row each
+    search   goes through candidates for the scenes of `test` and `held_out` until one of each tells agents apart
+    table    prints what the chosen scenes are like, from the rows of the search
+    flood    plays every fifth scene of `test` in floods
+
+Candidates are numbered. The scene is the first that meets all criteria, else, of those looked at, the one that fits
+best but for what measures gain; number 0 if none was looked at. `search` adds a row to scenes.csv for each candidate
+that it has looked at, and resumes where it stopped; then it writes the numbers of the chosen ones into the package.
+What is played: results/scene_plays.py; what is lost: results/scene_futures.py. Criteria: `Play.tells`, for fires.
+"""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from hazard_ms.scenes.generate.house import chosen, homes
+from hazard_ms.scenes.splits import scene, scene_names
+from hazard_ms.spec import SceneSpec
+from results.scene_futures import FIRE, FLOOD, Change, losses
+from results.scene_plays import Play, changes, play
+
+ROWS = Path(__file__).with_name("scenes.csv")
+COLUMNS = ("scene", "number", "risk", "nearest", "plain", "best", "measures", "chosen")
+SPLITS = ("test", "held_out")
+TOGETHER = 2  # scenes whose candidates are simulated in one batch
+MOST = 12  # candidates for one scene
+GRID = tuple(
+    {"fires": fires, "fire_distance": distance, "fire_reach": reach, "targets": targets}
+    for fires, distance, reach, targets in (
+        ((2, 3), 0.5, 1.5, (14, 20)),
+        ((3,), 1.0, 2.0, (16, 20)),
+        ((3,), 1.5, 2.5, (16, 20)),
+        ((3,), 1.5, 3.5, (16, 20)),
+        ((3,), 2.0, 3.5, (16, 20)),
+        ((4,), 1.5, 2.5, (18, 20)),
+    )
+)
+GRID_HOMES = tuple(f"house_test_1/{n:02d}" for n in range(6))
+
+
+def plays(env_id: str, specs: list[SceneSpec], quick: bool = False) -> list[Play]:
+    """What agents make of each scene; `quick` as for `play`."""
+    offered = [changes(env_id, spec) for spec in specs]
+    cases = [(spec, change) for spec, many in zip(specs, offered, strict=True) for change in (Change(), *many)]
+    made, found = losses(env_id, cases), []
+    for spec, many in zip(specs, offered, strict=True):
+        alone, *after = made[: 1 + len(many)]
+        del made[: 1 + len(many)]
+        found.append(play(env_id, spec, alone, list(zip(many, after, strict=True)), quick))
+    return found
+
+
+def grid() -> None:
+    """Print what homes of each setting are like, on average."""
+    base = homes.layout_of("house_test_1", "test")
+    print("| fires | from targets [m] | within [m] | targets | at risk | nearest | plain | best | tell |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for setting in GRID:
+        layout = dataclasses.replace(base, **setting)
+        found = plays(FIRE, [homes.candidate(layout, name, "test", 0) for name in GRID_HOMES])
+        fires, targets = ("-".join(map(str, setting[k])) for k in ("fires", "targets"))
+        means = " | ".join(f"{mean:.0f}" for mean in means_of(found))
+        tell = sum(p.tells(FIRE) for p in found)
+        print(
+            f"| {fires} | {layout.fire_distance} | {layout.fire_reach} | {targets} | {means} | {tell} of {len(found)} |"
+        )
+
+
+def means_of(found: list[Play]) -> list[float]:
+    """Means of what is at risk, and of what the three agents avert, in per cent."""
+    return [100.0 * float(np.mean([getattr(p, k) for p in found])) for k in ("risk", "nearest", "plain", "best")]
+
+
+def search(minutes: float) -> None:
+    """Look at candidates for as long as this, or until each scene has one."""
+    until = time.monotonic() + 60.0 * minutes
+    split_of = {name: split for split in SPLITS for name in scene_names(split, "house")}
+    done = {name: read(name) for name in split_of}
+    while time.monotonic() < until:
+        open_ = [n for n, rows in done.items() if len(rows) < MOST and not any(r["chosen"] == "1" for r in rows)]
+        # those of `test` first, and of them those with the fewest candidates so far
+        now = sorted(open_, key=lambda n: (split_of[n] != "test", len(done[n])))[:TOGETHER]
+        if not now:
+            break
+        specs = [candidate(name, split_of[name], len(done[name])) for name in now]
+        for name, found in zip(now, plays(FIRE, specs, quick=True), strict=True):
+            row = [name, len(done[name]), *(f"{v:.3f}" for v in dataclasses.astuple(found)[:4])]
+            row += [found.measures, int(found.tells(FIRE))]
+            with ROWS.open("a", newline="") as file:
+                csv.writer(file, lineterminator="\n").writerow(row)
+            done[name] = read(name)
+        print(f"{sum(any(r['chosen'] == '1' for r in rows) for rows in done.values())} chosen", flush=True)
+    write({name: int(max(rows, key=fitness)["number"]) for name, rows in done.items() if rows})
+
+
+def fitness(row: dict[str, str]) -> float:
+    """How well a candidate fits: by its worst margin, measures left aside unless it meets all criteria."""
+    found = played(row)
+    return float(found.tells(FIRE)) + found.margin(FIRE)
+
+
+def played(row: dict[str, str]) -> Play:
+    """What a row says."""
+    return Play(*(float(row[k]) for k in COLUMNS[2:6]), int(row["measures"]))
+
+
+def candidate(name: str, split: str, number: int) -> SceneSpec:
+    """The candidate of this `number` for the scene `name`."""
+    return homes.candidate(homes.layout_of(name.split("/")[0], split), name, split, number)
+
+
+def read(name: str) -> list[dict[str, str]]:
+    """The rows of the candidates for the scene `name` so far."""
+    if not ROWS.exists():
+        ROWS.write_text(",".join(COLUMNS) + "\n")
+    with ROWS.open(newline="") as file:
+        return [row for row in csv.DictReader(file) if row["scene"] == name]
+
+
+def write(numbers: dict[str, int]) -> None:
+    """Write the numbers of the chosen candidates, but for 0, into the package."""
+    path = Path(chosen.__file__)
+    head, _, _ = path.read_text().partition("CHOSEN")
+    lines = "".join(f'    "{name}": {number},\n' for name, number in sorted(numbers.items()) if number)
+    path.write_text(head + "CHOSEN: dict[str, int] = {\n" + lines + "}\n")
+
+
+def table() -> None:
+    """Print what the scenes are like, from scenes.csv."""
+    with ROWS.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    print("| scenes | candidates | tell | but for measures | at risk | nearest | plain | best |")
+    print("|---|---|---|---|---|---|---|---|")
+    for split in SPLITS:
+        names = scene_names(split, "house")
+        mine = [r for r in rows if r["scene"] in names]
+        looked = len(mine)
+        mine = [r for r in mine if int(r["number"]) == chosen.CHOSEN.get(r["scene"], 0)]
+        kept = [played(r) for r in mine]
+        if kept:
+            means = " | ".join(f"{mean:.0f}" for mean in means_of(kept))
+            told, nearly = sum(r["chosen"] == "1" for r in mine), sum(p.margin(FIRE) >= 0.0 for p in kept)
+            print(f"| `{split}` | {looked} of {len(kept)} scenes | {told} | {nearly} | {means} |")
+
+
+def flood() -> None:
+    """Print what every fifth scene of `test` is like in floods."""
+    found = plays(FLOOD, [scene(name) for name in scene_names("test", "house")[::5]])
+    print("| at risk | nearest | plain | best |\n|---|---|---|---|")
+    print(f"| {' | '.join(f'{mean:.0f}' for mean in means_of(found))} |")
+
+
+def main(command: str, minutes: str = "10") -> None:
+    """Do what the command says; `minutes` that a search may take."""
+    torch.set_num_threads(1)
+    {"grid": grid, "table": table, "flood": flood, "search": lambda: search(float(minutes))}[command]()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -70,6 +70,18 @@ class StaticTravel(Travel):
         """Frames from a spot to each cart, [C]."""
         return self._rows[spot[0]][self.targets : self.targets + self.carts]
 
+    def starting(self, frames: ArrayLike) -> StaticTravel:
+        """The same travel from another start, from which ways to the targets and carts take `frames`, [M + C].
+
+        Raises ValueError for another number of frames.
+        """
+        row = np.array(frames, np.float64)
+        if row.shape != (len(self._table) - 1,):
+            raise ValueError(f"frames must have shape ({len(self._table) - 1},), got {row.shape}")
+        table = self._table.copy()
+        table[-1], table[:, -1] = [*row, 0.0], np.inf  # nobody goes back to a start
+        return StaticTravel(table, self.carts)
+
     def least_entries(self) -> NDArray[np.float64]:
         """Least frames of the walk to each target from wherever the rescue before it can end, [M]."""
         table = self._table.copy()

@@ -144,3 +144,16 @@ def test_bad_recordings_are_refused(changes: dict, message: str) -> None:
     given = {"frames": [0.0, 1.0], "positions": [[[1.0]], [[2.0]]], "start": [0.0], "walk": WALK, **changes}
     with pytest.raises(ValueError, match=message):
         MovingTravel(**given)
+
+
+def test_a_table_can_begin_elsewhere() -> None:
+    """Ways between targets and carts stay; those from the start are the given ones."""
+    table = StaticTravel(
+        [[0.0, 10.0, 30.0, 9.0], [20.0, 0.0, 40.0, 9.0], [5.0, 6.0, 0.0, 9.0], [1.0, 2.0, 3.0, 0.0]], 1
+    )
+    moved = table.starting([70.0, 80.0, 90.0])
+    assert [met for met, _ in moved.meetings(moved.start, 100.0, [0, 1])] == [170.0, 180.0]
+    assert moved.to_carts(moved.start) == [90.0] and moved.to_carts((1, 0)) == [40.0]
+    assert moved.least_entries().tolist() == [5.0, 6.0] and table.to_carts(table.start) == [3.0]
+    with pytest.raises(ValueError, match=r"frames must have shape \(3,\), got \(2,\)"):
+        table.starting([1.0, 2.0])

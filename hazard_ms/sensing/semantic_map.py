@@ -44,6 +44,7 @@ class SemanticMap:
     explored   [Y, X]     bool; whether a point was seen there
     object_id  [Y, X]     index of the uppermost thing seen there; -1 for none
     levels     [K, Y, X]  level of each hazard when last seen, in its unit; NaN where never seen
+    told_at    [Y, X]     frame of that; -1 for never
     objects               a Sighting for each thing that was seen, by index
     """
 
@@ -69,12 +70,12 @@ class SemanticMap:
         self.loose = np.asarray(loose, dtype=bool)
         self._stood = ~self.loose  # at the start: a copy, since furniture may float off
         shape = (cells, cells)
-        self._firm = np.zeros(shape, np.float32)  # height of things that stay [m]
-        self._light = np.zeros(shape, np.float32)  # height of things that can be moved [m]
+        self._firm, self._light = np.zeros((2, *shape), np.float32)  # heights of what stays, and of what can be moved [m]
         self.explored = np.zeros(shape, bool)
         self.object_id = np.full(shape, -1, np.int32)
         self._seen_at = np.full(shape, -1, np.int32)  # frame in which it was seen there
         self.levels = np.full((hazards, *shape), np.nan, np.float32)
+        self.told_at = np.full(shape, -1, np.int32)
         self.objects: Mapping[int, Sighting] = {}
         self.frame, self._frozen = -1, False  # frame of the last update; whether it can be written to no more
 
@@ -214,6 +215,7 @@ class SemanticMap:
         for old, new in zip(self.levels, levels, strict=True):
             total = np.bincount(cell, weights=new, minlength=self.explored.size)
             old.ravel()[seen] = total[seen] / count[seen]
+        self.told_at.ravel()[seen] = self.frame
 
     def mark_free(self, position: tuple[float, float], radius: float) -> None:
         """Mark the floor under the agent as free, at `position` [m] with a footprint of `radius` [m]."""

@@ -9,7 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.search.fire_watch import FireWatch
+from hazard_ms.agents.search.floor_plan import FloorPlan
+from hazard_ms.agents.search.house_fire import HouseFire
+from hazard_ms.agents.search.house_water import HouseWater
 from hazard_ms.planning.belief import WaterPlane, extended, last_whole
+from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
@@ -26,15 +30,29 @@ Array = NDArray[np.float64]
 class Forecast:
     """The levels to come, and when they harm what is at a place."""
 
-    def __init__(self, brief: Brief, decision: Decision, watch: FireWatch) -> None:
-        """Forecast the hazards of `brief` from `decision` to the end of the episode; `watch` remembers a fire."""
+    def __init__(
+        self,
+        brief: Brief,
+        decision: Decision,
+        watch: FireWatch | HouseFire,
+        shut: Sequence[KnownOpening] = (),
+        without: Sequence[int] = (),
+    ) -> None:
+        """Forecast the hazards of `brief` from `decision` to the end of the episode; `watch` remembers a fire.
+
+        `shut`: doors that are shut as soon as that; `without`: numbers of fires, `HouseFire.seats`, that are put out.
+        """
         self._hazards = brief.hazards
         self._frames = np.arange(decision.frame, decision.max_frames + STRIDE, STRIDE, dtype=np.float64)
-        self._water = {
-            number: _water(decision.map, number) for number, hazard in enumerate(brief.hazards) if hazard.name == WATER
+        self._water: dict[int, WaterPlane | HouseWater] = {
+            number: HouseWater(decision.map, number, FloorPlan(decision.map, shut))
+            if brief.several_rooms
+            else _water(decision.map, number)
+            for number, hazard in enumerate(brief.hazards)
+            if hazard.name == WATER
         }
         self._fire = {
-            number: watch.whole_until(decision, number)
+            number: _burning(watch, decision, number, without)
             for number, hazard in enumerate(brief.hazards)
             if hazard.name == FIRE and number < len(decision.map.levels)
         }
@@ -62,6 +80,14 @@ class Forecast:
         history = sighting.history or ((sighting.frame, sighting.levels),)
         frames = [frame for frame, _ in history]
         return extended(frames, [levels[number] for _, levels in history], self._frames)
+
+
+def _burning(watch: FireWatch | HouseFire, decision: Decision, number: int, without: Sequence[int]) -> dict[int, float]:
+    """The frame until which each known thing stays whole from a fire, by index."""
+    if isinstance(watch, FireWatch):
+        return watch.whole_until(decision, number)
+    watch.look(decision, number)
+    return watch.whole_until(without)
 
 
 def _harms(hazard: HazardBrief, target: Target, height: float, level: float) -> bool:

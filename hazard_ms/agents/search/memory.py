@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.search.fire_watch import FireWatch
+from hazard_ms.agents.search.house_fire import HouseFire
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import NOT_A_TARGET, TOO_FAR
 
@@ -29,7 +30,7 @@ class Memory:
     def __init__(self, seed: int, belief: bool = True) -> None:
         """Begin an episode; `seed` fixes all randomness in it; `belief`: see `Weights`."""
         self._belief = belief
-        self.fire = FireWatch(seed)
+        self.fire, self.house = FireWatch(seed), HouseFire(seed)
         self.failures: dict[str, int] = {}  # of walks to a thing, and of picking it up
         self.missed: dict[str, list[tuple[Place, Place]]] = {}  # failed pick-ups: where it stood then, and the thing
         self.visits: dict[str, int] = {}  # to things in search

@@ -1,0 +1,114 @@
+"""The walls of a home as a map shows them, shut doors among them: what heat, flames and water do not get past.
+
+A cell of the map that reaches up to the lintels of doors is wall, or a leaf that stands there. An open leaf hides a
+little of the floor behind it, which no wall does [ours: it is as thin as a cell].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage, sparse
+from scipy.sparse import csgraph
+
+from hazard_ms.sensing.door_memory import KnownOpening
+from hazard_ms.sensing.semantic_map import SemanticMap
+
+TALL = 1.8  # height from which a cell is wall [m] [ours]: higher than furniture, lower than lintels, where maps end
+FAR = 6.0  # distance beyond which no heat is asked for [m] [ours]: longer than most rooms
+NEAR = 0.15  # of the ends of a straight line, in which walls do not count [m] [ours]
+RAYS = 720  # directions in which sight is told [ours]: 5 cm apart at 6 m
+BORDER = 3  # unseen cells around those that were seen through which water may come [ours]
+SIDES = ((0, 1), (1, 0), (1, 1), (1, -1))  # half of the eight neighbours of a cell, (y, x)
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+class FloorPlan:
+    """Walls on the part of a map that was seen."""
+
+    def __init__(self, seen: SemanticMap, shut: Sequence[KnownOpening] = ()) -> None:
+        """The walls of `seen`, as if the doors `shut` were shut."""
+        rows, columns = np.nonzero(seen.explored)
+        low = np.array([rows.min(initial=0), columns.min(initial=0)]) - BORDER
+        high = np.array([rows.max(initial=0), columns.max(initial=0)]) + BORDER + 1
+        low, high = np.maximum(low, 0), np.minimum(high, seen.explored.shape)
+        self.window = (slice(low[0], high[0]), slice(low[1], high[1]))
+        self._seen, self._cell = seen.explored[self.window], seen.cell
+        self._origin = seen.origin + seen.cell * low[::-1]
+        tall = seen.height[self.window] >= TALL
+        self.wall: Mask = tall | ndimage.binary_closing(tall, np.ones((3, 3), bool))
+        for opening in shut:
+            self._shut(opening)
+
+    def _shut(self, opening: KnownOpening) -> None:
+        """Make the cells of a door wall, along the side on which its wall goes on."""
+        middle, half = np.array(opening.position[:2]), opening.width / 2
+        found = []
+        for along in np.eye(2):
+            beside = [middle + sign * (half + far) * along for sign in (-1, 1) for far in (0.1, 0.2, 0.3)]
+            found.append(sum(bool(self._at(self.wall, point[None])[0]) for point in beside))
+        along = np.eye(2)[int(np.argmax(found))]
+        steps = np.arange(-half - self._cell, half + 1.5 * self._cell, self._cell / 2)
+        y, x = self._cells(middle + steps[:, None] * along).T
+        inside = (y >= 0) & (x >= 0) & (y < self.wall.shape[0]) & (x < self.wall.shape[1])
+        self.wall[y[inside], x[inside]] = True
+
+    def _cells(self, points: Array) -> NDArray[np.int64]:
+        return np.floor((points - self._origin) / self._cell).astype(np.int64)[..., ::-1]
+
+    def _at(self, grid: NDArray, points: Array) -> NDArray:
+        """The entries of `grid` at `points` [m], [..., 2]; those of its border beyond it."""
+        cells = np.clip(self._cells(points), 0, np.array(grid.shape) - 1)
+        return np.asarray(grid[cells[..., 0], cells[..., 1]])
+
+    def clear(self, points: Array, sources: Array) -> Mask:
+        """Whether heat gets from M `sources` [m], [M, 2 or 3], to P `points` [m], [P, 2 or 3]: bool [P, M].
+
+        Nothing gets farther than FAR. What stands within NEAR of either end hides nothing: things stand by walls.
+        """
+        here, there = np.asarray(points)[:, :2], np.asarray(sources)[:, :2]
+        turns = np.arange(RAYS) * 2.0 * np.pi / RAYS
+        steps = np.arange(NEAR, FAR, self._cell)
+        rays = steps[:, None] * np.stack([np.cos(turns), np.sin(turns)], -1)[:, None]  # [R, S, 2]
+        away = here[:, None] - there
+        length = np.hypot(away[..., 0], away[..., 1])
+        number = np.rint(np.arctan2(away[..., 1], away[..., 0]) * RAYS / (2.0 * np.pi)).astype(np.int64) % RAYS
+        sight = np.empty((len(there), RAYS))
+        for row, place in enumerate(there):
+            hit = self._at(self.wall, place + rays)
+            sight[row] = np.where(hit.any(axis=1), steps[hit.argmax(axis=1)], FAR)
+        return np.asarray(length < sight[np.arange(len(there)), number] + np.where(length < FAR - NEAR, NEAR, 0.0))
+
+    def spread(self, start: Array, per_metre: float) -> Array:
+        """The least of `start`, [Y, X] of the window, and `per_metre` times the way from there, [Y, X].
+
+        Ways lead past walls, over cells that were seen; inf where none leads. Values of `start` are 0 or more, or inf.
+        """
+        open_floor = ~self.wall & ndimage.binary_dilation(self._seen, iterations=BORDER)
+        number = np.arange(open_floor.size).reshape(open_floor.shape)
+        ends, lengths = [], []
+        height, width = open_floor.shape
+        for y, x in SIDES:
+            a = number[: height - y, max(-x, 0) : width - max(x, 0)]
+            b = number[y:, max(x, 0) : width - max(-x, 0)]
+            both = open_floor.ravel()[a] & open_floor.ravel()[b]
+            ends.append((a[both], b[both]))
+            lengths.append(np.full(int(both.sum()), np.hypot(y, x) * self._cell * per_metre))
+        given = np.flatnonzero(np.isfinite(start.ravel()) & open_floor.ravel())
+        if not len(given):
+            return np.full(start.shape, np.inf)
+        first = open_floor.size  # a node before all others, from which each is as far as its value says
+        rows = np.concatenate([*(a for a, _ in ends), np.full(len(given), first)])
+        columns = np.concatenate([*(b for _, b in ends), given])
+        weight = np.concatenate([*lengths, start.ravel()[given] + 1e-9])
+        graph = sparse.csr_matrix((weight, (rows, columns)), shape=(first + 1, first + 1))
+        found = csgraph.dijkstra(graph, directed=False, indices=first)[:-1].reshape(start.shape)
+        return np.asarray(found, np.float64)
+
+    def at(self, grid: Array, points: Array) -> Array:
+        """The entries of a `grid` of the window, [Y, X], at `points` [m], [P, 2]."""
+        return np.asarray(self._at(grid, np.asarray(points, np.float64)), np.float64)

@@ -19,7 +19,7 @@ def small(seed: int) -> Problem:
     draw = np.random.default_rng(seed)
     damaged = np.where(draw.random(5) < 0.3, np.inf, draw.uniform(50, 1500, 5))
     travel = StaticTravel(draw.uniform(20, 200, (6, 6)))
-    return Problem(travel, draw.choice([1.0, 5.0, 20.0], 5).tolist(), damaged.tolist(), [60.0] * 5, [4.0] * 5, 800.0)
+    return Problem(travel, draw.choice([1.0, 5.0, 20.0], 5).tolist(), damaged.tolist(), [60.0] * 5, [4.0] * 5, 500.0)
 
 
 def score(problem: Problem, order: tuple[int, ...]) -> float | None:

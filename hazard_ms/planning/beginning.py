@@ -189,9 +189,12 @@ class _Search:
         """The problem that is left after a beginning, with the targets' own values."""
         ready = self._emptied(beginning)
         travel = self._travel.starting(self._measures.onward[beginning.steps[-1].measure])
-        left = replace(
-            self._problem, travel=travel, frame=ready.frame, damaged_at=beginning.whole.tolist(), holding=None
-        )
+        pick = list(self._problem.pick)
+        for step in beginning.steps:
+            for target in self._measures.measures[step.measure].closes:
+                pick[target] = self._problem.limit + 1.0  # never
+        whole = beginning.whole.tolist()
+        left = replace(self._problem, travel=travel, frame=ready.frame, damaged_at=whole, pick=pick, holding=None)
         return left if beginning.before is None else _without(left, beginning.before.target)
 
     def _faded(self, left: Problem) -> Problem:

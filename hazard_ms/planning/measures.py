@@ -30,6 +30,7 @@ class Measure:
     needs: int | None = None  # number of the measure that fetches the tool that must be in the hand; None: empty hand
     uses: float = 0.0  # frames of its charge that it takes from that tool
     charge: float = 0.0  # frames that the tool lasts that it fetches, and has in the hand afterwards; 0: no tool
+    closes: tuple[int, ...] = ()  # targets that nobody gets to any more once it is done: those behind a shut door
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "spared_until", tuple(np.array(self.spared_until, np.float64).tolist()))

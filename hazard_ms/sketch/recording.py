@@ -91,15 +91,18 @@ def ahead(env: Running, frames: int | None = None) -> Timeline:
 
     `frames`: how long, by default until the task's limit. Things in the hand stay there.
     """
-    now, length = int(env.world.frame[0]), env.task.max_frames
-    left = max(0, length - now) if frames is None else frames
-    episode = _copied(env)
-    course = _Course(episode, 1.0 / FREQUENCIES[env.physics][0])
+    left = max(0, env.task.max_frames - int(env.world.frame[0])) if frames is None else frames
+    return dataclasses.replace(course_of(env).run(left)[0], task=env.task.name, physics=env.physics)
+
+
+def course_of(env: Running, copies: int = 1) -> Course:
+    """The course of the one running episode of `env` from its present on, in equal `copies` without a simulator."""
+    course = Course(_copied(env, copies), 1.0 / FREQUENCIES[env.physics][0])
     if pushes(env.task.hazards):
         free = env.world.movable[0] & ~env.world.held[0] & ~env.world.away[0]
         past = recorded(env.task, env.physics, env.specs[0], int(env.world.chance.seed[0]))
-        course.drift = _drift(past, now, free)
-    return dataclasses.replace(course.run(left)[0], task=env.task.name, physics=env.physics)
+        course.drift = _drift(past, int(env.world.frame[0]), free)
+    return course
 
 
 def pushes(hazards: Sequence[Hazard]) -> bool:
@@ -122,29 +125,30 @@ def _laws() -> str:
     return hashlib.sha256(b"\0".join(sources)).hexdigest()
 
 
-class _Course:
-    """E episodes in which nobody acts, with or without simulators."""
+class Course:
+    """E episodes in which nobody acts, with or without simulators; those that drift do so alike."""
 
     def __init__(self, episode: Episode, frame_seconds: float) -> None:
         self.episode, self.world, self.frame_seconds = episode, episode.world, frame_seconds
         self.physics_step: Callable[[], None] | None = None  # the physics of one frame
         self.drift: Callable[[int], torch.Tensor] | None = None  # frame -> how far things then are from here [m]
+        self._first, self._start = int(self.world.frame[0]), self.world.position.clone()
 
     def run(self, frames: int) -> list[Timeline]:
         """Let `frames` pass, and return the timelines."""
         world, first = self.world, int(self.world.frame[0])
-        start = world.position.clone()
-        places, levels = [start], [self.episode.levels(world.position)]
+        places, levels = [world.position.clone()], [self.episode.levels(world.position)]
         for frame in range(1, frames + 1):
-            if self.drift is not None:
-                world.position[0] = start[0] + self.drift(first + frame)
-            self._frame()
+            self.advance(frame)
             if frame % STRIDE == 0:
                 places.append(world.position.clone())
                 levels.append(self.episode.levels(world.position))
         return [self._timeline(e, first, torch.stack(places), torch.stack(levels)) for e in range(world.num_envs)]
 
-    def _frame(self) -> None:
+    def advance(self, frame: int) -> None:
+        """Let one frame pass: the frame after the beginning with the number `frame`, from 1 on."""
+        if self.drift is not None:
+            self.world.position.copy_(self._start + self.drift(self._first + frame))
         if self.physics_step is not None:
             self.physics_step()
         self.episode.advance(self.frame_seconds)
@@ -189,15 +193,15 @@ def _flames(episode: Episode, e: int) -> tuple[NDArray[np.int32], NDArray[np.flo
     return np.zeros(0, np.int32), np.zeros((0, 2), np.float32)
 
 
-def _begun(task: Task, physics: str, world: World, seeds: Sequence[int]) -> _Course:
+def _begun(task: Task, physics: str, world: World, seeds: Sequence[int]) -> Course:
     """Episodes at frame 0."""
     episode, rows = Episode(world, task.hazards, task.safe_place), torch.arange(world.num_envs)
     episode.begin(rows, torch.tensor(list(seeds)))
     episode.begin_hazards(rows)
-    return _Course(episode, 1.0 / FREQUENCIES[physics][0])
+    return Course(episode, 1.0 / FREQUENCIES[physics][0])
 
 
-def _simulated(task: Task, physics: str, spec: SceneSpec, seed: int) -> _Course:
+def _simulated(task: Task, physics: str, spec: SceneSpec, seed: int) -> Course:
     """One episode at frame 0 in a simulator of its own, without a robot."""
     control, rate = FREQUENCIES[physics]
     scene = bare_scene.build(spec, rate=rate, loose=loosened(task.hazards, spec))
@@ -213,13 +217,16 @@ def _simulated(task: Task, physics: str, spec: SceneSpec, seed: int) -> _Course:
     return course
 
 
-def _copied(env: Running) -> Episode:
-    """A copy of the episode of `env` as it is now, without its simulator."""
+def _copied(env: Running, copies: int) -> Episode:
+    """Equal `copies` of the episode of `env` as it is now, without its simulator."""
     real = env.world
-    world = building.make_world(env.specs, real.device)
+    world = building.make_world(env.specs * copies, real.device)
     world.agent_build = real.agent_build
-    episode = Episode(world, env.task.hazards, env.task.safe_place)
-    snapshot.restore(episode, snapshot.save(env.episode), torch.arange(world.num_envs, device=real.device))
+    episode, rows = Episode(world, env.task.hazards, env.task.safe_place), torch.arange(copies, device=real.device)
+    saved = {
+        name: {k: v.expand(copies, -1) for k, v in part.items()} for name, part in snapshot.save(env.episode).items()
+    }
+    snapshot.restore(episode, saved, rows)
     for name in ("position", "rotation", "velocity", "angular_velocity", "agent_position", "agent_heading"):
         getattr(world, name).copy_(getattr(real, name))
     return episode

@@ -63,6 +63,15 @@ def test_what_was_damaged_before_the_measure_is_done_stays_damaged() -> None:
     assert at == pytest.approx([10.0 * 0.05 + 10.0 * 0.6, 2 * 10.0 * 0.05])
 
 
+def test_what_is_behind_a_shut_door_is_left_there() -> None:
+    """With 1000 frames both targets could be carried off afterwards, but for the one behind the door."""
+    travel, ways = on_a_line([2.0, -2.0], [-1.0])
+    given = problem(travel, [10.0, 8.0], [300.0, 400.0])
+    course = best_course(given, Measures([Measure("shut", 50.0, [INF, INF], closes=(1,))], **ways))
+    assert course.value == pytest.approx(18.0 * 0.5 + 10.0 * 0.1)
+    assert [r.target for r in course.plan.rescues] == [0]
+
+
 def test_a_rescue_comes_before_the_measure_where_there_is_time_for_both() -> None:
     """A target at 0.5 m burns at 110, safe at 100; the one at 6 m would burn at 500, too late to be carried off."""
     travel, ways = on_a_line([0.5, 6.0], [1.0])

@@ -16,9 +16,9 @@ from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks.rescue import rescue
 
 DOORS = ("open", "shut")
-# frames from one rise of the water by 1 cm to the next in `paper`: a home has four times the floor of a room, for which
-# it is 10 (docs/physics.md 1.2) [ours]
-RISES_EVERY = 40
+# Frames in which water of `paper` rises by a step: four times those in rooms, since homes have four times the floor
+# (72 to 120 m2) for the same inflow [ours]
+EVERY = 40
 
 
 def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
@@ -28,9 +28,8 @@ def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
 
 def hazard_house_flood(physics: str = "paper", severity: str = USUAL) -> Task:
     """The task HazardHouseFlood-v1 with the physics of a preset. Raises ValueError for unknown names."""
-    made = flood(physics, severity)
-    made = dataclasses.replace(made, every=RISES_EVERY) if physics == "paper" else made
-    return _in_homes([made], "put_on")
+    water = flood(physics, severity)
+    return _in_homes([dataclasses.replace(water, every=EVERY) if physics == "paper" else water], "put_on")
 
 
 def _in_homes(hazards: Sequence[Hazard], *mitigations: str) -> Task:

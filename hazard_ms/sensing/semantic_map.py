@@ -70,7 +70,7 @@ class SemanticMap:
         self.loose = np.asarray(loose, dtype=bool)
         self._stood = ~self.loose  # at the start: a copy, since furniture may float off
         shape = (cells, cells)
-        self._firm, self._light = np.zeros((2, *shape), np.float32)  # heights of what stays, and of what can be moved [m]
+        self._firm, self._light = np.zeros((2, *shape), np.float32)  # heights of what stays, of what can be moved [m]
         self.explored = np.zeros(shape, bool)
         self.object_id = np.full(shape, -1, np.int32)
         self._seen_at = np.full(shape, -1, np.int32)  # frame in which it was seen there

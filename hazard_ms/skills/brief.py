@@ -44,6 +44,7 @@ class Brief:
     mitigations: tuple[str, ...] = ()  # verbs of the task beyond the six of the benchmark
     damaged_share: float = DAMAGED_SHARE  # of its value that a target counts when it is rescued damaged
     several_rooms: bool = False  # whether doors divide the place
+    averted: bool = False  # whether the score `averted` counts (docs/benchmark.md 4.3)
 
 
 def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
@@ -62,6 +63,7 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
         random_seed=random_seed(int(base.world.chance.seed[0])),
         mitigations=base.task.mitigations,
         several_rooms=base.task.several_rooms,
+        averted=base.task.averted,
     )
 
 

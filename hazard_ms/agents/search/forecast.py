@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hazard_ms.agents.search.fire_watch import FireWatch
 from hazard_ms.agents.search.floor_plan import FloorPlan
 from hazard_ms.agents.search.house_fire import HouseFire
-from hazard_ms.agents.search.house_water import HouseWater
+from hazard_ms.agents.search.house_water import HouseWater, lost_at
 from hazard_ms.planning.belief import WaterPlane, extended, last_whole
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
@@ -71,6 +71,8 @@ class Forecast:
         if burning is not None:
             return burning
         harms = partial(_harms, self._hazards[number], target, float(sighting.position[2]))
+        if isinstance(self._water.get(number), HouseWater):
+            harms = partial(_reaches, lost_at(target, sighting))
         return last_whole(harms, self._frames, self._levels(number, sighting))
 
     def _levels(self, number: int, sighting: Sighting) -> Array:
@@ -92,6 +94,10 @@ def _burning(watch: FireWatch | HouseFire, decision: Decision, number: int, with
 
 def _harms(hazard: HazardBrief, target: Target, height: float, level: float) -> bool:
     return bool(hazard.threatens(target, level, height))
+
+
+def _reaches(least: float, level: float) -> bool:
+    return level >= least
 
 
 def _water(seen: SemanticMap, number: int) -> WaterPlane:

@@ -44,6 +44,7 @@ class Seat:
     flames: float  # how many there were when last seen
     seen: float  # frame of that
     cells: NDArray[np.bool_]  # of the window of all flames, [Y, X]
+    flames_at: Array  # where there may be flames [m], [F, 2]
 
 
 class HouseFire:
@@ -101,9 +102,7 @@ class HouseFire:
         y, x = y[some], x[some]
         points = np.column_stack([seen.centre_of(y, x), height[y, x]])
         blocked = seen.centre_of(*np.nonzero(height >= FURNITURE))
-        flames = found(
-            points, levels[y, x].astype(np.float64), self._things, blocked, FARTHEST, self._plan.clear
-        )
+        flames = found(points, levels[y, x].astype(np.float64), self._things, blocked, FARTHEST, self._plan.clear)
         if flames is None:
             return None
         nearest = ((flames.places[:, None, :2] - points[:, :2]) ** 2).sum(axis=-1).argmin(axis=1)
@@ -123,9 +122,10 @@ class HouseFire:
             if share.sum() < WHOLE:
                 continue
             y, x = np.nonzero(share)
-            middle = flames.corner + CELL * (np.stack([x, y], -1) * share[y, x, None]).sum(0) / share.sum()
+            places = flames.corner + CELL * np.stack([x, y], -1)
+            middle = (places * share[y, x, None]).sum(0) / share.sum()
             seen = float(flames.since[y, x].max())
-            made.append(Seat((float(middle[0]), float(middle[1])), float(share.sum()), seen, cells))
+            made.append(Seat((float(middle[0]), float(middle[1])), float(share.sum()), seen, cells, places))
         return tuple(made)
 
     def whole_until(self, without: Sequence[int] = ()) -> dict[int, float]:

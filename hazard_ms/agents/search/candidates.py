@@ -1,0 +1,151 @@
+"""What can be done about the hazards of a home, on what was seen: extinguishers fetched, fires put out, doors shut.
+
+Limits: fires that were never seen are not counted; doors are shut on water alone, since in fires of the paper there is
+a fire in most rooms, and what burns behind a shut door burns on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hazard_ms.agents.search.floor_plan import FloorPlan
+from hazard_ms.agents.search.forecast import FIRE, WATER, Forecast
+from hazard_ms.agents.search.house_fire import HouseFire, Seat
+from hazard_ms.agents.search.memory import Memory
+from hazard_ms.agents.search.outlook import Outlook, skill_frames
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import PICK_UP, Action, Decision, Tool
+from hazard_ms.skills.motor.walking import ARRIVED
+from hazard_ms.spec.extinguishers import EXTINGUISHERS
+
+EXTINGUISH, SHUT = "extinguish", "shut"
+HOT = 100.0  # level from which a thing can be named to the skill: boiling water [C]
+AROUND = 0.9  # distance from a thing within which the skill finds flames, less the error of where they are [m] [ours]
+JET, PINNED = 40.0, 90.0  # frames of the jet that a flame takes, and of a fire until the jet is open [ours]
+DOUBLING = 280.0  # frames in which flames become twice as many: 41 after 1,500 frames [measured]
+SHUTTING = 230.0  # frames of shutting a door from before it [ours]
+TRIES = 2  # failures of one measure, after which it is given up [ours]
+STANDS = 0.7  # distance from a door at which it is shut [m] [ours]
+JET_WAY = 2.5  # distance from flames at which a jet is opened [m] [ours]
+LARGE = 2.0  # charges that a fire may take and still be fought with one [ours]
+MOST_DOORS = 6  # that are weighed at a time: those that close off most [ours]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """Something that can be done: its first action, where, and what it is good for."""
+
+    name: str
+    action: Action
+    place: tuple[float, float]  # [m]
+    near: float  # distance from there at which it is begun [m]
+    frames: float
+    spares: Sequence[float]  # frame until which each known target of the outlook is whole then
+    seat: int = -1  # number of the fire that it puts out
+    tool: str = ""  # name of the tool that it needs
+    uses: float = 0.0  # frames of the tool's charge
+    charge: float = 0.0  # frames that the tool lasts that it fetches
+    closes: tuple[int, ...] = ()  # known targets that cannot be fetched any more
+
+
+def candidates(
+    brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, put_down: dict[str, int]
+) -> list[Candidate]:
+    """All that can be done about the hazards; `put_down` says how often each tool was put down."""
+    names = [hazard.name for hazard in brief.hazards]
+    made = []
+    if EXTINGUISH in brief.mitigations and FIRE in names:
+        made += _fires(brief, decision, memory, ahead, names.index(FIRE), put_down)
+    if SHUT in brief.mitigations and WATER in names and decision.held is None:
+        made += _doors(brief, decision, memory, ahead)
+    return made
+
+
+def _fires(
+    brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, number: int, put_down: dict[str, int]
+) -> list[Candidate]:
+    fetches = [_fetch(brief, decision, tool, ahead) for tool in decision.tools if _usable(decision, tool, put_down)]
+    fetches = [one for one in fetches if memory.failures.get(str(one.action.target), 0) < TRIES]
+    made: list[Candidate] = []
+    for k, seat in enumerate(memory.house.seats if fetches else ()):
+        name = _named(decision, memory, seat, number)
+        if name is None:
+            continue
+        spares = _whole(brief, decision, memory.house, ahead, without=(k,))
+        flames = max(seat.flames, 1.0) * 2.0 ** ((decision.frame - seat.seen) / DOUBLING)
+        for fetch in fetches:
+            uses, action = min(JET * flames, fetch.charge), Action(EXTINGUISH, name)
+            if JET * flames > LARGE * fetch.charge:
+                continue  # far more than it can put out
+            what = f"put out the fire at {name}"
+            one = Candidate(what, action, seat.place, JET_WAY, PINNED + 1.5 * uses, spares, k, fetch.name, uses)
+            made.append(one)
+    return [*fetches, *made]
+
+
+def _usable(decision: Decision, tool: Tool, put_down: dict[str, int]) -> bool:
+    """Whether a tool is in the hand, or an empty hand can take it, and it still holds something."""
+    there = tool.held or Action(PICK_UP, tool.name) in decision.available
+    return bool(tool.kind) and tool.left > 0.02 and there and put_down.get(tool.name, 0) < TRIES
+
+
+def _fetch(brief: Brief, decision: Decision, tool: Tool, ahead: Outlook) -> Candidate:
+    seen = decision.map.objects.get(decision.index(tool.name))
+    place = decision.agent_position if seen is None or tool.held else seen.position[:2].tolist()
+    charge = EXTINGUISHERS[tool.kind].seconds * tool.left / brief.frame_seconds
+    near = ARRIVED + (0.0 if seen is None else seen.radius)
+    frames = skill_frames(brief.robot).pick
+    nothing = [0.0] * len(ahead.targets)
+    action = Action(PICK_UP, tool.name)
+    return Candidate(tool.name, action, (place[0], place[1]), near, frames, nothing, charge=charge)
+
+
+def _named(decision: Decision, memory: Memory, seat: Seat, number: int) -> str | None:
+    """The hot thing by which a fire can be named: the one nearest to its flames; None where none is near enough."""
+    best, name = AROUND, None
+    for index, seen in decision.map.objects.items():
+        thing = decision.names[index]
+        if len(seen.levels) <= number or seen.levels[number] < HOT or thing == decision.held:
+            continue
+        if memory.failures.get(str(Action(EXTINGUISH, thing)), 0) >= TRIES:
+            continue
+        away = float(np.hypot(*(seat.flames_at - seen.position[:2]).T).min())
+        if away < best:
+            best, name = away, thing
+    return name
+
+
+def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook) -> list[Candidate]:
+    made = []
+    floor = np.isfinite(FloorPlan(decision.map).ways_from(decision.agent_position)).sum()
+    for door in decision.openings:
+        action = Action(SHUT, door.name)
+        if door.kind != "door" or action not in decision.available or memory.failures.get(str(action), 0) >= TRIES:
+            continue
+        plan = FloorPlan(decision.map, (door,))
+        away = plan.ways_from(decision.agent_position)
+        if np.isfinite(away).sum() < 0.5 * floor:
+            continue  # it would lock itself in
+        targets = [decision.map.objects.get(decision.index(name)) for name in ahead.targets]
+        closes = tuple(
+            k for k, seen in enumerate(targets) if seen is not None and not plan.reached(away, seen.position[:2])
+        )
+        if closes:
+            spares = _whole(brief, decision, memory.house, ahead, shut=(door,))
+            x, y, _ = door.position
+            one = Candidate(f"shut {door.name}", action, (x, y), STANDS, SHUTTING, spares, closes=closes)
+            made.append(one)
+    return sorted(made, key=lambda one: -len(one.closes))[:MOST_DOORS]
+
+
+def _whole(brief: Brief, decision: Decision, fire: HouseFire, ahead: Outlook, **done: Sequence) -> list[float]:
+    """The frame until which each target of the outlook is whole if that is done: see `Forecast`."""
+    forecast = Forecast(brief, decision, fire, **done)
+    made = []
+    for name in ahead.targets:
+        seen = decision.map.objects.get(decision.index(name))
+        made.append(float("inf") if seen is None else forecast.whole_until(decision.target(name), seen))
+    return made

@@ -85,14 +85,11 @@ class FloorPlan:
         turns = np.arange(RAYS) * 2.0 * np.pi / RAYS
         steps = np.arange(NEAR, FAR, self._cell)
         rays = np.stack([np.sin(turns), np.cos(turns)])[..., None] * (steps / self._cell)  # y, x [cells], [2, R, S]
-        size, wall = np.array(self.wall.shape), self.wall
+        size, wall = self.wall.shape, self.wall
         made = np.empty((len(places), RAYS))
-        for row, (x, y) in enumerate((places - self._origin) / self._cell):
-            cy, cx = (
-                np.clip((at + ray).astype(np.int32), 0, most - 1)
-                for at, ray, most in zip((y, x), rays, size, strict=True)
-            )
-            hit = wall[cy, cx]
+        for row, place in enumerate((places - self._origin)[:, ::-1] / self._cell):
+            y, x = (place[:, None, None] + rays).astype(np.int32)
+            hit = wall[np.clip(y, 0, size[0] - 1), np.clip(x, 0, size[1] - 1)]
             made[row] = np.where(hit.any(axis=1), steps[hit.argmax(axis=1)] + NEAR, FAR)
         return made
 

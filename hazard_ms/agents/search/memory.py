@@ -103,7 +103,7 @@ def after(failures: int) -> float:
 
 def _seen(decision: Decision, name: str) -> Place | None:
     """The place where a thing was seen last; None if it is not on the map."""
-    sighting = decision.map.objects.get(decision.index(name))
+    sighting = decision.map.objects.get(decision.index(name)) if name in decision.names else None  # a door is no thing
     return None if sighting is None else (float(sighting.position[0]), float(sighting.position[1]))
 
 

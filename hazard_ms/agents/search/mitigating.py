@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.search.candidates import EXTINGUISH, Candidate, candidates
+from hazard_ms.agents.search.forecast import WATER
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.search.walks import frames_between
@@ -28,8 +29,6 @@ from hazard_ms.skills.motor.walking import ARRIVED
 OPEN = "open"
 MOST_LABELS, BEAM = 400, 20  # of the search for the rescues after measures [ours]: a tenth of a second
 PUT_DOWN = 40.0  # frames of putting down a tool [ours]
-UNSEEN_SHARE = 0.07  # of the value of unseen targets that a fire burns: four burn 0.3 of all [measured: 0.21 to 0.3]
-UNSEEN_AFTER = 600.0  # frames after which it does [ours]
 
 
 class Mitigator:
@@ -70,7 +69,7 @@ class Mitigator:
             return Action(DROP)
         if first is None:
             return None
-        self._aim = first.place if first.seat >= 0 else None
+        self._aim = first.place if first.action.verb == EXTINGUISH else None
         if first.charge > 0.0 and decision.walked_up_to != first.action.target:
             return Action(WALK_TO, first.action.target)
         return first.action
@@ -81,9 +80,9 @@ class Mitigator:
         useful = [one for one in found if one.charge == 0.0]
         if not useful:
             return None
-        seats = sorted({one.seat for one in useful if one.seat >= 0})
-        problem = _with_unseen(ahead.plain, ahead.frames, ahead.unseen * UNSEEN_SHARE, len(seats))
-        measures = _measures(decision, ahead, found, seats, held, self._brief.radius)
+        unseen = {one.guards: (ahead.unseen * one.unseen, one.unseen_at) for one in useful if one.unseen > 0.0}
+        problem = _with_unseen(ahead.plain, ahead.frames, list(unseen.values()))
+        measures = _measures(decision, ahead, found, list(unseen), held, self._brief.radius)
         course = best_course(problem, measures, most_labels=MOST_LABELS, beam=BEAM)
         if not course.steps or course.before is not None:
             return None
@@ -93,6 +92,8 @@ class Mitigator:
 
     def opening(self, decision: Decision) -> Action | None:
         """A door to open where nothing else is left to do, each once; None where there is none."""
+        if any(hazard.name == WATER for hazard in self._brief.hazards):
+            return None  # it would let water in
         names = [a for a in decision.available if a.verb == OPEN and a.target not in self._opened]
         where = {o.name: o for o in decision.openings if o.kind == "door" and o.open < 0.9}
         doors = [a for a in names if a.target in where]
@@ -105,23 +106,22 @@ class Mitigator:
         return best
 
 
-def _with_unseen(problem: Problem, frames: NDArray[np.float64], value: float, fires: int) -> Problem:
-    """The same problem with a target more for each fire, which nobody gets to: what it burns that was never seen.
+def _with_unseen(problem: Problem, frames: NDArray[np.float64], unseen: Sequence[tuple[float, float]]) -> Problem:
+    """The same problem with targets more that nobody gets to: the value of what is `unseen`, and when it is lost.
 
     `frames`: of the ways between the goals of the problem and the start, [G + 1, G + 1].
     """
-    goals = len(problem.values)
-    table = np.full((goals + fires + 1,) * 2, np.inf)
-    kept = [*range(goals), goals + fires]
+    goals, more = len(problem.values), len(unseen)
+    table = np.full((goals + more + 1,) * 2, np.inf)
+    kept = [*range(goals), goals + more]
     table[np.ix_(kept, kept)] = frames
-    soon = min(problem.frame + UNSEEN_AFTER, max(problem.limit - 1.0, 0.0))
     return replace(
         problem,
         travel=StaticTravel(table),
-        values=[*problem.values, *[value] * fires],
-        damaged_at=[*problem.damaged_at, *[soon] * fires],
-        pick=[*problem.pick, *[1.0] * fires],
-        drop=[*problem.drop, *[1.0] * fires],
+        values=[*problem.values, *(value for value, _ in unseen)],
+        damaged_at=[*problem.damaged_at, *(at for _, at in unseen)],
+        pick=[*problem.pick, *[1.0] * more],
+        drop=[*problem.drop, *[1.0] * more],
     )
 
 
@@ -129,7 +129,7 @@ def _measures(
     decision: Decision,
     ahead: Outlook,
     found: Sequence[Candidate],
-    seats: Sequence[int],
+    unseen: Sequence[str],
     held: Tool | None,
     radius: float,
 ) -> Measures:
@@ -150,10 +150,14 @@ def _measures(
     fetched = {one.name: k for k, one in enumerate(found) if one.charge > 0.0}
     made = []
     for one in found:
-        spares = [*one.spares, *[0.0] * len(ahead.lookouts), *(np.inf if one.seat == k else 0.0 for k in seats)]
+        spares = [
+            *one.spares,
+            *[0.0] * len(ahead.lookouts),
+            *(np.inf if one.guards == name else 0.0 for name in unseen),
+        ]
         needs = fetched[one.tool] if one.tool else None
         made.append(Measure(one.name, one.frames, spares, needs, one.uses, one.charge, one.closes))
-    unreachable = np.full((len(seats), len(found)), np.inf)
+    unreachable = np.full((len(unseen), len(found)), np.inf)
     return Measures(
         made,
         to=np.vstack([frames[:goals, first:start], unreachable, frames[start:, first:start]]),

@@ -10,13 +10,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from hazard_ms.agents.search.floor_plan import FloorPlan
+from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
 from hazard_ms.agents.search.forecast import FIRE, STRIDE, WATER, Forecast
 from hazard_ms.agents.search.house_fire import HouseFire, Seat
 from hazard_ms.agents.search.house_water import HouseWater
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook, skill_frames
+from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import PICK_UP, Action, Decision, Tool
 from hazard_ms.skills.motor.walking import ARRIVED
@@ -38,8 +40,10 @@ UNSEEN_AFTER = 600.0  # frames after which it does [ours]
 ROOM_SHARE = 0.07  # [ours]
 LOOKED = 0.3  # of this share where it has looked around in there [ours]
 AWASH = 0.05  # level at a door from which the room behind it is counted as wet [m] [ours]
-MOST_OF_IT = 0.5  # share of the floor that was seen from which it must not be cut off [ours]
+BEHIND = 0.6  # distance from a door at which it is told whether it stays dry behind it [m] [ours]
 MOST_DOORS = 6  # that are weighed at a time: those that close off most [ours]
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -131,32 +135,39 @@ def _named(decision: Decision, memory: Memory, seat: Seat, number: int) -> str |
 
 
 def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, number: int) -> list[Candidate]:
-    made = []
-    seen, now = decision.map, FloorPlan(decision.map)
-    floor = np.isfinite(now.ways_from(decision.agent_position)).sum()
-    water = HouseWater(seen, number, now)
+    seen, shut = decision.map, shut_doors(decision.openings)
+    water = HouseWater(seen, number, FloorPlan(seen, shut))
     frames = np.arange(decision.frame, decision.max_frames, STRIDE, dtype=np.float64)
     goals = [seen.objects.get(decision.index(ahead.name(k))) for k in range(len(ahead.targets) + len(ahead.lookouts))]
+    made = []
     for door in decision.openings:
         action = Action(SHUT, door.name)
         if door.kind != "door" or action not in decision.available or memory.failures.get(str(action), 0) >= TRIES:
             continue
-        plan = FloorPlan(seen, (door,))
+        plan = FloorPlan(seen, (*shut, door))
         away = plan.ways_from(decision.agent_position)
-        if np.isfinite(away).sum() < MOST_OF_IT * floor or not (np.isfinite(away) & water.seen).any():
-            continue  # it would lock itself in: it shuts doors from the side of the water
+        others = [plan.reached(away, np.array(o.position)) for o in decision.openings if o not in (door, *shut)]
+        if sum(others) < 0.5 * len(others):
+            continue  # it would lock itself in
         closes = [k for k, thing in enumerate(goals) if thing is not None and not plan.reached(away, thing.position)]
-        x, y, _ = door.position
-        wet = (water.at([(x, y)], frames)[:, 0] >= AWASH).argmax()
+        wet = (water.at([door.position[:2]], frames)[:, 0] >= AWASH).argmax()
         inside = any(not plan.reached(away, np.array(place)) for place in memory.looks)
-        share = ROOM_SHARE * (LOOKED if inside else 1.0) * bool(wet > 0)
+        keeps = wet > 0 and _keeps_dry(HouseWater(seen, number, plan), plan, away, door, frames)
+        share = ROOM_SHARE * (LOOKED if inside else 1.0) if keeps else 0.0
         if closes or share:
             spares = _whole(brief, decision, memory.house, ahead, shut=(door,))
+            x, y, _ = door.position
             guards = door.name, share, float(frames[wet])
-            made.append(
-                Candidate(f"shut {door.name}", action, (x, y), STANDS, SHUTTING, spares, *guards, closes=tuple(closes))
-            )
+            what = f"shut {door.name}"
+            made.append(Candidate(what, action, (x, y), STANDS, SHUTTING, spares, *guards, closes=tuple(closes)))
     return sorted(made, key=lambda one: -one.unseen - len(one.closes))[:MOST_DOORS]
+
+
+def _keeps_dry(water: HouseWater, plan: FloorPlan, away: Array, door: KnownOpening, frames: Array) -> bool:
+    """Whether it stays dry just behind a `door` once it is shut, where `away` does not lead; `water`: that to come."""
+    beside = np.array(door.position[:2]) + BEHIND * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
+    behind = [point for point in beside if plan.seen_at(point) and not plan.reached(away, point)]
+    return bool(behind) and bool(water.at(behind, frames).max() < AWASH)
 
 
 def _whole(brief: Brief, decision: Decision, fire: HouseFire, ahead: Outlook, **done: Sequence) -> list[float]:

@@ -20,7 +20,9 @@ TALL = 1.8  # height from which a cell is wall [m] [ours]: higher than furniture
 FAR = 6.0  # distance beyond which no heat is asked for [m] [ours]: longer than most rooms
 NEAR = 0.15  # of the ends of a straight line, in which walls do not count [m] [ours]
 RAYS = 360  # directions in which sight is told [ours]: 0.1 m apart at 6 m
-BORDER = 3  # unseen cells around those that were seen through which water may come [ours]
+BORDER = 3  # cells of the window around those that were seen
+GAP = 2  # unseen cells between seen ones, on either side of their middle, through which ways lead [ours]
+AJAR = 0.05  # share of its width up to which a door is shut [ours]
 SIDES = ((0, 1), (1, 0), (1, 1), (1, -1))  # half of the eight neighbours of a cell, (y, x)
 
 Array = NDArray[np.float64]
@@ -98,7 +100,7 @@ class FloorPlan:
 
         Ways lead past walls, over cells that were seen; inf where none leads. Values of `start` are 0 or more, or inf.
         """
-        open_floor = ~self.wall & ndimage.binary_dilation(self._seen, iterations=BORDER)
+        open_floor = ~self.wall & ndimage.binary_closing(self._seen, np.ones((3, 3), bool), iterations=GAP)
         number = np.arange(open_floor.size).reshape(open_floor.shape)
         ends, lengths = [], []
         height, width = open_floor.shape
@@ -119,6 +121,10 @@ class FloorPlan:
         found = csgraph.dijkstra(graph, directed=False, indices=first)[:-1].reshape(start.shape)
         return np.asarray(found, np.float64)
 
+    def seen_at(self, point: Array) -> bool:
+        """Whether the cell of a `point` [m], [2], was seen, and is no wall."""
+        return bool(self._at(self._seen & ~self.wall, np.asarray(point)[None])[0])
+
     def ways_from(self, place: tuple[float, float]) -> Array:
         """Lengths of the ways past walls from a `place` [m] to each cell of the window [m], [Y, X]; inf: no way."""
         start = np.full(self.wall.shape, np.inf)
@@ -134,3 +140,8 @@ class FloorPlan:
     def at(self, grid: Array, points: Array) -> Array:
         """The entries of a `grid` of the window, [Y, X], at `points` [m], [P, 2]."""
         return np.asarray(self._at(grid, np.asarray(points, np.float64)), np.float64)
+
+
+def shut_doors(openings: Sequence[KnownOpening]) -> tuple[KnownOpening, ...]:
+    """The doors that were shut when last seen: the map does not show a leaf that nobody looked at since it moved."""
+    return tuple(o for o in openings if o.kind == "door" and o.open <= AJAR and not o.broken)

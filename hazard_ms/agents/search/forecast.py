@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.search.fire_watch import FireWatch
-from hazard_ms.agents.search.floor_plan import FloorPlan
+from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
 from hazard_ms.agents.search.house_fire import HouseFire
 from hazard_ms.agents.search.house_water import HouseWater, lost_at
 from hazard_ms.planning.belief import WaterPlane, extended, last_whole
@@ -45,7 +45,7 @@ class Forecast:
         self._hazards = brief.hazards
         self._frames = np.arange(decision.frame, decision.max_frames + STRIDE, STRIDE, dtype=np.float64)
         self._water: dict[int, WaterPlane | HouseWater] = {
-            number: HouseWater(decision.map, number, FloorPlan(decision.map, shut))
+            number: HouseWater(decision.map, number, FloorPlan(decision.map, (*shut_doors(decision.openings), *shut)))
             if brief.several_rooms
             else _water(decision.map, number)
             for number, hazard in enumerate(brief.hazards)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from hazard_ms.agents.search.fire_watch import FURNITURE, MOST_POINTS, WARM, things_of
-from hazard_ms.agents.search.floor_plan import FloorPlan
+from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
 from hazard_ms.planning.creeping_fire import CELL, STEP, Flames, Things, burning_from, found
 from hazard_ms.skills.decision import Decision
 
@@ -78,7 +78,11 @@ class HouseFire:
             return
         self._seen, self._known = seen, {}
         self._indices, self._things = indices, self._cooled(decision, things)
-        self._plan, self._now, self._end = FloorPlan(decision.map), decision.frame, decision.max_frames
+        self._plan, self._now, self._end = (
+            FloorPlan(decision.map, shut_doors(decision.openings)),
+            decision.frame,
+            decision.max_frames,
+        )
         self._flames = self._found(decision, levels, warm)
         self.seats = self._seats()
 

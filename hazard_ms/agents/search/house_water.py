@@ -45,7 +45,6 @@ class HouseWater:
             room, _ = ndimage.label(~plan.wall, np.ones((3, 3)))
             fed = np.unique(room[wet & (drop <= max(AT_SOURCE, float(drop.min())))])
             drop = np.where(np.isin(room, fed), drop, np.inf)
-        self.seen = wet  # where water was seen, [Y, X] of the plan's window
         self._plan, self._drop = plan, plan.spread(drop, SLOPE)
         dry = known & (level <= 0.0)
         self._drop = np.where(dry, np.maximum(self._drop, self.rise * frame), self._drop)

@@ -1,4 +1,4 @@
-"""What can be done about the hazards of a home, on what was seen: extinguishers fetched, fires put out, doors shut.
+"""Lists what can be done about the hazards of a home: extinguishers to fetch, fires to put out, doors to shut.
 
 Limits: fires that were never seen are not counted; doors are shut on water alone, since in fires of the paper there is
 a fire in most rooms, and what burns behind a shut door burns on.

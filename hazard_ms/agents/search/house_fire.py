@@ -78,11 +78,7 @@ class HouseFire:
             return
         self._seen, self._known = seen, {}
         self._indices, self._things = indices, self._cooled(decision, things)
-        self._plan, self._now, self._end = (
-            FloorPlan(decision.map, shut_doors(decision.openings)),
-            decision.frame,
-            decision.max_frames,
-        )
+        self._plan, self._end = FloorPlan(decision.map, shut_doors(decision.openings)), decision.max_frames
         self._flames = self._found(decision, levels, warm)
         self.seats = self._seats()
 

@@ -60,7 +60,7 @@ def thing(kind: str, height: float = 0.1) -> tuple[Target, Sighting]:
 
 
 def test_a_thing_is_lost_when_it_is_half_under_water_or_floats() -> None:
-    """A phone sinks and is soaked at half its height; a banana, waterproof, floats at 0.95 of it; a key does neither."""
+    """A phone is soaked at half its height; a banana, waterproof, floats at 0.95 of it; a key does neither."""
     assert lost_at(*thing("phone")) == pytest.approx(0.05)
     assert lost_at(*thing("banana")) == pytest.approx(0.095)
     assert lost_at(*thing("throw_pillow")) == pytest.approx(0.01)

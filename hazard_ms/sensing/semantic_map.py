@@ -74,8 +74,7 @@ class SemanticMap:
         self.explored = np.zeros(shape, bool)
         self.object_id = np.full(shape, -1, np.int32)
         self._seen_at = np.full(shape, -1, np.int32)  # frame in which it was seen there
-        self.levels = np.full((hazards, *shape), np.nan, np.float32)
-        self.told_at = np.full(shape, -1, np.int32)
+        self.levels, self.told_at = np.full((hazards, *shape), np.nan, np.float32), np.full(shape, -1, np.int32)
         self.objects: Mapping[int, Sighting] = {}
         self.frame, self._frozen = -1, False  # frame of the last update; whether it can be written to no more
 
@@ -220,8 +219,7 @@ class SemanticMap:
     def mark_free(self, position: tuple[float, float], radius: float) -> None:
         """Mark the floor under the agent as free, at `position` [m] with a footprint of `radius` [m]."""
         reach = int(np.ceil(radius / self.cell))
-        cy, cx = self.cell_of(position)
-        size = len(self.explored)
+        (cy, cx), size = self.cell_of(position), len(self.explored)
         y, x = np.mgrid[max(0, cy - reach) : min(size, cy + reach + 1), max(0, cx - reach) : min(size, cx + reach + 1)]
         far = np.hypot(*np.moveaxis(self.centre_of(y, x) - position, -1, 0))
         y, x = y[far <= radius], x[far <= radius]

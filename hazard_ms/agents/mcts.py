@@ -98,15 +98,21 @@ class Mcts(Searcher):
     """Searches the believed rest of the rescue at each decision, and pursues the goal that simulations rate best."""
 
     def __init__(
-        self, simulations: int = SIMULATIONS, search: float = 1.0, give_up: int = GIVE_UP, belief: float = 1.0
+        self,
+        simulations: int = SIMULATIONS,
+        search: float = 1.0,
+        give_up: int = GIVE_UP,
+        belief: float = 1.0,
+        mitigate: bool = True,
     ) -> None:
         """Choose how long it searches.
 
         `simulations`: of each decision; `search`: share of what may be found by searching that counts; `give_up`:
-        failures after which a thing is given up; `belief`: share of the doubts about what things are that counts.
+        failures after which a thing is given up; `belief`: share of the doubts about what things are that counts;
+        `mitigate`: whether it shuts doors and puts out fires where that averts more than rescues do.
         Raises ValueError unless `search` and `belief` are shares and the others are positive whole numbers.
         """
-        super().__init__(Weights(search=search, belief=belief), REACH, give_up)
+        super().__init__(Weights(search=search, belief=belief), REACH, give_up, mitigate)
         self._simulations = whole(simulations, 1, MOST_SIMULATIONS, "simulations")
 
     def reset(self, brief: Brief) -> None:

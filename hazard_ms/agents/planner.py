@@ -12,6 +12,7 @@ from hazard_ms.agents.search.searcher import GIVE_UP, REACH, First, Searcher
 from hazard_ms.planning.orienteering import solve
 
 MOST_LABELS = 20_000  # of the exact search: half a second [ours]
+MOST_IN_HOMES = 3_000  # where values differ little by the aim `averted`, so that a proof takes long [ours]
 BEAM = 300  # labels of a layer beyond that [ours]
 SHOWN = 4  # goals of a plan that the note names [ours]
 
@@ -28,6 +29,7 @@ class Planner(Searcher):
         reach: float = REACH,
         give_up: int = GIVE_UP,
         belief: float = 1.0,
+        mitigate: bool = True,
     ) -> None:
         """Choose how it weighs things.
 
@@ -35,14 +37,15 @@ class Planner(Searcher):
         a target loses if it is saved at the last frame; `search`: share of what may be found by searching that counts;
         `caution`: from 0, where plans count on usual durations, to 1, where they leave time for what goes wrong;
         `reach`: length of the way from which a target is picked up without walking up to it first [m]; `give_up`:
-        failures after which a thing is given up; `belief`: share of the doubts about what things are that counts.
+        failures after which a thing is given up; `belief`: share of the doubts about what things are that counts;
+        `mitigate`: whether it shuts doors and puts out fires where that averts more than rescues do.
         Raises ValueError for numbers out of range.
         """
-        super().__init__(Weights(loyalty, fading, search, caution, belief), reach, give_up)
+        super().__init__(Weights(loyalty, fading, search, caution, belief), reach, give_up, mitigate)
 
     def first(self, ahead: Outlook) -> First | None:
         """The first rescue of the best plan."""
-        plan = solve(ahead.problem, MOST_LABELS, BEAM)
+        plan = solve(ahead.problem, MOST_IN_HOMES if self._brief.several_rooms else MOST_LABELS, BEAM)
         if not plan.rescues:
             return None
         steps = [

@@ -9,6 +9,7 @@ for each future. Times step by STEP frames, in which things heat up twice.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,7 @@ from scipy.optimize import nnls
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Clear = Callable[[Array, Array], Mask]  # whether heat gets from sources [m], [M, 3], to points, [P, 3]: [P, M]
 # The rules: tests compare these numbers with those of `hazard_ms.hazards.fire` (docs/physics.md 1.1)
 ROOM, FLAME = 20.0, 600.0  # temperatures of the room, and of flames and burning things [C]
 REACH = 0.5  # distance at which a source weighs as much as the room, and nearer ones no more [m]
@@ -40,6 +42,7 @@ class Things:
     base: Array  # middles of their bases [m], [M, 3]
     temperature: Array  # [C], [M]; FLAME for those that burn
     threshold: Array  # temperature at which each catches fire [C], [M]; inf for never
+    whole_at: Array | None = None  # frame in which each was seen whole, [M]: it has not caught fire before
 
 
 @dataclass(frozen=True)
@@ -49,6 +52,7 @@ class Flames:
     corner: Array  # middle of the cell 0, 0 [m], [2]
     chance: Array  # probability that a cell burns, [Y, X]
     free: Mask  # whether it can burn, [Y, X]
+    since: Array | None = None  # frame in which it was seen to burn, [Y, X]; None: all when futures start
 
     @property
     def places(self) -> Array:
@@ -57,31 +61,43 @@ class Flames:
         return np.column_stack([self.corner + CELL * np.stack([x, y], axis=-1), np.zeros(len(x))])
 
 
-def weights(points: Array, sources: Array) -> Array:
-    """Weights of `sources` [m], [M, 3], at `points` [m], [P, 3]: [P, M]; the room's is 1."""
+def weights(points: Array, sources: Array, clear: Clear | None = None) -> Array:
+    """Weights of `sources` [m], [M, 3], at `points` [m], [P, 3]: [P, M]; the room's is 1.
+
+    `clear` tells where no wall is in between: nothing counts behind one. None: there are no walls.
+    """
     apart = ((points[:, None] - sources[None]) ** 2).sum(axis=-1)
-    return REACH**2 / np.maximum(apart, REACH**2)
+    made = REACH**2 / np.maximum(apart, REACH**2)
+    return made if clear is None else np.where(clear(points, sources), made, 0.0)
 
 
-def flame_weight(points: Array, temperatures: Array, things: Things) -> Array:
+def flame_weight(points: Array, temperatures: Array, things: Things, clear: Clear | None = None) -> Array:
     """The weight of all flames, [P], at `points` [m], [P, 3], that shows in the `temperatures` [C] seen there, [P]."""
-    of_things = weights(points, things.base)
+    of_things = weights(points, things.base, clear)
     seen = np.clip(temperatures, ROOM, FLAME - 1.0)
     excess = (seen - ROOM) + (of_things * (seen[:, None] - things.temperature)).sum(axis=-1)
     return np.maximum(excess, 0.0) / (FLAME - seen)
 
 
-def found(points: Array, temperatures: Array, things: Things, blocked: Array) -> Flames | None:
+def found(
+    points: Array,
+    temperatures: Array,
+    things: Things,
+    blocked: Array,
+    farthest: int = FARTHEST,
+    clear: Clear | None = None,
+) -> Flames | None:
     """The flames behind `temperatures` [C], [P], seen at `points` on the floor [m], [P, 3]; None where there are none.
 
-    `blocked` [m], [Q, 2]: places of furniture, on which nothing creeps.
+    `blocked` [m], [Q, 2]: places of furniture and walls, on which nothing creeps; `farthest`: cells that a fire creeps
+    at most; `clear`: see `weights`.
     """
-    weight = flame_weight(points, temperatures, things)
+    weight = flame_weight(points, temperatures, things, clear)
     near = weight >= 0.8  # of a single flame at REACH it is 1
     if not near.any():
         return None
-    low = points[near, :2].min(axis=0) - CELL * FARTHEST
-    size = np.ceil((points[near, :2].max(axis=0) + CELL * FARTHEST - low) / CELL).astype(int) + 1
+    low = points[near, :2].min(axis=0) - CELL * farthest
+    size = np.ceil((points[near, :2].max(axis=0) + CELL * farthest - low) / CELL).astype(int) + 1
     flames = Flames(low, np.zeros(size[::-1]), np.ones(size[::-1], bool))
     cells = np.rint((blocked - low) / CELL).astype(int)
     inside = ((cells >= 0) & (cells < size)).all(axis=-1)
@@ -89,24 +105,33 @@ def found(points: Array, temperatures: Array, things: Things, blocked: Array) ->
     places = flames.places
     candidates = np.flatnonzero(weights(points[near], places).max(axis=0) >= 1.0)
     told = np.flatnonzero(weight >= FAINT)
-    share, _ = nnls(weights(points[told], places[candidates]), weight[told], maxiter=30 * len(candidates))
+    share, _ = nnls(weights(points[told], places[candidates], clear), weight[told], maxiter=30 * len(candidates))
     flames.chance.ravel()[candidates] = np.minimum(share, 1.0)
     return flames
 
 
 def burning_from(
-    flames: Flames, things: Things, start: float, end: float, futures: int, chance: np.random.Generator
+    flames: Flames,
+    things: Things,
+    start: float,
+    end: float,
+    futures: int,
+    chance: np.random.Generator,
+    clear: Clear | None = None,
 ) -> Array:
     """The frame at which each of M `things` catches fire in each of N `futures`, [N, M]; inf where it does not.
 
-    The flames are those of the frame `start`; what burns by then has that frame. Nothing is foreseen beyond `end`.
+    The flames are those of the frame `start`, and later ones those of their own; what burns by then has that frame.
+    Nothing is foreseen beyond `end`. `clear`: see `weights`.
     """
     shape = (futures, *flames.chance.shape)
     lit = chance.random(shape) < flames.chance
-    birth = np.where(lit, start - GROWN, NEVER)
-    last = np.where(lit, start - chance.random(shape) * AGES[0], NEVER)
+    since = start if flames.since is None else flames.since
+    birth = np.where(lit, since - GROWN, NEVER)
+    last = np.where(lit, since - chance.random(shape) * AGES[0], NEVER)
     used = np.stack([_from(lit, way) for way in WAYS]) & lit
-    floor, between = weights(flames.places, things.base), weights(things.base, things.base)
+    floor = weights(flames.places, things.base, clear)
+    between = weights(things.base, things.base, clear)
     np.fill_diagonal(between, 0.0)
     around = 1.0 + between.sum(axis=0)
     temperature = np.tile(things.temperature, (futures, 1))
@@ -118,6 +143,8 @@ def burning_from(
         burns = np.isfinite(caught)
         temperature = np.where(burns, FLAME, mean + KEPT * (temperature - mean))
         ignites = ~burns & (temperature >= things.threshold)
+        if things.whole_at is not None:
+            ignites &= frame > things.whole_at
         caught[ignites] = frame
         temperature[ignites] = FLAME
     return caught

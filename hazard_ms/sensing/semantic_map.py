@@ -44,6 +44,7 @@ class SemanticMap:
     explored   [Y, X]     bool; whether a point was seen there
     object_id  [Y, X]     index of the uppermost thing seen there; -1 for none
     levels     [K, Y, X]  level of each hazard when last seen, in its unit; NaN where never seen
+    told_at    [Y, X]     frame of that; -1 for never
     objects               a Sighting for each thing that was seen, by index
     """
 
@@ -69,12 +70,11 @@ class SemanticMap:
         self.loose = np.asarray(loose, dtype=bool)
         self._stood = ~self.loose  # at the start: a copy, since furniture may float off
         shape = (cells, cells)
-        self._firm = np.zeros(shape, np.float32)  # height of things that stay [m]
-        self._light = np.zeros(shape, np.float32)  # height of things that can be moved [m]
+        self._firm, self._light = np.zeros((2, *shape), np.float32)  # heights of what stays, of what can be moved [m]
         self.explored = np.zeros(shape, bool)
         self.object_id = np.full(shape, -1, np.int32)
         self._seen_at = np.full(shape, -1, np.int32)  # frame in which it was seen there
-        self.levels = np.full((hazards, *shape), np.nan, np.float32)
+        self.levels, self.told_at = np.full((hazards, *shape), np.nan, np.float32), np.full(shape, -1, np.int32)
         self.objects: Mapping[int, Sighting] = {}
         self.frame, self._frozen = -1, False  # frame of the last update; whether it can be written to no more
 
@@ -214,12 +214,12 @@ class SemanticMap:
         for old, new in zip(self.levels, levels, strict=True):
             total = np.bincount(cell, weights=new, minlength=self.explored.size)
             old.ravel()[seen] = total[seen] / count[seen]
+        self.told_at.ravel()[seen] = self.frame
 
     def mark_free(self, position: tuple[float, float], radius: float) -> None:
         """Mark the floor under the agent as free, at `position` [m] with a footprint of `radius` [m]."""
         reach = int(np.ceil(radius / self.cell))
-        cy, cx = self.cell_of(position)
-        size = len(self.explored)
+        (cy, cx), size = self.cell_of(position), len(self.explored)
         y, x = np.mgrid[max(0, cy - reach) : min(size, cy + reach + 1), max(0, cx - reach) : min(size, cx + reach + 1)]
         far = np.hypot(*np.moveaxis(self.centre_of(y, x) - position, -1, 0))
         y, x = y[far <= radius], x[far <= radius]

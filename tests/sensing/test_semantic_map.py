@@ -168,6 +168,7 @@ def test_hazard_levels_go_to_cells_and_objects() -> None:
     assert seen.levels[(0, *left)] == pytest.approx(30.0) and seen.levels[(0, *right)] == pytest.approx(230.0)
     assert seen.levels[(1, *left)] == seen.levels[(1, *right)] == pytest.approx(1.0)
     assert np.isnan(seen.levels[:, behind[0], behind[1]]).all() and (seen.hazard[left] == seen.levels[0][left])
+    assert seen.told_at[left] == seen.told_at[right] == 9 and seen.told_at[behind] == -1
     sighting = seen.objects[2]
     assert sighting.levels == (pytest.approx(230.0), pytest.approx(1.0)) and sighting.hazard == sighting.levels[0]
     first, second = sighting.history

@@ -40,7 +40,7 @@ class FireWatch:
         return self._caught
 
     def _forecast(self, decision: Decision, levels: NDArray, warm: NDArray[np.bool_]) -> dict[int, float]:
-        indices, things = _things(decision)
+        indices, things = things_of(decision)
         flames = _flames(decision.map, levels, warm, things)
         if flames is None or not indices:
             return {}
@@ -48,7 +48,7 @@ class FireWatch:
         return dict(zip(indices, np.median(caught - STEP, axis=0).tolist(), strict=True))
 
 
-def _things(decision: Decision) -> tuple[list[int], Things]:
+def things_of(decision: Decision) -> tuple[list[int], Things]:
     """The things on the map, by index, as the fire sees them."""
     base, temperature, threshold = [], [], []
     indices = list(decision.map.objects)

@@ -9,7 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.search.fire_watch import FireWatch
+from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
+from hazard_ms.agents.search.house_fire import HouseFire
+from hazard_ms.agents.search.house_water import HouseWater, lost_at
 from hazard_ms.planning.belief import WaterPlane, extended, last_whole
+from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
@@ -26,15 +30,29 @@ Array = NDArray[np.float64]
 class Forecast:
     """The levels to come, and when they harm what is at a place."""
 
-    def __init__(self, brief: Brief, decision: Decision, watch: FireWatch) -> None:
-        """Forecast the hazards of `brief` from `decision` to the end of the episode; `watch` remembers a fire."""
+    def __init__(
+        self,
+        brief: Brief,
+        decision: Decision,
+        watch: FireWatch | HouseFire,
+        shut: Sequence[KnownOpening] = (),
+        without: Sequence[int] = (),
+    ) -> None:
+        """Forecast the hazards of `brief` from `decision` to the end of the episode; `watch` remembers a fire.
+
+        `shut`: doors that are shut as soon as that; `without`: numbers of fires, `HouseFire.seats`, that are put out.
+        """
         self._hazards = brief.hazards
         self._frames = np.arange(decision.frame, decision.max_frames + STRIDE, STRIDE, dtype=np.float64)
-        self._water = {
-            number: _water(decision.map, number) for number, hazard in enumerate(brief.hazards) if hazard.name == WATER
+        self._water: dict[int, WaterPlane | HouseWater] = {
+            number: HouseWater(decision.map, number, FloorPlan(decision.map, (*shut_doors(decision.openings), *shut)))
+            if brief.several_rooms
+            else _water(decision.map, number)
+            for number, hazard in enumerate(brief.hazards)
+            if hazard.name == WATER
         }
         self._fire = {
-            number: watch.whole_until(decision, number)
+            number: _burning(watch, decision, number, without)
             for number, hazard in enumerate(brief.hazards)
             if hazard.name == FIRE and number < len(decision.map.levels)
         }
@@ -53,6 +71,8 @@ class Forecast:
         if burning is not None:
             return burning
         harms = partial(_harms, self._hazards[number], target, float(sighting.position[2]))
+        if isinstance(self._water.get(number), HouseWater):
+            harms = partial(_reaches, lost_at(target, sighting))
         return last_whole(harms, self._frames, self._levels(number, sighting))
 
     def _levels(self, number: int, sighting: Sighting) -> Array:
@@ -64,8 +84,20 @@ class Forecast:
         return extended(frames, [levels[number] for _, levels in history], self._frames)
 
 
+def _burning(watch: FireWatch | HouseFire, decision: Decision, number: int, without: Sequence[int]) -> dict[int, float]:
+    """The frame until which each known thing stays whole from a fire, by index."""
+    if isinstance(watch, FireWatch):
+        return watch.whole_until(decision, number)
+    watch.look(decision, number)
+    return watch.whole_until(without)
+
+
 def _harms(hazard: HazardBrief, target: Target, height: float, level: float) -> bool:
     return bool(hazard.threatens(target, level, height))
+
+
+def _reaches(least: float, level: float) -> bool:
+    return level >= least
 
 
 def _water(seen: SemanticMap, number: int) -> WaterPlane:

@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.search.fire_watch import FireWatch
+from hazard_ms.agents.search.house_fire import HouseFire
+from hazard_ms.registry.mitigations import MITIGATIONS
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
-from hazard_ms.skills.failures import NOT_A_TARGET, TOO_FAR
+from hazard_ms.skills.failures import NOT_A_TARGET, TOO_FAR, UNFINISHED
 
 PROGRESS = 0.2  # a walk that got it this far is not a failure, even if it did not arrive [m]
 LEGS = 12  # walks without arrival to one thing that together count as a failure: 19 m, longer than any way [ours]
@@ -29,8 +31,8 @@ class Memory:
     def __init__(self, seed: int, belief: bool = True) -> None:
         """Begin an episode; `seed` fixes all randomness in it; `belief`: see `Weights`."""
         self._belief = belief
-        self.fire = FireWatch(seed)
-        self.failures: dict[str, int] = {}  # of walks to a thing, and of picking it up
+        self.fire, self.house = FireWatch(seed), HouseFire(seed)
+        self.failures: dict[str, int] = {}  # of walks to a thing and picking it up; of mitigations: "shut door_0"
         self.missed: dict[str, list[tuple[Place, Place]]] = {}  # failed pick-ups: where it stood then, and the thing
         self.visits: dict[str, int] = {}  # to things in search
         self.looks: list[Place] = []  # where it looked around
@@ -67,6 +69,10 @@ class Memory:
             self._belief and decision.last_result is not None and decision.last_result.reason == NOT_A_TARGET
         ):
             return
+        if action.verb in MITIGATIONS:
+            unfinished = decision.last_result is not None and decision.last_result.reason in UNFINISHED
+            self.failures[str(action)] = self.failures.get(str(action), 0) + (not unfinished)
+            return
         if (
             action.verb in (WALK_TO, WALK_ONE_STEP)
             and np.hypot(*np.subtract(decision.agent_position, start)) > PROGRESS
@@ -97,9 +103,7 @@ def after(failures: int) -> float:
 
 def _seen(decision: Decision, name: str) -> Place | None:
     """The place where a thing was seen last; None if it is not on the map."""
-    if name not in decision.names:  # an opening, of which nothing moves
-        return None
-    sighting = decision.map.objects.get(decision.index(name))
+    sighting = decision.map.objects.get(decision.index(name)) if name in decision.names else None  # a door is no thing
     return None if sighting is None else (float(sighting.position[0]), float(sighting.position[1]))
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from hazard_ms.agents.base import Agent, distance, known, open_targets
 from hazard_ms.agents.search.memory import Memory
+from hazard_ms.agents.search.mitigating import Mitigator
 from hazard_ms.agents.search.outlook import Outlook, Weights, outlook
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
@@ -36,26 +37,30 @@ class Searcher(Agent):
 
     colours = False
 
-    def __init__(self, weights: Weights, reach: float, give_up: int) -> None:
+    def __init__(self, weights: Weights, reach: float, give_up: int, mitigate: bool = True) -> None:
         """Choose how it weighs things.
 
         `reach`: length of the way to a target from which it is picked up without a walk first [m]; `give_up`: failures
-        after which a thing is given up. Raises ValueError unless the first is from 0 to FARTHEST and the second a
-        positive whole number.
+        after which a thing is given up; `mitigate`: whether it acts on hazards themselves where it can. Raises
+        ValueError unless the first is from 0 to FARTHEST and the second a positive whole number.
         """
         if not 0.0 <= reach <= FARTHEST:
             raise ValueError(f"reach must be from 0 to {FARTHEST} m, got {reach!r}")
-        self._reach = reach
+        self._reach, self._mitigate = reach, mitigate
         self._weights, self._give_up = weights, whole(give_up, 1, MOST_FAILURES, "give_up")
 
     def reset(self, brief: Brief) -> None:
         """Begin an episode with an empty memory."""
         self._brief, self._memory = brief, Memory(brief.random_seed, self._weights.belief > 0.0)
+        acts = self._mitigate and brief.several_rooms and brief.averted and brief.mitigations
+        self._mitigator = Mitigator(brief, self._memory) if acts else None
         self._goal: tuple[str, frozenset[str]] | None = None  # where it goes to search, and the targets known then
 
     def act(self, decision: Decision) -> Action:
         """The next action: put away what it holds, else what the rest of the rescue begins with."""
         self._memory.note(decision)
+        if self._mitigator is not None:
+            self._mitigator.note(decision)
         action = self._choose(decision)
         self._memory.chose(decision, action)
         return action
@@ -70,7 +75,8 @@ class Searcher(Agent):
             return self._say("look around first", Action(EXPLORE))
         if decision.targets and all(target.rescued for target in decision.targets):
             return self._say("every target is rescued", Action(STOP))
-        if decision.held is not None and not decision.containers:
+        tool = any(tool.held for tool in decision.tools)
+        if decision.held is not None and not decision.containers and not tool:
             return self._say("into the bag", Action(DROP))
         arrived = decision.walked_up_to
         if decision.held is None and arrived in open_targets(decision):
@@ -83,6 +89,9 @@ class Searcher(Agent):
         if searching is not None:
             return searching
         ahead = outlook(self._brief, decision, self._memory, self._weights, self._give_up)
+        measure = None if self._mitigator is None else self._mitigator.action(decision, ahead)
+        if self._mitigator is not None and measure is not None:
+            return self._say(self._mitigator.why, measure)
         begin = None if decision.held is not None and not ahead.carts else self.first(ahead)
         if begin is None:
             return self._without_plan(decision, ahead)
@@ -137,6 +146,9 @@ class Searcher(Agent):
         searching = not names
         if searching:
             names = [mark.name for mark in ahead.lookouts]
+        opening = None if names or self._mitigator is None else self._mitigator.opening(decision)
+        if self._mitigator is not None and opening is not None:
+            return self._say(self._mitigator.why, opening)
         if not names:
             return self._say("nothing is left to try", Action(STOP))
         name = min(names, key=lambda n: distance(decision, decision.map.objects[decision.index(n)]))

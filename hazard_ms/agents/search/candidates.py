@@ -1,0 +1,180 @@
+"""Lists what can be done about the hazards of a home: extinguishers to fetch, fires to put out, doors to shut.
+
+Limits: fires that were never seen are not counted; doors are shut on water alone, since in fires of the paper there is
+a fire in most rooms, and what burns behind a shut door burns on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
+from hazard_ms.agents.search.forecast import FIRE, STRIDE, WATER, Forecast
+from hazard_ms.agents.search.house_fire import HouseFire, Seat
+from hazard_ms.agents.search.house_water import HouseWater
+from hazard_ms.agents.search.memory import Memory
+from hazard_ms.agents.search.outlook import Outlook, skill_frames
+from hazard_ms.sensing.door_memory import KnownOpening
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import PICK_UP, Action, Decision, Tool
+from hazard_ms.skills.motor.walking import ARRIVED
+from hazard_ms.spec.extinguishers import EXTINGUISHERS
+
+EXTINGUISH, SHUT = "extinguish", "shut"
+HOT = 100.0  # level from which a thing can be named to the skill: boiling water [C]
+AROUND = 0.9  # distance from a thing within which the skill finds flames, less the error of where they are [m] [ours]
+JET, PINNED = 40.0, 90.0  # frames of the jet that a flame takes, and of a fire until the jet is open [ours]
+DOUBLING = 280.0  # frames in which flames become twice as many: 41 after 1,500 frames [measured]
+SHUTTING = 230.0  # frames of shutting a door from before it [ours]
+TRIES = 2  # failures of one measure, after which it is given up [ours]
+STANDS = 0.7  # distance from a door at which it is shut [m] [ours]
+JET_WAY = 2.5  # distance from flames at which a jet is opened [m] [ours]
+LARGE = 2.0  # charges that a fire may take and still be fought with one [ours]
+UNSEEN_SHARE = 0.07  # of the value of unseen targets that a fire burns: four burn 0.3 of all [measured: 0.21 to 0.3]
+UNSEEN_AFTER = 600.0  # frames after which it does [ours]
+# share of the value of unseen targets that water spoils in a room that it reaches: half of what is in one of seven
+ROOM_SHARE = 0.07  # [ours]
+LOOKED = 0.3  # of this share where it has looked around in there [ours]
+AWASH = 0.05  # level at a door from which the room behind it is counted as wet [m] [ours]
+BEHIND = 0.6  # distance from a door at which it is told whether it stays dry behind it [m] [ours]
+MOST_DOORS = 6  # that are weighed at a time: those that close off most [ours]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """Something that can be done: its first action, where, and what it is good for."""
+
+    name: str
+    action: Action
+    place: tuple[float, float]  # [m]
+    near: float  # distance from there at which it is begun [m]
+    frames: float
+    spares: Sequence[float]  # frame until which each known target of the outlook is whole then
+    guards: str = ""  # what keeps from harm what was never seen: the fire that is put out, or the door; empty: nothing
+    unseen: float = 0.0  # share of the value of unseen targets that is lost without that
+    unseen_at: float = 0.0  # frame at which it is
+    tool: str = ""  # name of the tool that it needs
+    uses: float = 0.0  # frames of the tool's charge
+    charge: float = 0.0  # frames that the tool lasts that it fetches
+    closes: tuple[int, ...] = ()  # known targets that cannot be fetched any more
+
+
+def candidates(
+    brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, put_down: dict[str, int]
+) -> list[Candidate]:
+    """All that can be done about the hazards; `put_down` says how often each tool was put down."""
+    names = [hazard.name for hazard in brief.hazards]
+    made = []
+    if EXTINGUISH in brief.mitigations and FIRE in names:
+        made += _fires(brief, decision, memory, ahead, names.index(FIRE), put_down)
+    if SHUT in brief.mitigations and WATER in names and decision.held is None:
+        made += _doors(brief, decision, memory, ahead, names.index(WATER))
+    return made
+
+
+def _fires(
+    brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, number: int, put_down: dict[str, int]
+) -> list[Candidate]:
+    fetches = [_fetch(brief, decision, tool, ahead) for tool in decision.tools if _usable(decision, tool, put_down)]
+    fetches = [one for one in fetches if memory.failures.get(str(one.action.target), 0) < TRIES]
+    made: list[Candidate] = []
+    for k, seat in enumerate(memory.house.seats if fetches else ()):
+        name = _named(decision, memory, seat, number)
+        if name is None:
+            continue
+        spares = _whole(brief, decision, memory.house, ahead, without=(k,))
+        flames = max(seat.flames, 1.0) * 2.0 ** ((decision.frame - seat.seen) / DOUBLING)
+        for fetch in fetches:
+            uses, action = min(JET * flames, fetch.charge), Action(EXTINGUISH, name)
+            if JET * flames > LARGE * fetch.charge:
+                continue  # far more than it can put out
+            what = f"put out the fire at {name}"
+            soon = decision.frame + UNSEEN_AFTER
+            guards = f"fire {k}", UNSEEN_SHARE, min(soon, decision.max_frames - 1.0)
+            frames = PINNED + 1.5 * uses
+            made.append(Candidate(what, action, seat.place, JET_WAY, frames, spares, *guards, fetch.name, uses))
+    return [*fetches, *made]
+
+
+def _usable(decision: Decision, tool: Tool, put_down: dict[str, int]) -> bool:
+    """Whether a tool is in the hand, or an empty hand can take it, and it still holds something."""
+    there = tool.held or Action(PICK_UP, tool.name) in decision.available
+    return bool(tool.kind) and tool.left > 0.02 and there and put_down.get(tool.name, 0) < TRIES
+
+
+def _fetch(brief: Brief, decision: Decision, tool: Tool, ahead: Outlook) -> Candidate:
+    seen = decision.map.objects.get(decision.index(tool.name))
+    place = decision.agent_position if seen is None or tool.held else seen.position[:2].tolist()
+    charge = EXTINGUISHERS[tool.kind].seconds * tool.left / brief.frame_seconds
+    near = ARRIVED + (0.0 if seen is None else seen.radius)
+    frames = skill_frames(brief.robot).pick
+    nothing = [0.0] * len(ahead.targets)
+    action = Action(PICK_UP, tool.name)
+    return Candidate(tool.name, action, (place[0], place[1]), near, frames, nothing, charge=charge)
+
+
+def _named(decision: Decision, memory: Memory, seat: Seat, number: int) -> str | None:
+    """The hot thing by which a fire can be named: the one nearest to its flames; None where none is near enough."""
+    best, name = AROUND, None
+    for index, seen in decision.map.objects.items():
+        thing = decision.names[index]
+        if len(seen.levels) <= number or seen.levels[number] < HOT or thing == decision.held:
+            continue
+        if memory.failures.get(str(Action(EXTINGUISH, thing)), 0) >= TRIES:
+            continue
+        away = float(np.hypot(*(seat.flames_at - seen.position[:2]).T).min())
+        if away < best:
+            best, name = away, thing
+    return name
+
+
+def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, number: int) -> list[Candidate]:
+    seen, shut = decision.map, shut_doors(decision.openings)
+    water = HouseWater(seen, number, FloorPlan(seen, shut))
+    frames = np.arange(decision.frame, decision.max_frames, STRIDE, dtype=np.float64)
+    goals = [seen.objects.get(decision.index(ahead.name(k))) for k in range(len(ahead.targets) + len(ahead.lookouts))]
+    made = []
+    for door in decision.openings:
+        action = Action(SHUT, door.name)
+        if door.kind != "door" or action not in decision.available or memory.failures.get(str(action), 0) >= TRIES:
+            continue
+        plan = FloorPlan(seen, (*shut, door))
+        away = plan.ways_from(decision.agent_position)
+        others = [plan.reached(away, np.array(o.position)) for o in decision.openings if o not in (door, *shut)]
+        if sum(others) < 0.5 * len(others):
+            continue  # it would lock itself in
+        closes = [k for k, thing in enumerate(goals) if thing is not None and not plan.reached(away, thing.position)]
+        wet = (water.at([door.position[:2]], frames)[:, 0] >= AWASH).argmax()
+        inside = any(not plan.reached(away, np.array(place)) for place in memory.looks)
+        keeps = wet > 0 and _keeps_dry(HouseWater(seen, number, plan), plan, away, door, frames)
+        share = ROOM_SHARE * (LOOKED if inside else 1.0) if keeps else 0.0
+        if closes or share:
+            spares = _whole(brief, decision, memory.house, ahead, shut=(door,))
+            x, y, _ = door.position
+            guards = door.name, share, float(frames[wet])
+            what = f"shut {door.name}"
+            made.append(Candidate(what, action, (x, y), STANDS, SHUTTING, spares, *guards, closes=tuple(closes)))
+    return sorted(made, key=lambda one: -one.unseen - len(one.closes))[:MOST_DOORS]
+
+
+def _keeps_dry(water: HouseWater, plan: FloorPlan, away: Array, door: KnownOpening, frames: Array) -> bool:
+    """Whether it stays dry just behind a `door` once it is shut, where `away` does not lead; `water`: that to come."""
+    beside = np.array(door.position[:2]) + BEHIND * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
+    behind = [point for point in beside if plan.seen_at(point) and not plan.reached(away, point)]
+    return bool(behind) and bool(water.at(behind, frames).max() < AWASH)
+
+
+def _whole(brief: Brief, decision: Decision, fire: HouseFire, ahead: Outlook, **done: Sequence) -> list[float]:
+    """The frame until which each target of the outlook is whole if that is done: see `Forecast`."""
+    forecast = Forecast(brief, decision, fire, **done)
+    made = []
+    for name in ahead.targets:
+        seen = decision.map.objects.get(decision.index(name))
+        made.append(float("inf") if seen is None else forecast.whole_until(decision.target(name), seen))
+    return made

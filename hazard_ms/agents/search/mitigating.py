@@ -1,0 +1,168 @@
+"""Chooses what an agent does about the hazards of a home before it rescues, by what is averted, and says why.
+
+An extinguisher is fetched where a fire that is known threatens more than the way there costs; a door is shut where what
+is behind it would be wet before it is saved (`hazard_ms.planning.beginning`). What is shut is opened only where nothing
+else is left to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.agents.search.candidates import EXTINGUISH, Candidate, candidates
+from hazard_ms.agents.search.forecast import WATER
+from hazard_ms.agents.search.memory import Memory
+from hazard_ms.agents.search.outlook import Outlook
+from hazard_ms.agents.search.walks import frames_between
+from hazard_ms.planning.beginning import best_course
+from hazard_ms.planning.measures import Measure, Measures
+from hazard_ms.planning.problem import Problem
+from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import DROP, EXPLORE, WALK_TO, Action, Decision, Tool
+from hazard_ms.skills.motor.walking import ARRIVED
+
+OPEN = "open"
+MOST_LABELS, BEAM = 400, 20  # of the search for the rescues after measures [ours]: a tenth of a second
+PUT_DOWN = 40.0  # frames of putting down a tool [ours]
+
+
+class Mitigator:
+    """Chooses measures in one episode, and says why."""
+
+    def __init__(self, brief: Brief, memory: Memory) -> None:
+        """Begin an episode; `memory` is that of the agent."""
+        self._brief, self._memory = brief, memory
+        self._put_down: dict[str, int] = {}  # how often each tool was put down
+        self._opened: set[str] = set()
+        self._look_around = False
+        self._aim: tuple[float, float] | None = None  # of the jet [m]
+        self.why = ""
+
+    def note(self, decision: Decision) -> None:
+        """Enter what the last action came to."""
+        last, result = decision.last_action, decision.last_result
+        if last is None or result is None or last.verb != EXTINGUISH or not result.ok or last.target is None:
+            return
+        seen = decision.map.objects.get(decision.index(last.target))
+        for place in (self._aim, None if seen is None else seen.position[:2].tolist()):
+            if place is not None:
+                self._memory.house.put_out((place[0], place[1]), decision.frame)
+        self._look_around = result.frames > 0
+
+    def action(self, decision: Decision, ahead: Outlook) -> Action | None:
+        """The measure to begin with, or the end of one; None where a rescue or a search comes first."""
+        held = next((tool for tool in decision.tools if tool.held), None)
+        if self._look_around and held is not None:
+            self._look_around = False
+            self.why = "look whether it still burns"
+            return Action(EXPLORE)
+        found = candidates(self._brief, decision, self._memory, ahead, self._put_down)
+        first = self._first(decision, ahead, found, held)
+        if first is None and held is not None:
+            self._put_down[held.name] = self._put_down.get(held.name, 0) + 1
+            self.why = f"{held.name} is of no use any more"
+            return Action(DROP)
+        if first is None:
+            return None
+        self._aim = first.place if first.action.verb == EXTINGUISH else None
+        if first.charge > 0.0 and decision.walked_up_to != first.action.target:
+            return Action(WALK_TO, first.action.target)
+        return first.action
+
+    def _first(
+        self, decision: Decision, ahead: Outlook, found: Sequence[Candidate], held: Tool | None
+    ) -> Candidate | None:
+        useful = [one for one in found if one.charge == 0.0]
+        if not useful:
+            return None
+        unseen = {one.guards: (ahead.unseen * one.unseen, one.unseen_at) for one in useful if one.unseen > 0.0}
+        problem = _with_unseen(ahead.plain, ahead.frames, list(unseen.values()))
+        measures = _measures(decision, ahead, found, list(unseen), held, self._brief.radius)
+        course = best_course(problem, measures, most_labels=MOST_LABELS, beam=BEAM)
+        if not course.steps or course.before is not None:
+            return None
+        steps = ", ".join(f"{found[step.measure].name} by {step.done:.0f}" for step in course.steps)
+        self.why = f"{steps}: averts {course.value:.1f} with rescues after it, {course.plain:.1f} by rescues alone"
+        return found[course.steps[0].measure]
+
+    def opening(self, decision: Decision) -> Action | None:
+        """A door to open where nothing else is left to do, each once; None where there is none."""
+        if any(hazard.name == WATER for hazard in self._brief.hazards):
+            return None  # it would let water in
+        names = [a for a in decision.available if a.verb == OPEN and a.target not in self._opened]
+        where = {o.name: o for o in decision.openings if o.kind == "door" and o.open < 0.9}
+        doors = [a for a in names if a.target in where]
+        if not doors:
+            return None
+        here = np.array(decision.agent_position)
+        best = min(doors, key=lambda a: float(np.hypot(*(np.array(where[str(a.target)].position[:2]) - here))))
+        self._opened.add(str(best.target))
+        self.why = "there may be more behind it"
+        return best
+
+
+def _with_unseen(problem: Problem, frames: NDArray[np.float64], unseen: Sequence[tuple[float, float]]) -> Problem:
+    """The same problem with targets more that nobody gets to: the value of what is `unseen`, and when it is lost.
+
+    `frames`: of the ways between the goals of the problem and the start, [G + 1, G + 1].
+    """
+    goals, more = len(problem.values), len(unseen)
+    table = np.full((goals + more + 1,) * 2, np.inf)
+    kept = [*range(goals), goals + more]
+    table[np.ix_(kept, kept)] = frames
+    return replace(
+        problem,
+        travel=StaticTravel(table),
+        values=[*problem.values, *(value for value, _ in unseen)],
+        damaged_at=[*problem.damaged_at, *(at for _, at in unseen)],
+        pick=[*problem.pick, *[1.0] * more],
+        drop=[*problem.drop, *[1.0] * more],
+    )
+
+
+def _measures(
+    decision: Decision,
+    ahead: Outlook,
+    found: Sequence[Candidate],
+    unseen: Sequence[str],
+    held: Tool | None,
+    radius: float,
+) -> Measures:
+    """The candidates as measures of the problem `_with_unseen`."""
+    goals = len(ahead.targets) + len(ahead.lookouts)
+    seen = [decision.map.objects.get(decision.index(ahead.name(goal))) for goal in range(goals)]
+    here = np.asarray(decision.agent_position, np.float64)
+    places = [here if thing is None else thing.position[:2] for thing in seen]
+    near = [ARRIVED + (0.0 if thing is None else thing.radius) for thing in seen]
+    frames = frames_between(
+        decision.map,
+        decision.agent_position,
+        np.array([*places, *(one.place for one in found)], np.float64).reshape(-1, 2),
+        np.array([*near, *(one.near for one in found)], np.float64),
+        radius,
+    )
+    first, start = goals, goals + len(found)
+    fetched = {one.name: k for k, one in enumerate(found) if one.charge > 0.0}
+    made = []
+    for one in found:
+        spares = [
+            *one.spares,
+            *[0.0] * len(ahead.lookouts),
+            *(np.inf if one.guards == name else 0.0 for name in unseen),
+        ]
+        needs = fetched[one.tool] if one.tool else None
+        made.append(Measure(one.name, one.frames, spares, needs, one.uses, one.charge, one.closes))
+    unreachable = np.full((len(unseen), len(found)), np.inf)
+    return Measures(
+        made,
+        to=np.vstack([frames[:goals, first:start], unreachable, frames[start:, first:start]]),
+        between=frames[first:start, first:start],
+        onward=np.hstack([frames[first:start, :goals], unreachable.T]),
+        in_hand=None if held is None else fetched.get(held.name),
+        put_down=PUT_DOWN,
+    )

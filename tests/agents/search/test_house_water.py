@@ -1,0 +1,67 @@
+"""Water in two rooms against its law: level(p, t) = rise t - tan(3 degrees) way(p), and nothing behind a shut door."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from hazard_ms.agents.search.floor_plan import FloorPlan
+from hazard_ms.agents.search.house_water import HouseWater, lost_at
+from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.sensing.target_table import Target
+from hazard_ms.spec.catalogue import CATEGORIES
+from tests.agents.search.test_floor_plan import DOOR, two_rooms
+
+RISE, SLOPE, WEST = 0.00025, math.tan(math.radians(3.0)), -4.0  # 1 cm in 40 frames, from the wall at x = -4 m
+
+
+def flooded(frame: int) -> SemanticMap:
+    """The two rooms as seen at `frame` by one who stands in the western one: water comes from the west wall."""
+    seen = two_rooms()
+    y, x = np.nonzero(seen.explored)
+    points = seen.centre_of(y, x)
+    here = points[:, 0] < 1.5
+    y, x, way = y[here], x[here], points[here, 0] - WEST
+    seen.levels[0, y, x] = np.maximum(RISE * frame - SLOPE * way, 0.0)
+    seen.told_at[y, x] = frame
+    return seen
+
+
+def test_water_rises_and_goes_on_by_its_law() -> None:
+    """Seen at frame 800, when it has come 3.8 m far; at (4, 0), 8 m from the wall, it is wet from frame 1,677 on."""
+    seen = flooded(800)
+    water = HouseWater(seen, 0, FloorPlan(seen))
+    assert water.rise == pytest.approx(RISE, rel=0.03)
+    frames = np.array([800.0, 1600.0, 2400.0])
+    level = water.at([(-2.0, 0.0), (4.0, 0.0)], frames)
+    truth = np.stack([RISE * frames - SLOPE * 2.0, RISE * frames - SLOPE * 8.0], axis=-1).clip(min=0.0)
+    assert np.abs(level - truth).max() < 0.03
+
+
+def test_behind_a_shut_door_it_stays_dry() -> None:
+    seen = flooded(800)
+    water = HouseWater(seen, 0, FloorPlan(seen, (DOOR,)))
+    level = water.at([(4.0, 0.0), (-2.0, 0.0)], np.array([3000.0]))
+    assert level[0, 0] == 0.0 and level[0, 1] > 0.5
+
+
+def test_before_any_water_was_seen_none_is_foreseen() -> None:
+    seen = flooded(0)
+    assert HouseWater(seen, 0, FloorPlan(seen)).at([(-2.0, 0.0)], np.array([3000.0])).max() == 0.0
+
+
+def thing(kind: str, height: float = 0.1) -> tuple[Target, Sighting]:
+    row = CATEGORIES[kind]
+    made = Target(0, f"{kind}_1", kind, 1.0, bool(row.flammable), bool(row.waterproof), row.ignition_temperature)
+    return made, Sighting(np.array([0.0, 0.0, height / 2], np.float32), 0.1, height, 0, 50)
+
+
+def test_a_thing_is_lost_when_it_is_half_under_water_or_floats() -> None:
+    """A phone is soaked at half its height; a banana, waterproof, floats at 0.95 of it; a key does neither."""
+    assert lost_at(*thing("phone")) == pytest.approx(0.05)
+    assert lost_at(*thing("banana")) == pytest.approx(0.095)
+    assert lost_at(*thing("throw_pillow")) == pytest.approx(0.01)
+    assert lost_at(*thing("key")) == math.inf

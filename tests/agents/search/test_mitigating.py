@@ -1,0 +1,123 @@
+"""What planner and mcts do about fires and water in two rooms, and that they say why."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hazard_ms.agents.base import Agent, agent
+from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.sensing.target_table import Target
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision, Result, Tool
+from tests.agents.search.test_floor_plan import DOOR, two_rooms
+from tests.agents.search.test_house_water import SLOPE, WEST
+from tests.worlds.playground import brief
+
+FLAME = (4.0, 1.0)  # [m]
+NAMES = ("box_1", "fire_extinguisher_1", "book_1", "book_2", "book_3")
+PLACES = ((4.2, 1.0), (0.5, 0.0), (5.0, 1.0), (4.0, 2.2), (5.0, -1.0))  # books around the box that burns
+SHUT = Action("shut", DOOR.name)
+LOOK = (Action(EXPLORE), Result(True, frames=60))
+
+
+def home(task: str = "HazardHouseFire-v1", rooms: bool = True) -> Brief:
+    verbs = ("open", "shut", "extinguish")
+    return replace(brief(task), mitigations=verbs, several_rooms=rooms, averted=True, max_frames=3000)
+
+
+def decision(last: tuple[Action, Result] = LOOK, held: str | None = None, frame: int = 60) -> Decision:
+    """What is known of the two rooms from the western one at (0, 0): dry, and nothing burns yet."""
+    seen = two_rooms()
+    seen.loose = np.ones(len(NAMES), bool)
+    y, x = np.nonzero(seen.explored)
+    seen.levels[0, y, x], seen.told_at[y, x] = 0.0, frame
+    rows = {}
+    for index, place in enumerate(PLACES):
+        if NAMES[index] != held:
+            rows[index] = Sighting(np.array([*place, 0.05], np.float32), 0.1, 0.1, frame, 50, (20.0,))
+    seen.objects = rows
+    targets = tuple(
+        Target(k, NAMES[k], "book", 10.0, True, False, 200.0) for k, name in enumerate(NAMES) if name[:4] == "book"
+    )
+    tools = (Tool(NAMES[1], "fire_extinguisher", "powder", 1.0, held == NAMES[1]),)
+    made = [Action(EXPLORE), Action(STOP), *(Action(WALK_TO, NAMES[k]) for k in rows)]
+    made += [Action(PICK_UP, NAMES[1])] if held is None else [Action(DROP)]
+    return Decision(
+        frame, 3000, (0.0, 0.0), 0.0, held, targets, (), seen, None, tuple(made), NAMES, *last, (DOOR,), tools
+    )
+
+
+def on_fire(given: Decision) -> Decision:
+    """The same with a flame at FLAME, which heats the eastern room."""
+    seen = given.map
+    y, x = np.nonzero(seen.explored)
+    points = seen.centre_of(y, x)
+    weight = (0.5 / np.maximum(np.hypot(*(points - FLAME).T), 0.5)) ** 2 * (points[:, 0] > 2.0)
+    seen.levels[0, y, x] = (20.0 + 600.0 * weight) / (1.0 + weight)
+    for index, sighting in seen.objects.items():
+        away = max(float(np.hypot(*(sighting.position[:2] - FLAME))), 0.5)
+        level = (20.0 + 600.0 * (0.5 / away) ** 2) / (1.0 + (0.5 / away) ** 2) if sighting.position[0] > 2.0 else 20.0
+        seen.objects = {**seen.objects, index: replace(sighting, levels=(level,))}
+    return given
+
+
+def begun(who: str, told: Brief) -> Agent:
+    player = agent(who)
+    player.reset(told)
+    return player
+
+
+@pytest.mark.parametrize("who", ["planner", "mcts:simulations=200"])
+def test_it_fetches_an_extinguisher_and_puts_out_what_threatens_most(who: str) -> None:
+    """Three books burn within 1,500 frames, and to fetch all takes longer than to put out the one flame."""
+    player = begun(who, home())
+    fetch = Action(WALK_TO, NAMES[1])
+    assert player.act(on_fire(decision())) == fetch
+    assert "put out the fire at box_1" in str(player.note) and "averts" in str(player.note)
+    there = on_fire(decision((fetch, Result(True, frames=20)), frame=80))
+    assert player.act(there) == Action(PICK_UP, NAMES[1])
+    held = on_fire(decision((Action(PICK_UP, NAMES[1]), Result(True, frames=50)), NAMES[1], 130))
+    jet = Action("extinguish", "box_1")
+    assert player.act(replace(held, available=(*held.available, jet))) == jet
+    out = decision((jet, Result(True, frames=150)), NAMES[1], 280)
+    assert player.act(out) == Action(EXPLORE) and "still burns" in str(player.note)
+    assert player.act(decision(LOOK, NAMES[1], 340)) == Action(DROP) and "of no use" in str(player.note)
+
+
+def test_without_mitigations_it_only_rescues() -> None:
+    first = [begun(who, told).act(on_fire(decision())) for who, told in cases()]
+    assert all(action.target != NAMES[1] for action in first)
+
+
+def cases() -> Sequence[tuple[str, Brief]]:
+    return (("planner:mitigate=false", home()), ("planner", replace(home(), mitigations=())))
+
+
+def wet(frame: int = 560) -> Decision:
+    """Water from the west wall, which rises by 0.5 mm a frame, has come to x = 1.3 m; the door is at x = 2 m."""
+    given = decision(frame=frame)
+    seen = given.map
+    y, x = np.nonzero(seen.explored)
+    way = seen.centre_of(y, x)[:, 0] - WEST
+    seen.levels[0, y, x] = np.maximum(0.0005 * frame - SLOPE * way, 0.0)
+    return replace(given, available=(*given.available, SHUT), tools=())
+
+
+def test_it_shuts_the_door_on_water() -> None:
+    """The books are soaked from frame 940 on: there is time to rescue one or two of them, or to shut the door."""
+    told = home("HazardHouseFlood-v1")
+    player = begun("planner", told)
+    assert player.act(wet()) == SHUT and "shut door_0" in str(player.note)
+    assert begun("planner:mitigate=false", told).act(wet()) != SHUT
+
+
+def test_it_does_not_shut_a_door_for_what_is_in_no_danger_or_too_late() -> None:
+    told = home("HazardHouseFlood-v1")
+    dry = wet()
+    dry.map.levels[0] = np.where(np.isfinite(dry.map.levels[0]), 0.0, np.nan)
+    for given in (dry, wet(2000)):
+        assert begun("planner", told).act(given) != SHUT

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hazard_ms.robots import robot_name
+from hazard_ms.sensing.detection.eyes import FAR
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
@@ -44,10 +45,14 @@ class Brief:
     mitigations: tuple[str, ...] = ()  # verbs of the task beyond the six of the benchmark
     damaged_share: float = DAMAGED_SHARE  # of its value that a target counts when it is rescued damaged
     several_rooms: bool = False  # whether doors divide the place
+    sight: float = FAR  # distance up to which a look tells most of what is there [m]
 
 
-def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
-    """The brief of the episode of `max_frames` that has begun in the HazardEnv `base`, in the words of `labeller`."""
+def brief_of(base: Any, labeller: Labeller, max_frames: int, sight: float = FAR) -> Brief:
+    """The brief of the episode of `max_frames` that has begun in the HazardEnv `base`, in the words of `labeller`.
+
+    `sight`: distance up to which a look tells most of what is there [m].
+    """
     return Brief(
         task=base.task.name,
         text=base.task_description,
@@ -62,6 +67,7 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
         random_seed=random_seed(int(base.world.chance.seed[0])),
         mitigations=base.task.mitigations,
         several_rooms=base.task.several_rooms,
+        sight=sight,
     )
 
 

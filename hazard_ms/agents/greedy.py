@@ -1,11 +1,12 @@
 """Our greedy agent, after the paper's: always the known target of the lowest cost; looks around when it knows none.
 
-    cost = (distance + HANDLING) * (1 + failures)^2 / (predicted value * belief)
+    cost = (distance + HANDLING * belief) * (1 + failures)^2 / (predicted value * belief)
 
 The predicted value is halved where the target is damaged, or where a hazard threatens it by the time of arrival, with
 the hazard's level continued along the straight line through the last two sightings. A target that failed repeatedly
 gets a growing cost and is given up at last, so no path is tried for ever. Values count by the belief that the thing is
-what it seems to be, 1 with the truth. A pick-up that met no target does not count as a failure: it ends the belief.
+what it seems to be, 1 with the truth; what is not is refused at once, and costs no handling. A pick-up that met no
+target does not count as a failure: it ends the belief.
 Searching: walk to the landmark with the most unexplored floor around it, then look around there. Where walls divide
 the place, distances are those of the ways round them, things to which none leads are left out, and landmarks are places
 from which floor that was not seen yet comes into sight.
@@ -18,6 +19,7 @@ import numpy as np
 from hazard_ms.agents.base import Agent, distance, known, open_targets
 from hazard_ms.agents.search.lookouts import lookouts
 from hazard_ms.agents.search.stands import stands
+from hazard_ms.sensing.detection.eyes import FAR
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
@@ -54,6 +56,7 @@ class Greedy(Agent):
         self._failures: dict[str, int] = {}
         self._visits: dict[int, int] = {}
         self._radius = brief.radius if brief.several_rooms else None  # of the robot where walls count [m]
+        self._sight = brief.sight
         self._looks: list[tuple[float, float]] = []  # where it has looked around [m]
         self._looked_from: tuple[float, float] | None = None  # where it last looked around [m]
         self._look_again = False
@@ -127,7 +130,7 @@ class Greedy(Agent):
         return {name: stand.length for name, stand in stands(decision, names, self._radius).items()}
 
     def _cost(self, decision: Decision, name: str, sighting: Sighting, way: float) -> float:
-        way += HANDLING
+        way += HANDLING * (decision.target(name).belief if self._belief else 1.0)
         target = decision.target(name)
         levels, height = _predicted(sighting, decision.frame + way / WALKING), float(sighting.position[2])
         threats = zip(self._hazards, levels, strict=False)  # a level is missing where there was no hazard image
@@ -160,10 +163,10 @@ class Greedy(Agent):
         It is the unexplored floor around them, over the distance and the visits paid. Where walls count, it is the
         share of what was not seen that comes into sight, in the order of `lookouts`.
         """
-        if self._radius is not None:
+        if self._radius is not None or self._sight < FAR:
             visited = {decision.names[index]: count for index, count in self._visits.items()}
             avoided = [name for name, count in self._failures.items() if count >= self._give_up]
-            found = lookouts(decision, visited, self._looks, avoided, self._radius)
+            found = lookouts(decision, visited, self._looks, avoided, self._radius, self._sight)
             return {decision.index(mark.name): -float(place) for place, mark in enumerate(found)}
         border = frontier(decision.map)
         scores = {}

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hazard_ms.robots import robot_name
+from hazard_ms.sensing.detection.eyes import FAR
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
@@ -45,10 +46,14 @@ class Brief:
     damaged_share: float = DAMAGED_SHARE  # of its value that a target counts when it is rescued damaged
     several_rooms: bool = False  # whether doors or doorways divide the place
     averted: bool = False  # whether it counts what is averted: what would be lost if nobody acted, and is not
+    sight: float = FAR  # distance up to which a look tells most of what is there [m]
 
 
-def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
-    """The brief of the episode of `max_frames` that has begun in the HazardEnv `base`, in the words of `labeller`."""
+def brief_of(base: Any, labeller: Labeller, max_frames: int, sight: float = FAR) -> Brief:
+    """The brief of the episode of `max_frames` that has begun in the HazardEnv `base`, in the words of `labeller`.
+
+    `sight`: distance up to which a look tells most of what is there [m].
+    """
     return Brief(
         task=base.task.name,
         text=base.task_description,
@@ -64,6 +69,7 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int) -> Brief:
         mitigations=base.task.mitigations,
         several_rooms=has_several_rooms(base),
         averted=base.task.averted,
+        sight=sight,
     )
 
 

@@ -104,7 +104,7 @@ class SkillEnv:
 
     def brief(self) -> Brief:
         """Everything that an agent is told before the episode: nothing that shows which scene it is."""
-        return brief_of(self.base, self._labeller, self.max_frames)
+        return brief_of(self.base, self._labeller, self.max_frames, self._perception.sight)
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Decision, dict[str, Any]]:
         """Start an episode, as the environment's own reset, which says what it refuses, with a first look."""

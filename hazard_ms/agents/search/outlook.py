@@ -125,14 +125,16 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
     walls = brief.radius if brief.several_rooms else None
     wanted = missing >= LEAST_MISSING or (held and not carts)
     places = (
-        lookouts(decision, memory.visits, memory.looks, [*given_up, *_failed_ways(failures, seen)], walls)
+        lookouts(decision, memory.visits, memory.looks, [*given_up, *_failed_ways(failures, seen)], walls, brief.sight)
         if wanted
         else ()
     )
     targets = [*held, *seen]
     frames = _frames(decision, memory, targets, places, carts, weights.loyalty, brief.radius)
     works = [1.0 if t in held else times.works * memory.chance(decision, t.name) for t in targets]
-    works = [chance * (1.0 - doubt) for chance, doubt in zip(works, [*(0.0 for _ in held), *doubts], strict=True)]
+    real = [*(1.0 for _ in held), *(1.0 - doubt for doubt in doubts)]  # what is none of them is refused at once
+    picks = [chance * _pick(times, work) for work, chance in zip(works, real, strict=True)]
+    works = [work * chance for work, chance in zip(works, real, strict=True)]
     forecast = Forecast(brief, decision, memory.house if brief.several_rooms else memory.fire)
     aims = brief.averted and brief.several_rooms  # a wind damages nothing, so nothing tells what it threatens
     whole = [forecast.whole_until(t, decision.map.objects[t.index]) if t in seen else np.inf for t in targets]
@@ -147,7 +149,7 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
         values=[*(t.value * c for t, c in zip(targets, works, strict=True)), *(n * mean for n in found)],
         damaged_at=[*whole, *(np.inf for _ in places)],
         pick=[
-            *(_pick(times, c) for c in works),
+            *picks,
             *(times.explore + n * fetch for n in found),
         ],
         drop=[times.cart] * len(carts) if carts else [*(put_away for _ in targets), *(0.0 for _ in places)],

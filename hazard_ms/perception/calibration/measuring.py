@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.perception.calibration.observing import Observed
+from hazard_ms.perception.calibration.telling import worth
 from hazard_ms.sensing.detection.confusion import Confusion
 from hazard_ms.sensing.detection.tracks import BEHIND
 from hazard_ms.sensing.view import View
@@ -66,6 +67,7 @@ def confusion_of(looks: Sequence[Observed], classes: Sequence[str], eyes: str, c
         seen=_share(ever),
         eyes=eyes,
         command=command,
+        **worth(looks, classes),
     )
 
 

@@ -23,6 +23,7 @@ class Told:
     category: str
     sighting: Sighting
     thing: int
+    chances: tuple[float, ...] | None = None  # as the detector told them
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ def observed(detector: Detector, pictures: Sequence[Thinned], classes: Sequence[
             under = ids[labels == number]
             thing, pixels = Counter(under.tolist()).most_common(1)[0]
             real = 2 * pixels > len(under) and thing in kinds
-            told.append(Told(found[number].category, sighting, thing if real else 0))
+            told.append(Told(found[number].category, sighting, thing if real else 0, found[number].chances))
         numbers, counts = np.unique(ids, return_counts=True)
         shown = zip(numbers.tolist(), counts.tolist(), strict=True)
         visible = {number: pixels for number, pixels in shown if number in kinds and pixels >= SEEN_PIXELS}

@@ -117,7 +117,8 @@ def things(chances: NDArray[np.float32], offsets: NDArray[np.float32], classes: 
         mask = _without_strays(rows[mine], columns[mine], (height, width))
         mean = chances[1:-1, mask].mean(1)
         best = int(mean.argmax())
-        found.append(Detection(classes[best], float(np.sqrt(mean[best])), box_of(mask), mask))
+        each = tuple(mean.tolist())
+        found.append(Detection(classes[best], float(np.sqrt(mean[best])), box_of(mask), mask, each))
     return found
 
 

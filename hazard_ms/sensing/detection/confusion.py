@@ -4,7 +4,8 @@ A look at a thing tells a category, or misses it. With b the bucket of its pixel
 
     P(miss | k)      = 1 - found[b]
     P(told k | k)    = found[b] right[b]
-    P(told j | k)    = found[b] (1 - right[b]) taken[k][j]
+    P(told j | k)    = found[b] (1 - right[b]) taken[k][j]; where it also tells its own chances q of all categories, the
+                       sum of these over k is shared out by q^sharpness instead
     P(miss | c)      = 1 - again          c: something else that was once told as j0, or nothing at all
     P(told j0 | c)   = again steady
     P(told j | c)    = again (1 - steady) / (L - 1)
@@ -30,6 +31,7 @@ from hazard_ms.spec.foreign.plain import Within
 
 LARGEST = 1_000_000  # of a file [bytes] [ours]
 ONE = 1.0  # look by which each row of `taken` is smoothed [ours]
+TINY = 1e-9  # no chance that a detector tells counts as smaller [ours]
 LEAST = 1e-3  # no chance is believed to be smaller than this, nor larger than 1 less this [ours]
 Share = Annotated[float, Within(0, 1)]
 Count = Annotated[float, Within(0, 1e6)]
@@ -41,6 +43,7 @@ class Look(NamedTuple):
 
     told: str | None
     pixels: float
+    chances: tuple[float, ...] | None = None  # of each category by the detector itself, [L]
 
 
 @dataclass(frozen=True)
@@ -56,6 +59,11 @@ class Confusion:
     again: Share  # share of the looks at such places that tell something once more
     steady: Share  # share of these that tell the same
     seen: Share  # share of the things that are found by any look
+    sharpness: Annotated[float, Within(0, 10)] = 0.0  # exponent of a detector's own chances; 0: these do not count
+    even: Share = 0.0  # share of them that is spread evenly over all categories
+    surer: Annotated[tuple[Share, ...], Within(0, 20)] = ()  # least of each bucket of the largest of them, the first 0
+    real: Annotated[tuple[Share, ...], Within(0, 20)] = ()  # shares of the looks at things that are in these buckets
+    false: Annotated[tuple[Share, ...], Within(0, 20)] = ()  # the same of looks at clutter
     eyes: Name = "256/120"  # of the looks
     command: Annotated[str, Within(0, 1000)] = ""  # that measured it
 
@@ -90,12 +98,18 @@ class Confusion:
         """The number of the bucket of so many pixels."""
         return bisect_right(self.pixels, pixels) - 1
 
-    def told(self, category: str, pixels: float) -> NDArray[np.float64]:
-        """The chance, [L], that a thing of each category that is found is told as `category`."""
-        number, right = self.classes.index(category), _inside(self.right[self.bucket(pixels)])
+    def told(self, look: Look) -> NDArray[np.float64]:
+        """The chance, [L], that a thing of each category that is found is told as in a `look`, which tells something.
+
+        Where the detector gave its own chances, they share out among the categories what all of them have together.
+        """
+        assert look.told is not None
+        number, right = self.classes.index(look.told), _inside(self.right[self.bucket(look.pixels)])
         chances: NDArray[np.float64] = (1.0 - right) * self.off[:, number]
         chances[number] = right
-        return chances
+        if look.chances is None or not self.sharpness:
+            return chances
+        return softened(np.array(look.chances), self.sharpness, self.even) * chances.sum()
 
     def likelihood(self, look: Look, first: str) -> NDArray[np.float64]:
         """The chance of a look for each category, and last for clutter that was `first` told so: [L + 1]."""
@@ -103,7 +117,15 @@ class Confusion:
         if look.told is None:
             return np.append(np.full(len(self.classes), 1.0 - found), 1.0 - again)
         clutter = again * (steady if look.told == first else (1.0 - steady) / (len(self.classes) - 1))
-        return np.append(found * self.told(look.told, look.pixels), clutter)
+        real, false = self.sure(look)
+        return np.append(found * real * self.told(look), false * clutter)
+
+    def sure(self, look: Look) -> tuple[float, float]:
+        """The chances that a look at a thing, and one at clutter, are as sure as this one, which tells something."""
+        if look.chances is None or not self.surer:
+            return 1.0, 1.0
+        number = bisect_right(self.surer, max(look.chances)) - 1
+        return _inside(self.real[number]), _inside(self.false[number])
 
     def posterior(self, looks: Sequence[Look], expected: Mapping[str, float], usual: float) -> NDArray[np.float64]:
         """The chance of each category, and last that it is none of them, [L + 1], after `looks` at one place.
@@ -113,13 +135,21 @@ class Confusion:
         first = looks[0].told
         assert first is not None
         there = np.array([expected.get(name, usual) for name in self.classes])
+        real, false = self.sure(looks[0])
         weight = np.append(
-            self.seen * there * self.told(first, looks[0].pixels), max(self.clutter.get(first, 0.0), LEAST)
+            self.seen * there * real * self.told(looks[0]), false * max(self.clutter.get(first, 0.0), LEAST)
         )
         for look in looks[1:]:
             weight = weight * self.likelihood(look, first)
         chances: NDArray[np.float64] = weight / weight.sum()
         return chances
+
+
+def softened(chances: NDArray[np.float64], sharpness: float, even: float) -> NDArray[np.float64]:
+    """A detector's own `chances`, [..., L], to the power of `sharpness`, a share of which is spread `even`ly."""
+    power = np.maximum(chances, TINY) ** sharpness
+    made: NDArray[np.float64] = (1.0 - even) * power / power.sum(-1, keepdims=True) + even / chances.shape[-1]
+    return made
 
 
 def _inside(share: float) -> float:

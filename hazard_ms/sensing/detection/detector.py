@@ -24,6 +24,8 @@ class Detection:
     score: float  # from 0 to 1: how sure the detector is
     box: Box
     mask: NDArray[np.bool_]  # [H, W]
+    # chance of each of the detector's `classes`, [L], which sum to at most 1; None where it tells only the likeliest
+    chances: tuple[float, ...] | None = None
 
 
 class Detector(abc.ABC):

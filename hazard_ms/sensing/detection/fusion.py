@@ -21,21 +21,23 @@ SWITCH = 2.0  # how much likelier another category must be before a track change
 class Evidence:
     """The looks at one place that count."""
 
-    def __init__(self, confusion: Confusion, told: str, pixels: float, eye: NDArray[np.floating]) -> None:
-        """Begin with a detection of so many `pixels` from the place `eye` [m], [3]."""
+    def __init__(self, confusion: Confusion, look: Look, eye: NDArray[np.floating]) -> None:
+        """Begin with a `look` that tells something, from the place `eye` [m], [3]."""
         self._confusion = confusion
-        self._looks = [Look(told, pixels)]
+        self._looks = [look]
         self._eyes = [np.array(eye, np.float64)]
 
-    def look(self, told: str | None, pixels: float, eye: NDArray[np.floating]) -> None:
-        """Enter a look from the place `eye` [m], [3]; `pixels`: seen, or expected where nothing was told."""
+    def look(self, look: Look, eye: NDArray[np.floating]) -> None:
+        """Enter a `look` from the place `eye` [m], [3]."""
         far = np.linalg.norm(np.array(self._eyes) - eye, axis=-1)
         near = int(np.argmin(far))
         if far[near] >= APART:
-            self._looks.append(Look(told, pixels))
+            self._looks.append(look)
             self._eyes.append(np.array(eye, np.float64))
-        elif pixels > self._looks[near].pixels and (near > 0 or told is not None):  # the first look has told something
-            self._looks[near] = Look(told, pixels)
+        elif look.pixels > self._looks[near].pixels and (
+            near > 0 or look.told is not None
+        ):  # the first tells something
+            self._looks[near] = look
 
     @property
     def looks(self) -> tuple[Look, ...]:

@@ -19,7 +19,7 @@ from hazard_ms.sensing.camera import STRUCTURE
 from hazard_ms.sensing.detection.beliefs import believed
 from hazard_ms.sensing.detection.detector import Detector
 from hazard_ms.sensing.detection.labeller import DetectingLabeller, blank
-from hazard_ms.sensing.detection.tracks import ENOUGH, Track, Tracker, surroundings
+from hazard_ms.sensing.detection.tracks import ENOUGH, Found, Track, Tracker, surroundings
 from hazard_ms.sensing.observations import SLOTS
 from hazard_ms.sensing.sighting import sightings
 from hazard_ms.sensing.target_table import Target
@@ -81,7 +81,7 @@ class OwnLabeller(DetectingLabeller):
         seen = sightings(view, frame, len(found), frozenset(), None)
         self._let_go()
         out_of_sight = [*self._stowed, *([self._taken[0]] if self._taken else [])]
-        named = {n: (found[n].category, sighting) for n, sighting in seen.items()}
+        named = {n: Found(found[n].category, sighting, found[n].chances) for n, sighting in seen.items()}
         tracks, lost = self._tracker.update(view, frame, named, out_of_sight)
         self._lost = [*self._missed, *(track.index for track in lost if track.index >= 0)]
         self._missed = []

@@ -15,7 +15,7 @@ from typing import Any
 from hazard_ms.registry import load
 from hazard_ms.registry.detectors import DETECTORS, TRUTH
 from hazard_ms.sensing.detection.detector import Detector
-from hazard_ms.sensing.detection.eyes import EYES, Eyes
+from hazard_ms.sensing.detection.eyes import EYES, FAR, Eyes
 from hazard_ms.sensing.detection.labeller import THRESHOLD, DetectingLabeller, Labeller, PublishedLabeller
 from hazard_ms.sensing.detection.own import OwnLabeller
 from hazard_ms.simulation.world import World
@@ -34,6 +34,7 @@ class Perception:
     association: str = OWN
     threshold: float = THRESHOLD
     fusion: bool = True
+    sight: float = FAR  # distance up to which a look tells most things [m]
 
     def labeller(self, world: World, containers: Sequence[str]) -> Labeller:
         """The labeller of an episode that begins in `world` with `containers`, the names of its carts."""
@@ -103,7 +104,8 @@ def perception(text: str) -> Perception:
     detector = kind(**own)
     if not isinstance(detector, Detector):
         raise ValueError(f"a detector must be a subclass of {Detector.__module__}.Detector, got {kind!r}")
-    return Perception(detector, common.association, common.threshold, common.fusion)
+    sight = Eyes.of(common.eyes or detector.eyes).sight
+    return Perception(detector, common.association, common.threshold, common.fusion, sight)
 
 
 def eyes_of(text: str) -> str:

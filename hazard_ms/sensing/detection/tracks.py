@@ -13,12 +13,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from hazard_ms.sensing.detection.confusion import Confusion
+from hazard_ms.sensing.detection.confusion import Confusion, Look
 from hazard_ms.sensing.detection.fusion import Evidence
 from hazard_ms.sensing.sighting import Sighting, merged
 from hazard_ms.sensing.view import View
@@ -33,6 +34,14 @@ ENOUGH = 2  # frames in which a thing must be seen before it is believed [ours]
 GONE = 2  # frames in which its place must be seen empty before it is forgotten [ours]
 CLOSE = 0.2  # distance within which a thing of another category is the same one, told otherwise [m] [ours]
 UNPAIRED = 1e6  # cost of a pair that cannot be: more than all distances of a scene together [m]
+
+
+class Found(NamedTuple):
+    """A detection as tracks take it: its category, where it is, and the chances that the detector told, if it did."""
+
+    category: str
+    sighting: Sighting
+    chances: tuple[float, ...] | None = None
 
 
 @dataclass(eq=False)
@@ -85,19 +94,17 @@ def surroundings(view: View, sighting: Sighting) -> tuple[tuple[slice, slice], N
     return window, np.abs(view.depth[window] - far) < reach
 
 
-def pairs(
-    tracks: Sequence[Track], found: Sequence[tuple[str, Sighting]], frame: int, fused: bool = False
-) -> list[tuple[int, int]]:
-    """The pairs (track, detection) of the least summed distance, as indices; `found`: category and sighting each.
+def pairs(tracks: Sequence[Track], found: Sequence[Found], frame: int, fused: bool = False) -> list[tuple[int, int]]:
+    """The pairs (track, detection) of the least summed distance, as indices.
 
     A pair of two categories, where these are `fused`, counts as if it were farther apart than all of one.
     """
     if not tracks or not found:
         return []
     old = np.array([track.sighting.position for track in tracks], np.float64)
-    new = np.array([sighting.position for _, sighting in found], np.float64)
+    new = np.array([each.sighting.position for each in found], np.float64)
     cost = np.linalg.norm(old[:, None] - new[None], axis=-1)
-    same = np.array([[track.category == category for category, _ in found] for track in tracks])
+    same = np.array([[track.category == each.category for each in found] for track in tracks])
     reach = np.array([track.reach(frame) for track in tracks])
     close = ~same & (cost < CLOSE) & fused
     far = ~same | (cost >= reach[:, None])
@@ -116,9 +123,9 @@ class Tracker:
         self._confusion = confusion
 
     def update(
-        self, view: View, frame: int, found: Mapping[int, tuple[str, Sighting]], still: Sequence[Track] = ()
+        self, view: View, frame: int, found: Mapping[int, Found], still: Sequence[Track] = ()
     ) -> tuple[dict[int, Track], list[Track]]:
-        """Enter what was `found` in a `view`: by number of a detection, its category and sighting.
+        """Enter what was `found` in a `view`: by number of a detection.
 
         Returns the track of each detection, and the tracks that are given up because their places are empty, which
         rescued ones never are. Those in `still` are left alone: the hand has them, or they are in the bag.
@@ -131,13 +138,13 @@ class Tracker:
         numbers = list(found)
         matched: dict[int, Track] = {}
         for row, column in pairs(known, [found[n] for n in numbers], frame, self._confusion is not None):
-            track, seen = known[row], found[numbers[column]][1]
+            track, seen = known[row], found[numbers[column]].sighting
             track.frames += track.sighting.frame < frame
             track.sighting, track.empty = merged(track.sighting, seen), 0
             matched[numbers[column]] = track
         for number in numbers:
             if number not in matched:
-                matched[number] = Track(*found[number])
+                matched[number] = Track(found[number].category, found[number].sighting)
                 self.tracks.append(matched[number])
         if self._confusion is not None:
             self._look(view, frame, known, {n: (found[n], track) for n, track in matched.items()})
@@ -150,23 +157,25 @@ class Tracker:
         view: View,
         frame: int,
         known: Sequence[Track],
-        told: Mapping[int, tuple[tuple[str, Sighting], Track]],
+        told: Mapping[int, tuple[Found, Track]],
     ) -> None:
         """Enter what a `view` told of its tracks, and that it told nothing of the others whose places it shows."""
         assert self._confusion is not None
         eye = view.cam2world[:3, 3]
-        for (category, seen), track in told.values():
+        for (category, seen, chances), track in told.values():
             track.size = seen.pixels * float(np.sum((seen.position - eye) ** 2))
             if category not in self._confusion.classes:
                 continue
+            look = Look(category, seen.pixels, chances)
             if track.evidence is None:
-                track.evidence = Evidence(self._confusion, category, seen.pixels, eye)
+                track.evidence = Evidence(self._confusion, look, eye)
             else:
-                track.evidence.look(category, seen.pixels, eye)
+                track.evidence.look(look, eye)
         found = [track for _, track in told.values()]
         for track in known:
             if track.evidence is not None and track not in found and shows(view, track.sighting):
-                track.evidence.look(None, track.size / float(np.sum((track.sighting.position - eye) ** 2)), eye)
+                pixels = track.size / float(np.sum((track.sighting.position - eye) ** 2))
+                track.evidence.look(Look(None, pixels), eye)
 
 
 def shows(view: View, sighting: Sighting) -> bool:

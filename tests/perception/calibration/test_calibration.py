@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -117,3 +118,28 @@ def test_the_shipped_detector_knows_its_errors() -> None:
     assert list(made.classes) == list(Small().classes) and made.eyes == Small.eyes
     assert made.found[0] < 0.5 < made.found[-1] and made.again < made.found[-1]
     assert json.loads(path.read_text())["command"].startswith("hazard-ms perception calibrate")
+
+
+def test_what_a_detectors_own_chances_are_worth_is_found_again() -> None:
+    """Things told by chances that are too flat: their squares are right; looks at things are surer than at clutter."""
+    chance, looks = np.random.default_rng(0), []
+    for scene in range(300):
+        true = chance.dirichlet((0.6, 0.6, 0.6))  # what the detector should tell
+        category = int(chance.choice(3, p=true))
+        flat = np.sqrt(true) / np.sqrt(true).sum()
+        mug = replace(told(CLASSES[int(flat.argmax())], MUG, 1), chances=tuple(flat.tolist()))
+        none = replace(told("book", NOTHING), chances=(0.1, 0.1, 0.3))
+        looks.append(Observed(str(scene), view(2.0), (mug, none), {1: 50}, {1: CLASSES[category]}))
+    made = confusion_of(looks, CLASSES, "", "")
+    assert made.sharpness == 2.0 and made.even <= 0.02
+    assert made.surer == (0.0, 0.35, 0.5, 0.65, 0.8)
+    # 300 looks at clutter and one more in each bucket
+    assert made.false == (pytest.approx(301 / 305, abs=1e-4), *[pytest.approx(1 / 305, abs=1e-4)] * 4)
+    surest = np.array([max(look.told[0].chances or ()) for look in looks])
+    assert made.real[0] == pytest.approx((1 + (surest < 0.35).sum()) / 305, abs=1e-4)
+    assert made.real[4] == pytest.approx((1 + (surest >= 0.8).sum()) / 305, abs=1e-4)
+
+
+def test_a_detector_that_tells_no_chances_has_none_that_count() -> None:
+    made = confusion_of([picture(told("mug", MUG, 1))], CLASSES, "", "")
+    assert (made.sharpness, made.surer) == (0.0, ())

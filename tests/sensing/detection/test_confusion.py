@@ -48,6 +48,30 @@ def test_the_posterior_is_that_by_hand(looks: list[Look], mug: float) -> None:
     assert chances.tolist() == pytest.approx([mug, 0.0, 0.0, 1.0 - mug], abs=1e-12)
 
 
+def test_a_detectors_own_chances_share_out_what_all_categories_have_together() -> None:
+    """Told a mug by few pixels: 0.6 + 0.4 (2.5 / 3 + 1 / 2) together, shared out by squares 4 : 1 : 0, and evenly."""
+    table = replace(TABLE, clutter={}, sharpness=2.0, even=0.1)
+    together = 0.6 + 0.4 * (2.5 / 3.0 + 0.5)
+    shares = np.array([0.9 * 0.8 + 0.1 / 3, 0.9 * 0.2 + 0.1 / 3, 0.1 / 3])
+    weights = np.append(0.5 * np.array([1, 3, 2]) * together * shares, 1e-3)
+    look = Look("mug", 50, (0.4, 0.2, 0.0))
+    chances = table.posterior([look], {"mug": 1, "bowl": 3, "book": 2}, 0.0)
+    assert chances.tolist() == pytest.approx((weights / weights.sum()).tolist(), abs=1e-8)
+    assert table.posterior([Look("mug", 50)], ONE_MUG, 0.0)[0] == pytest.approx(0.3 / 0.301), "none were told"
+
+
+def test_a_surer_look_tells_more_against_clutter() -> None:
+    """0.3 for the mug times 0.7 of surer looks at things; for clutter 0.1 of them, later ones, too."""
+    table = replace(TABLE, sharpness=0.0, surer=(0.0, 0.5), real=(0.3, 0.7), false=(0.9, 0.1))
+    sure, unsure = (Look("mug", 50, (chance, 0.0, 0.0)) for chance in (0.5, 0.49))
+    for looks, mug, clutter in (
+        ([sure], 0.3 * 0.7, 0.1),
+        ([unsure], 0.3 * 0.3, 0.9),
+        ([sure, unsure], 0.3 * 0.7 * 0.5 * 0.6 * 0.3, 0.1 * 0.25 * 0.8 * 0.9),
+    ):
+        assert table.posterior(looks, ONE_MUG, 0.0)[0] == pytest.approx(mug / (mug + clutter))
+
+
 def test_what_is_often_taken_for_another_is_believed_to_be_it() -> None:
     """Two of two errors at a bowl told a mug; smoothed by half a look each: 2.5 of 3. No clutter but the least."""
     table = replace(TABLE, clutter={})

@@ -11,7 +11,7 @@ from hazard_ms.sensing.detection.beliefs import believed, shared
 from hazard_ms.sensing.detection.confusion import Look
 from hazard_ms.sensing.detection.fusion import Evidence, category_of
 from hazard_ms.sensing.detection.own import OwnLabeller
-from hazard_ms.sensing.detection.tracks import CLOSE, GATE, Track, Tracker, pairs
+from hazard_ms.sensing.detection.tracks import CLOSE, GATE, Found, Track, Tracker, pairs
 from hazard_ms.sensing.view import View
 from hazard_ms.simulation.world import World
 from tests.sensing.detection.test_confusion import TABLE
@@ -32,15 +32,15 @@ def moved(depth: float) -> View:
 
 
 def test_of_looks_from_one_place_the_one_with_the_most_pixels_counts() -> None:
-    mine = Evidence(TABLE, "mug", 20, HERE)
-    mine.look(None, 15, BESIDE)
-    mine.look(None, 30, BESIDE)  # what was found first was found
+    mine = Evidence(TABLE, Look("mug", 20), HERE)
+    mine.look(Look(None, 15), BESIDE)
+    mine.look(Look(None, 30), BESIDE)  # what was found first was found
     assert mine.looks == (Look("mug", 20),)
-    mine.look("bowl", 40, BESIDE)
-    mine.look(None, 10, ELSEWHERE)
-    mine.look("mug", 10, ELSEWHERE)
+    mine.look(Look("bowl", 40), BESIDE)
+    mine.look(Look(None, 10), ELSEWHERE)
+    mine.look(Look("mug", 10), ELSEWHERE)
     assert mine.looks == (Look("bowl", 40), Look(None, 10))
-    mine.look("mug", 11, ELSEWHERE)
+    mine.look(Look("mug", 11), ELSEWHERE)
     assert mine.looks == (Look("bowl", 40), Look("mug", 11))
 
 
@@ -52,17 +52,17 @@ def test_a_track_changes_its_category_for_one_that_is_twice_as_likely() -> None:
 
 def test_a_detection_of_another_category_goes_on_with_a_track_only_where_it_is_close_and_nothing_better_is() -> None:
     tracks = [Track("mug", seen(2.0, 0.0, 0))]
-    other = [("bowl", seen(2.0, CLOSE - 0.01, 1))]
+    other = [Found("bowl", seen(2.0, CLOSE - 0.01, 1))]
     assert pairs(tracks, other, 1) == [] and pairs(tracks, other, 1, fused=True) == [(0, 0)]
-    assert pairs(tracks, [("bowl", seen(2.0, CLOSE + 0.01, 1))], 1, fused=True) == []
-    both = [("bowl", seen(2.0, 0.01, 1)), ("mug", seen(2.0, GATE - 0.01, 1))]
+    assert pairs(tracks, [Found("bowl", seen(2.0, CLOSE + 0.01, 1))], 1, fused=True) == []
+    both = [Found("bowl", seen(2.0, 0.01, 1)), Found("mug", seen(2.0, GATE - 0.01, 1))]
     assert pairs(tracks, both, 1, fused=True) == [(0, 1)], "its own category, though that is farther away"
 
 
 def test_what_should_be_seen_and_is_not_tells_against_it_and_what_is_hidden_does_not() -> None:
     """At 2 m before a wall at 2.1 m; then something at 1 m is before it."""
     tracker = Tracker(TABLE)
-    ((_, track),) = tracker.update(view(2.1), 0, {0: ("mug", seen(2.0, 0.0, 0))})[0].items()
+    ((_, track),) = tracker.update(view(2.1), 0, {0: Found("mug", seen(2.0, 0.0, 0))})[0].items()
     assert track.evidence is not None and track.evidence.looks == (Look("mug", 50),)
     tracker.update(moved(1.0), 1, {})
     assert len(track.evidence.looks) == 1
@@ -72,16 +72,22 @@ def test_what_should_be_seen_and_is_not_tells_against_it_and_what_is_hidden_does
     assert tracker.tracks == [track]
 
 
+def test_what_a_detector_gives_itself_goes_into_the_evidence() -> None:
+    tracker = Tracker(TABLE)
+    ((_, track),) = tracker.update(view(2.1), 0, {0: Found("mug", seen(2.0, 0.0, 0), (0.5, 0.3, 0.1))})[0].items()
+    assert track.evidence is not None and track.evidence.looks == (Look("mug", 50, (0.5, 0.3, 0.1)),)
+
+
 def test_without_errors_that_are_known_nothing_is_weighed() -> None:
     tracker = Tracker()
-    tracker.update(view(2.1), 0, {0: ("mug", seen(2.0, 0.0, 0))})
-    tracker.update(view(2.1), 1, {0: ("bowl", seen(2.0, 0.0, 1))})
+    tracker.update(view(2.1), 0, {0: Found("mug", seen(2.0, 0.0, 0))})
+    tracker.update(view(2.1), 1, {0: Found("bowl", seen(2.0, 0.0, 1))})
     assert [(t.category, t.evidence, t.belief) for t in tracker.tracks] == [("mug", None, 1.0), ("bowl", None, 1.0)]
 
 
 def test_of_one_mug_that_is_left_two_places_share_the_belief() -> None:
     """Each by itself 0.3 / 1.3 x 2 mugs: 0.6 / 1.6; with one of two in the bag, their sum may be one at most."""
-    tracks = [Track("mug", seen(2.0, y, 0), evidence=Evidence(TABLE, "mug", 50, HERE)) for y in (0.0, 1.0, 2.0)]
+    tracks = [Track("mug", seen(2.0, y, 0), evidence=Evidence(TABLE, Look("mug", 50), HERE)) for y in (0.0, 1.0, 2.0)]
     told = {"mug": 2, "bowl": 0, "book": 0}
     assert [(k, b) for _, k, b in believed(tracks, (), told)] == [("mug", pytest.approx(0.6 / 1.6))] * 3
     made = believed(tracks, tracks[:1], {**told, "mug": 1})
@@ -138,7 +144,7 @@ def test_what_is_told_otherwise_from_nearer_gets_another_name(labeller: OwnLabel
     (track,) = labeller._tracker.tracks
     assert track.index == 0 and track.evidence is not None
     for x in (1.0, 2.0):
-        track.evidence.look("book", 200, np.array([x, 0.0, 1.0]))
+        track.evidence.look(Look("book", 200), np.array([x, 0.0, 1.0]))
     seen_now = look(labeller, 2, ("mug", BOOK))
     assert track.category == "book" and labeller.names[at(seen_now, BOOK)] == "book#1"
     assert 0 in labeller.unmapped()

@@ -7,7 +7,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from hazard_ms.sensing.detection.tracks import DRIFT, GATE, Track, Tracker, pairs, seen_through
+from hazard_ms.sensing.detection.tracks import DRIFT, GATE, Found, Track, Tracker, pairs, seen_through
 from hazard_ms.sensing.sighting import Sighting
 from tests.worlds.wall import view
 
@@ -34,7 +34,7 @@ def test_a_place_is_empty_if_what_is_behind_it_is_seen(wall: float, empty: bool)
 def test_the_pairs_are_those_of_the_least_sum() -> None:
     """Two tracks are nearest to the same detection, and two detections to the same track."""
     tracks = [Track("mug", seen(2.0, y, 0)) for y in (0.0, 0.2, 0.5)]
-    found = [("mug", seen(2.0, y, 1)) for y in (0.29, 0.6, 0.12)]
+    found = [Found("mug", seen(2.0, y, 1)) for y in (0.29, 0.6, 0.12)]
     made = sorted(pairs(tracks, found, 1))
 
     def far(track: int, detection: int) -> float:
@@ -47,25 +47,25 @@ def test_the_pairs_are_those_of_the_least_sum() -> None:
 
 def test_a_pair_has_one_category_and_is_near() -> None:
     tracks = [Track("mug", seen(2.0, 0.0, 0))]
-    assert pairs(tracks, [("bowl", seen(2.0, 0.0, 1))], 1) == []
-    assert pairs(tracks, [("mug", seen(2.0, GATE + 0.01, 1))], 1) == []
-    assert pairs(tracks, [("mug", seen(2.0, GATE - 0.01, 1))], 1) == [(0, 0)]
+    assert pairs(tracks, [Found("bowl", seen(2.0, 0.0, 1))], 1) == []
+    assert pairs(tracks, [Found("mug", seen(2.0, GATE + 0.01, 1))], 1) == []
+    assert pairs(tracks, [Found("mug", seen(2.0, GATE - 0.01, 1))], 1) == [(0, 0)]
 
 
 def test_of_furniture_any_part_may_be_seen() -> None:
     tracks = [Track("table", seen(2.0, 0.0, 0, radius=0.8))]
-    assert pairs(tracks, [("table", seen(2.0, 1.0, 1))], 1) == [(0, 0)]
-    assert pairs(tracks, [("table", seen(2.0, 1.2, 1))], 1) == []
+    assert pairs(tracks, [Found("table", seen(2.0, 1.0, 1))], 1) == [(0, 0)]
+    assert pairs(tracks, [Found("table", seen(2.0, 1.2, 1))], 1) == []
 
 
 def test_a_thing_whose_place_is_empty_may_have_drifted() -> None:
     """Another one at the same distance is another one as long as the first one's place was not seen empty."""
     for wall, same in ((4.0, True), (1.0, False)):
         tracker = Tracker()
-        (first,) = tracker.update(view(4.0), 0, {0: ("mug", seen(2.0, 0.0, 0))})[0].values()
+        (first,) = tracker.update(view(4.0), 0, {0: Found("mug", seen(2.0, 0.0, 0))})[0].values()
         frames = 50
         moved = GATE + DRIFT * frames - 0.01
-        (later,) = tracker.update(view(wall), frames, {0: ("mug", seen(2.0, moved, frames))})[0].values()
+        (later,) = tracker.update(view(wall), frames, {0: Found("mug", seen(2.0, moved, frames))})[0].values()
         assert (later is first) is same
         if same:
             assert first.sighting.position[1] == pytest.approx(moved) and first.frames == 2 and first.empty == 0
@@ -74,13 +74,13 @@ def test_a_thing_whose_place_is_empty_may_have_drifted() -> None:
 def test_two_looks_in_one_frame_count_once() -> None:
     tracker = Tracker()
     for frame, frames in ((0, 1), (0, 1), (1, 2)):
-        (track,) = tracker.update(view(), frame, {7: ("mug", seen(2.0, 0.0, frame))})[0].values()
+        (track,) = tracker.update(view(), frame, {7: Found("mug", seen(2.0, 0.0, frame))})[0].values()
         assert track.frames == frames
 
 
 def test_what_is_gone_is_given_up_but_not_what_is_hidden_or_held() -> None:
     tracker = Tracker()
-    made, _ = tracker.update(view(), 0, {0: ("mug", seen(2.0, 0.0, 0)), 1: ("mug", seen(2.0, 1.0, 0))})
+    made, _ = tracker.update(view(), 0, {0: Found("mug", seen(2.0, 0.0, 0)), 1: Found("mug", seen(2.0, 1.0, 0))})
     gone, held = made[0], made[1]
     for frame, wall, lost in ((1, 1.0, []), (2, 4.0, []), (3, 1.0, []), (4, 4.0, [gone])):
         assert tracker.update(view(wall), frame, {}, [held])[1] == lost
@@ -89,6 +89,6 @@ def test_what_is_gone_is_given_up_but_not_what_is_hidden_or_held() -> None:
 
 def test_furniture_is_not_given_up() -> None:
     tracker = Tracker()
-    tracker.update(view(), 0, {0: ("table", seen(2.0, 0.0, 0))})
+    tracker.update(view(), 0, {0: Found("table", seen(2.0, 0.0, 0))})
     for frame in range(1, 9):
         assert tracker.update(view(4.0), frame, {})[1] == []

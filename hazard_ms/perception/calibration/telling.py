@@ -1,0 +1,55 @@
+"""What the chances that a detector itself gives are worth: how sharp they are, and how sure looks at things are.
+
+The sharpness and the even share (`hazard_ms.sensing.detection.confusion`) are those of a grid by which the true
+categories of what was found are likeliest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.perception.calibration.observing import Observed, Told
+from hazard_ms.sensing.detection.confusion import softened
+
+SHARPNESS = (0.3, 0.5, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0, 3.0)  # that are tried [ours]
+EVEN = (0.01, 0.02, 0.05, 0.1, 0.2, 0.3)  # that are tried [ours]
+SURER = (0.0, 0.35, 0.5, 0.65, 0.8)  # least of each bucket of the largest chance [ours]
+DIGITS = 4  # of a share
+
+
+def worth(looks: Sequence[Observed], classes: Sequence[str]) -> dict[str, Any]:
+    """The fields of a `Confusion` that tell of a detector's own chances; none where it tells no chances.
+
+    Each share of looks is as after one more look in each bucket.
+    """
+    told = [(each, look.kinds.get(each.thing)) for look in looks for each in look.told if each.chances is not None]
+    real = [(each, category) for each, category in told if category is not None]
+    if not real:
+        return {}
+    chances = np.array([each.chances for each, _ in real])
+    true = np.array([classes.index(category) for _, category in real])
+    sharpness, even = max(product(SHARPNESS, EVEN), key=lambda pair: _likelihood(chances, true, *pair))
+    return {
+        "sharpness": sharpness,
+        "even": even,
+        "surer": SURER,
+        "real": _shares([each for each, _ in real]),
+        "false": _shares([each for each, category in told if category is None]),
+    }
+
+
+def _likelihood(chances: NDArray[np.float64], true: NDArray[np.int64], sharpness: float, even: float) -> float:
+    """The mean logarithm of the chance of the `true` category, [N], by `chances`, [N, L]."""
+    return float(np.log(softened(chances, sharpness, even)[np.arange(len(true)), true]).mean())
+
+
+def _shares(told: Sequence[Told]) -> tuple[float, ...]:
+    """The share of the detections in each bucket of SURER."""
+    surest = [max(each.chances or (0.0,)) for each in told]
+    count = 1.0 + np.histogram(surest, (*SURER, np.inf))[0]
+    return tuple(round(float(share), DIGITS) for share in count / count.sum())

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hazard_ms.agents.search.lookouts import HIDDEN, SIGHT, lookouts, unseen_floor
+from hazard_ms.agents.search.lookouts import FROM_AFAR, HIDDEN, lookouts, unseen_floor
+from hazard_ms.sensing.detection.eyes import FAR
 from hazard_ms.skills.decision import Decision
 from tests.worlds.playground import Playground
 
@@ -75,7 +76,7 @@ def test_looks_in_vain_leave_less_hope(count: int) -> None:
     disc = np.hypot(*middle) <= 2.5
     seen._firm[y[~disc], x[~disc]] = 1.0
     missed = (1 - HIDDEN) * HIDDEN**count
-    part = (np.hypot(middle[0] - 2.4, middle[1])[disc] < SIGHT).mean()  # of the disc, that is seen from the border
+    part = (np.hypot(middle[0] - 2.4, middle[1])[disc] < FAR).mean()  # of the disc, that is seen from the border
     found = lookouts(decision, {}, [HERE] * count, [])
     assert found[0].share == pytest.approx(part * missed / (missed + HIDDEN), rel=0.04)
 
@@ -99,11 +100,23 @@ def test_where_no_floor_is_left_it_goes_to_what_it_has_not_visited() -> None:
 
 
 def test_a_place_shows_its_share_of_all_that_may_be_hidden() -> None:
-    """Floor of the disc that was seen counts HIDDEN of the ring that was not; a look shows what is within SIGHT."""
+    """Floor of the disc that was seen counts HIDDEN of the ring that was not; a look shows what is within FAR."""
     decision = looked({"border": (2.9, 0.0)})
     y, x = np.mgrid[-60:60, -60:60] * 0.1 + 0.05
     away = np.hypot(x, y)
     floor = away < 5.0
     missed = (1 - HIDDEN) * np.where(away < 3.0, HIDDEN, 1.0) * floor / floor.sum()  # there, and not seen yet
-    expected = missed[np.hypot(x - 2.9, y) < SIGHT].sum() / (missed.sum() + HIDDEN)  # Bayes' rule
+    expected = missed[np.hypot(x - 2.9, y) < FAR].sum() / (missed.sum() + HIDDEN)  # Bayes' rule
     assert lookouts(decision, {}, [HERE], [])[0].share == pytest.approx(expected, rel=0.07)
+
+
+def test_what_a_detector_saw_from_afar_is_hardly_searched() -> None:
+    """With a sight of 1 m, floor that was seen counts HIDDEN within 1 m of the look, and FROM_AFAR beyond."""
+    decision = looked({"border": (2.9, 0.0)})
+    y, x = np.mgrid[-60:60, -60:60] * 0.1 + 0.05
+    away = np.hypot(x, y)
+    floor = away < 5.0
+    left = np.where(away < 1.0, HIDDEN, np.where(away < 3.0, FROM_AFAR, 1.0)) * floor
+    missed = (1 - HIDDEN) * left / floor.sum()
+    expected = missed[np.hypot(x - 2.9, y) < 1.0].sum() / (missed.sum() + HIDDEN)
+    assert lookouts(decision, {}, [HERE], [], sight=1.0)[0].share == pytest.approx(expected, rel=0.07)

@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from hazard_ms.skills.decision import Decision
+from hazard_ms.skills.failures import NO_PATH
+
+ENCLOSED = 2  # things to which there is no path, from which it is the robot that cannot get away [ours]
+
 
 @dataclass
 class Attempts:
@@ -16,3 +21,22 @@ class Attempts:
     rounds: int = 0  # times that what was given up was tried again
     visits: dict[str, int] = field(default_factory=dict)  # of landmarks in search
     looked: bool = False  # around, in search
+
+
+class Enclosure:
+    """Tells from failed walks that no way leads out of where the robot stands."""
+
+    def __init__(self) -> None:
+        self._no_path: set[str] = set()  # things to which there was no path, one after another
+
+    def noticed(self, decision: Decision) -> bool:
+        """Whether there is no way to one thing after another: not they are to blame, but where the robot stands."""
+        last, result = decision.last_action, decision.last_result
+        if last is None or result is None or last.target is None or result.reason != NO_PATH or result.frames:
+            self._no_path.clear()
+            return False
+        self._no_path.add(last.target)
+        if len(self._no_path) < ENCLOSED:
+            return False
+        self._no_path.clear()
+        return True

@@ -4,7 +4,7 @@ It alone sees what is hidden: where everything is, what is damaged, and what wil
 At each decision it plans by the exact search of hazard_ms.planning, enters into its map where things really are, and
 acts by ordinary skills, so that what fails in their execution fails for the oracle, too. With `known=true` it plans
 only with what its map holds, and searches when that is all done: the difference between the two is what it costs not
-to know.
+to know. Where a gale blows it rescues what that will carry off, into carts or into the lee (hazard_ms.agents.gale).
 """
 
 from __future__ import annotations
@@ -12,23 +12,24 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.agents.attempts import Attempts
+from hazard_ms.agents.attempts import Attempts, Enclosure
 from hazard_ms.agents.base import PrivilegedAgent
+from hazard_ms.agents.gale.truth import GaleTruth, hazard_of
 from hazard_ms.agents.search.memory import ELSEWHERE, SAME_AGAIN, after
 from hazard_ms.agents.search.outlook import SPREAD
+from hazard_ms.agents.search.tours import tour
 from hazard_ms.agents.search.walks import detours
 from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import PlannedRescue, soonest
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
+from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
-from hazard_ms.skills.failures import NO_PATH, UNREACHABLE
+from hazard_ms.skills.failures import UNREACHABLE
 from hazard_ms.skills.motor.walking import ARRIVED, MIDPOINT
-from hazard_ms.skills.options.landmarks import landmarks
-from hazard_ms.skills.options.macros import Macro, play
-from hazard_ms.skills.options.options import LANDMARK, LOOK, Option
+from hazard_ms.skills.options.macros import Macro
 
 MOST_REACH = 2.0  # distance up to which it reaches for a thing after a walk has arrived [m] [ours]
 NEAR = 0.2  # beyond where a walk arrives, from which it reaches for a thing without walking [m] [ours]
@@ -39,7 +40,6 @@ CART_FAILURES = 3  # after which a cart is no longer used [ours]
 FADING = 2e-4  # share of a target's value that is at risk in each frame until it is safe: skills fail [ours]
 MOVED = 0.2  # a thing that will be met farther than this from where it is now is moving [m] [ours]
 LOYALTY = 20.0  # frames that it deducts for the target that it is on its way to, so that it does not waver [ours]
-ENCLOSED = 2  # targets to which there is no path, from which it is the robot that cannot get away [ours]
 ROUNDS = 2  # number of times that it tries again what it had given up [ours]
 MOST_LABELS = 20_000  # of the exact search: rarely needed [ours]
 BEAM = 2_000  # labels of a layer beyond that [ours]
@@ -50,9 +50,9 @@ class Oracle(PrivilegedAgent):
 
     colours = False
 
-    def __init__(self, known: bool = False) -> None:
-        """`known`: whether it plans only with the targets and carts that its map holds."""
-        self._only_known = known
+    def __init__(self, known: bool = False, mitigate: bool = True) -> None:
+        """`known`: whether it plans only with what its map holds; `mitigate`: whether it also acts against a hazard."""
+        self._only_known, self._mitigate = known, mitigate
         self._truth: Truth | None = None
 
     def attach(self, env: SkillEnv) -> None:
@@ -65,12 +65,15 @@ class Oracle(PrivilegedAgent):
             raise ValueError("an environment must be attached to the oracle before its reset, got none")
         base = self._truth.env.base
         self._scene = RescueScene(base.specs[0], brief.robot, base.agent.build.radius, brief.max_frames)
+        gale = hazard_of(base)
+        self._gale = None if gale is None else GaleTruth(base, gale, self._scene, self._mitigate)
+        self._truth.furniture = gale is not None
         self._carts = np.array([base.world.index(0, name) for name in brief.containers], np.int64)
         self._attempts = Attempts()
         self._goal: str | None = None
         self._before: tuple[Action, tuple[float, float]] | None = None  # the last action, and where it began [m]
         self._search: Macro | None = None
-        self._no_path: set[str] = set()  # targets to which there was no path, one after another
+        self._enclosure = Enclosure()
 
     def act(self, decision: Decision) -> Action:
         """The next action: the first step of the best plan from here on."""
@@ -79,23 +82,13 @@ class Oracle(PrivilegedAgent):
             self._truth.furnish()
         self._judge(decision, self._truth)
         self._attempts.in_vain = self._in_vain(decision, self._truth)
-        action = Action(EXPLORE) if self._enclosed(decision) else self._choose(decision, self._truth)
+        if self._enclosure.noticed(decision):
+            action = self._say("no way leads anywhere: look around", Action(EXPLORE))
+        else:
+            action = self._choose(decision, self._truth)
         self._before = (action, decision.agent_position)
         self._truth.reveal()
         return action
-
-    def _enclosed(self, decision: Decision) -> bool:
-        """Whether there is no way to one target after another: not they are to blame, but where the robot stands."""
-        last, result = decision.last_action, decision.last_result
-        if last is None or result is None or last.target is None or result.reason != NO_PATH or result.frames:
-            self._no_path.clear()
-            return False
-        self._no_path.add(last.target)
-        if len(self._no_path) < ENCLOSED:
-            return False
-        self._no_path.clear()
-        self.note = "no way leads anywhere: look around"
-        return True
 
     def _choose(self, decision: Decision, truth: Truth) -> Action:
         if decision.held is not None and not decision.containers:
@@ -105,11 +98,13 @@ class Oracle(PrivilegedAgent):
             return self._otherwise(decision, truth)
         self._search = None
         holding = decision.held is not None
+        if holding and self._gale is not None and (lee := self._gale.put_away(decision, self._carts)) is not None:
+            return self._say(self._gale.note, lee)
         index = self._cart(decision, step.cart) if holding else self._arrived_at(decision, truth, step.target)
         name = self._goal = decision.names[index]
         if self._is_near(decision, truth, index):
             return Action(DROP if holding else PICK_UP, name)
-        met = truth.future().position_at(step.met)[index]
+        met = self._future(truth).position_at(step.met)[index]
         moves = float(np.linalg.norm(met - truth.position(index))) > MOVED
         truth.aim = {index: met} if moves and decision.walked_up_to != name else {}
         one_step = Action(WALK_ONE_STEP, name)
@@ -121,11 +116,15 @@ class Oracle(PrivilegedAgent):
         names = decision.names
         targets = [t for t in decision.targets if t.held or self._considered(t.name, t.index, truth, GIVE_UP)]
         targets = [t for t in targets if not t.rescued and (t.held or t.name not in self._attempts.in_vain)]
+        if self._gale is not None:
+            stake = self._gale.at_stake(truth.record())
+            targets = [t for t in targets if stake[t.index]]
         carts = [c for c in self._carts if self._considered(names[c], int(c), truth, CART_FAILURES)]
         if not targets or (decision.containers and not len(carts)):
             return None
-        problem = self._scene.problem(
-            truth.future(),
+        source = self._scene if self._gale is None else self._gale
+        problem = source.problem(
+            truth.future() if self._gale is None else truth.record(),
             np.array([t.index for t in targets]),
             np.array([t.value * self._chance(t.name, decision) for t in targets]),
             np.array(carts, np.int64),
@@ -141,8 +140,12 @@ class Oracle(PrivilegedAgent):
         if first is None:
             return None
         self.note = self.note if plan.rescues else "too late by any plan, but the nearest"
-        cart = int(np.flatnonzero(self._carts == carts[first.cart])[0]) if decision.containers else -1
+        used = min(first.cart, len(carts) - 1)  # sites in the lee have the numbers beyond the carts
+        cart = int(np.flatnonzero(self._carts == carts[used])[0]) if decision.containers else -1
         return first._replace(target=targets[first.target].index, cart=cart)
+
+    def _future(self, truth: Truth) -> Timeline:
+        return truth.future() if self._gale is None else self._gale.future(truth.record())
 
     def _detours(self, decision: Decision, truth: Truth, targets: list[int]) -> NDArray[np.float64]:
         """Frames by which the walk to each of `targets`, [T], is longer now, past what floats or was pushed about."""
@@ -232,15 +235,10 @@ class Oracle(PrivilegedAgent):
                 return self._search.send(decision)
             except StopIteration:
                 self._search = None
-        marks = landmarks(decision, self._attempts.visits, 1)
-        if not self._attempts.looked:
-            option, self._attempts.looked = Option(LOOK), True
-        elif marks:
-            option, visits = Option(LANDMARK, marks[0].name), self._attempts.visits
-            visits[marks[0].name] = visits.get(marks[0].name, 0) + 1
-        else:
+        found = tour(decision, self._attempts)
+        if found is None:
             return None
-        self._search = play(option, decision)
+        self._search, option = found
         return self._say(f"search: {option}", next(self._search))
 
     def _say(self, note: str, action: Action) -> Action:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.sensing.furniture import told
 from hazard_ms.sensing.sighting import Sighting
-from hazard_ms.sketch.recording import ahead
+from hazard_ms.sketch.recording import ahead, recorded
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.options.landmarks import WALKABLE
@@ -48,6 +48,8 @@ class Truth:
         self.env, self._only_known = env, only_known
         self.aim: dict[int, NDArray[np.float32]] = {}  # where the map is to place some things instead [m], by index
         self._future = Future(env)
+        self._record: Timeline | None = None
+        self.furniture = False  # whether the map is told where all furniture is, as it is of containers
         look = env.stage.look
 
         def looked() -> None:
@@ -69,6 +71,13 @@ class Truth:
         """The timeline from here on if nobody acts, predicted again when a target is not as predicted."""
         return self._future.timeline()
 
+    def record(self) -> Timeline:
+        """The timeline of the whole episode if nobody acts from its start on."""
+        if self._record is None:
+            base = self.env.base
+            self._record = recorded(base.task, base.physics, base.specs[0], int(base.world.chance.seed[0]))
+        return self._record
+
     def furnish(self) -> None:
         """Enter furniture and walls into the map.
 
@@ -84,6 +93,9 @@ class Truth:
         world = base.world
         there = (world.target[0] & ~(world.safe | world.held | world.away)[0]).cpu().numpy()
         there[[world.index(0, cart.name) for cart in base.specs[0].containers]] = True
+        if self.furniture:
+            spec = base.specs[0]
+            there[len(spec.bodies) : len(spec.things)] = True
         places, extents = world.position[0].cpu().numpy(), world.extent[0].cpu().numpy()
         damaged = base.episode.damage.damaged[0].cpu().numpy()
         made = {}

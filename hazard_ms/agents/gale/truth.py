@@ -18,10 +18,10 @@ from hazard_ms.agents.gale.course import Array, Course, Front, Lees, kept
 from hazard_ms.agents.gale.sites import OnGround, Sites, sites
 from hazard_ms.agents.gale.stops import PUT_DOWN, put_away
 from hazard_ms.hazards.places import MOVED
+from hazard_ms.hazards.wind.endurance import endurance
 from hazard_ms.hazards.wind.gale import WINDS, Gale
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import MovingTravel, straight_line
-from hazard_ms.simulation.building import FRICTION
 from hazard_ms.sketch.rescue_problem import DETOUR, TURNING, Outset, RescueScene
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.decision import DROP, WALK_TO, Action, Decision
@@ -34,8 +34,6 @@ AVERTED = 1.1  # what a rescue counts for, of the target's value: all that would
 LOW = 0.15  # height of the middle of what lies on the ground [m] [ours]
 EVERY = 2  # of the cells of the floor, along each side, in which a site is looked for [ours]
 ROLLING = ("bottle", "soda_can")  # what rolls off where it was put down: into carts alone [ours]
-GRAVITY = 9.81  # [m/s^2]
-DENSITY = 1.225  # of air [kg/m^3], that of hazard_ms.hazards.wind.air
 
 
 def hazard_of(base: Any) -> Gale | None:
@@ -170,14 +168,6 @@ def course_of(hazard: Gale, state: Any, world: Any, end: float) -> Course:
 
 
 def withstands(state: Any, world: Any) -> Array:
-    """The pressure at which each thing of environment 0 begins to slide [m^2/s^2], [B], standing as it was made.
-
-    It is as wide as its diagonal, since it may be put down any way round.
-    """
-    extent = world.extent[0].cpu().numpy().astype(np.float64)
-    area = extent[:, 2] * np.hypot(extent[:, 0], extent[:, 1])
-    felt, strength, mass = (
-        part[0].cpu().numpy().astype(np.float64) for part in (state.felt, state.strength, world.mass)
-    )
-    pull = strength * DENSITY * area * felt**2
-    return np.where(pull > 0.0, FRICTION * GRAVITY * mass / np.maximum(pull, 1e-12), np.inf)
+    """The pressure from which each thing of environment 0 slides [m^2/s^2], [B]."""
+    rows = (world.mass, world.extent, state.strength, state.felt)
+    return np.array([endurance(*row) for row in zip(*(part[0].tolist() for part in rows), strict=True)])

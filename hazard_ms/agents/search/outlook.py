@@ -99,6 +99,12 @@ class Outlook:
         travel = self.problem.travel
         return max(travel.to_carts(travel.start)[cart] - TURNING, 0.0) / WALK
 
+    def to_cart(self) -> float:
+        """Frames in which what is in the hand can be put into the nearest of `carts`; inf where none is known."""
+        travel, drop = self.problem.travel, self.problem.drop
+        ways = zip(travel.to_carts(travel.start)[: len(self.carts)], drop, strict=False)
+        return min((way + frames for way, frames in ways), default=np.inf)
+
     def is_search(self, goal: int) -> bool:
         """Whether a goal is a place to search."""
         return goal >= len(self.targets)

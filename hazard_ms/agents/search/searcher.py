@@ -6,6 +6,7 @@ import abc
 from typing import NamedTuple
 
 from hazard_ms.agents.base import Agent, distance, known, open_targets
+from hazard_ms.agents.gale.aims import aims_of
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook, Weights, outlook
 from hazard_ms.skills.brief import Brief
@@ -51,11 +52,14 @@ class Searcher(Agent):
     def reset(self, brief: Brief) -> None:
         """Begin an episode with an empty memory."""
         self._brief, self._memory = brief, Memory(brief.random_seed, self._weights.belief > 0.0)
+        self._gale = aims_of(brief)
         self._goal: tuple[str, frozenset[str]] | None = None  # where it goes to search, and the targets known then
 
     def act(self, decision: Decision) -> Action:
         """The next action: put away what it holds, else what the rest of the rescue begins with."""
         self._memory.note(decision)
+        if self._gale is not None:
+            self._gale.see(decision)
         action = self._choose(decision)
         self._memory.chose(decision, action)
         return action
@@ -83,6 +87,10 @@ class Searcher(Agent):
         if searching is not None:
             return searching
         ahead = outlook(self._brief, decision, self._memory, self._weights, self._give_up)
+        if self._gale is not None:
+            ahead = self._gale.aimed(decision, ahead)
+            if (lee := self._gale.put_away(decision, ahead.to_cart())) is not None:
+                return self._say(self._gale.note, lee)
         begin = None if decision.held is not None and not ahead.carts else self.first(ahead)
         if begin is None:
             return self._without_plan(decision, ahead)

@@ -3,7 +3,8 @@
 A course is where the wind blows to before the front, by how much and which way it turns, and when the front passes.
 Agents see how fast the air is, not where it blows to. The lee tells: over floor behind a car the air is slow. So each
 course is weighed by how well the speeds that it predicts over the floor, with the lees of all that stands on the map,
-agree with those that were seen. How strong the wind is tells the first look around, before the front.
+agree with those that were seen. The fastest air of the first look around is that before the front, half as fast as what
+comes, or where the front has passed far upwind already.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ ONSETS = 6  # times of the front that are told apart [ours]
 ERROR = 0.2  # standard deviation of a speed that is seen, over the fastest wind [-] [ours: lees of what is half seen]
 SAMPLES = 60  # places of each decision whose speeds count [ours]
 CORRELATED = 8.0  # places near each other tell no more than one: so many count as one [ours]
-STRONG = 95.0  # percentile of the speeds of the first look that is taken for the wind in the open [%] [ours]
+STRONG = 95.0  # percentile of the speeds of the first looks that is taken for the wind in the open [%] [ours]
+FIRST = 3.0  # time up to which looks are the first [s] [ours: a look around takes 2 s]
+FACTORS = (1.0, 2.0)  # the wind behind the front over the fastest air of the first looks
 COURSES = 16  # that are looked at for what a place keeps [ours]
 USUAL_FRAME = 1.0 / 30.0  # duration of a frame for which the law's times are given [s] [docs/physics.md 1.3.1]
 CHANGED = 25  # cells of shelter by which the map must have changed for new lees [ours]
@@ -47,21 +50,22 @@ class Weather:
         steps = np.linspace(TURN[0], TURN[1], TURNS) / (2.0 * np.pi / HEADINGS)
         sizes = np.unique(2 * np.rint(steps / 2).astype(int))  # even, so that half of a turn is a heading, too
         onsets = self._scale * np.linspace(self._law.earliest, self._law.latest, ONSETS)
-        grid = np.meshgrid(2 * np.arange(half), np.concatenate([sizes, -sizes]), onsets, indexing="ij")
-        first, turn, onset = (part.ravel() for part in grid)
+        turns = np.concatenate([sizes, -sizes])
+        grid = np.meshgrid(2 * np.arange(half), turns, onsets, np.array(FACTORS), indexing="ij")
+        first, turn, onset, self._factor = (part.ravel() for part in grid)
         self._winds = np.stack([first, first + turn // 2, first + turn], -1).astype(int) % HEADINGS  # [H, 3]
         self._onset = onset
         self._log = np.zeros(len(onset))  # logarithms of weights
         self._seen = np.zeros((0, 0), np.float32)  # levels of the last decision
         self._shelters: Shelters | None = None
         self._lees: Lees | None = None
-        self._speed = 0.0  # of the wind behind the front in the open [m/s]; 0: not known yet
+        self._fastest = 0.0  # air of the first looks [m/s]; 0: none was seen yet
         self._middle = np.zeros(2)
 
     @property
     def known(self) -> bool:
         """Whether it has seen any wind."""
-        return self._speed > 0.0 and self._lees is not None
+        return self._fastest > 0.0 and self._lees is not None
 
     def note(self, decision: Decision) -> None:
         """Enter the speeds over floor that a decision shows and the last one did not, and what stands there."""
@@ -77,9 +81,9 @@ class Weather:
         pick = np.linspace(0, len(y) - 1, min(SAMPLES, len(y))).astype(int)
         points = decision.map.origin + (np.stack([x[pick], y[pick]], -1) + 0.5) * decision.map.cell
         speeds, time = levels[y[pick], x[pick]].astype(np.float64), decision.frame * self._seconds
-        if time < self._scale * self._law.earliest / 2.0:
-            before = np.percentile(levels[fresh], STRONG)
-            self._speed = max(self._speed, float(before) / self._law.before)
+        if time < self._scale * FIRST and (fast := float(np.percentile(levels[fresh], STRONG))) > self._fastest:
+            self._fastest = fast
+            self._log[:] = 0.0
         if self.known:
             self._weigh(np.hstack([points, np.zeros((len(points), 1))]), speeds, time)
 
@@ -91,7 +95,8 @@ class Weather:
         factor = np.array([self._law.before, 1.0, 1.0])
         unit = self._unit(np.arange(HEADINGS))
         flow = np.einsum("hpw,hwp,hwd->hpd", shares * factor, left[self._winds], unit[self._winds])
-        off = (self._speed * np.hypot(flow[..., 0], flow[..., 1]) - speeds) / (ERROR * self._speed)
+        speed = self._fastest * self._factor[:, None]
+        off = (speed * np.hypot(flow[..., 0], flow[..., 1]) - speeds) / (ERROR * self._fastest)
         self._log -= np.minimum(0.5 * off**2, 4.0).sum(1) / CORRELATED
         self._log -= self._log.max()
 
@@ -99,7 +104,7 @@ class Weather:
         """Shares of the three winds at `points` [m], [P, 3], at a `time` [s], in each of the H courses: [H, P, 3]."""
         way = self._unit(self._winds[:, 1])
         ahead = (points[None, :, :2] - self._middle) @ way[..., None]
-        since = time - self._onset[:, None] - ahead[..., 0] / (self._speed / GUST_RATIO)
+        since = time - self._onset[:, None] - ahead[..., 0] * GUST_RATIO / (self._fastest * self._factor[:, None])
         risen = np.clip(since / (self._scale * self._law.rise), 0.0, 1.0)
         on = np.clip(since / self._scale - self._law.rise, 0.0, self._law.turning) / self._law.turning
         return np.stack([1.0 - risen, risen * (1.0 - on), risen * on], -1)
@@ -118,12 +123,13 @@ class Weather:
     def _course(self, number: int) -> Course:
         assert self._lees is not None
         winds = self._winds[number]
-        flows = self._speed * np.array([self._law.before, 1.0, 1.0])[:, None] * self._unit(winds)
+        speed = float(self._fastest * self._factor[number])
+        flows = speed * np.array([self._law.before, 1.0, 1.0])[:, None] * self._unit(winds)
         way = self._unit(winds[1:2])[0]
         front = Front(
             float(self._onset[number]),
             (float(way[0]), float(way[1])),
-            self._speed / GUST_RATIO,
+            speed / GUST_RATIO,
             (float(self._middle[0]), float(self._middle[1])),
             self._scale * self._law.rise,
             self._scale * self._law.turning,

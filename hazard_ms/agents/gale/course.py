@@ -74,12 +74,6 @@ class Course:
         mean = np.einsum("spk,pkd->spd", self.front.shares(points, times), pushes)
         return np.asarray(np.hypot(mean[..., 0], mean[..., 1]).max(axis=0))
 
-    def speed(self, points: Array, time: float) -> Array:
-        """The speed of the air [m/s] at `points` [m], [P, 3], at a `time` [s]: [P]."""
-        winds = self.lees.left(points).T[..., None] * self.flows  # [P, 3, 2]
-        flow = np.einsum("pk,pkd->pd", self.front.shares(points, np.array([time]))[0], winds)
-        return np.asarray(np.hypot(*flow.T))
-
 
 def kept(pressure: Array, withstands: float) -> NDArray[np.bool_]:
     """Whether a thing that withstands so much [m^2/s^2] stays where the wind has these pressures, [P]."""

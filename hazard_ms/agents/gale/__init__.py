@@ -1,1 +1,1 @@
-"""What agents know and believe of a wind that turns, and where they put things so that it leaves them."""
+"""Agents in a wind that turns: their knowledge and beliefs of it, and the places where it leaves things alone."""

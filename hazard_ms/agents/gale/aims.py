@@ -13,16 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.gale.course import Array, Course, kept
-from hazard_ms.agents.gale.sites import Sites, sites
-from hazard_ms.agents.gale.stops import PUT_DOWN, put_away
+from hazard_ms.agents.gale.sites import DETOUR, Sites, sites
+from hazard_ms.agents.gale.stops import PUT_DOWN, SEEKING, put_away
 from hazard_ms.agents.gale.weather import Weather
 from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.search.walks import TURNING
 from hazard_ms.planning.travel import StaticTravel
-from hazard_ms.sketch.rescue_problem import DETOUR
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import DROP, WALK_TO, Action, Decision
+from hazard_ms.skills.decision import DROP, Action, Decision
 from hazard_ms.skills.motor.navigation import FLOOR
 
 BESIDE = 0.1  # what a rescue counts of its value beside what it averts [ours]
@@ -75,12 +74,12 @@ class GaleAims:
         problem = dataclasses.replace(ahead.problem, values=values)
         if decision.held is None and ahead.carts:
             lee = self._sites(decision, ahead, courses)
-            drop = [*ahead.problem.drop, *([PUT_DOWN] * len(lee.places))]
+            drop = [*ahead.problem.drop, *([PUT_DOWN + SEEKING] * len(lee.places))]
             problem = dataclasses.replace(problem, travel=self._travel(decision, ahead, lee), drop=drop)
         return dataclasses.replace(ahead, problem=problem)
 
     def put_away(self, decision: Decision, cart: float) -> Action | None:
-        """How to put what is in the hand into the lee; None: into a cart, which takes so many frames, is better."""
+        """The next action that puts the held thing into the lee; None where a cart, in `cart` frames, is better."""
         held = decision.held
         if held is None or not self._weather.known or decision.target(held).category in ROLLING:
             return None
@@ -92,8 +91,8 @@ class GaleAims:
         found = put_away(decision, self._radius, keeps, cart)
         if found is None:
             return None
-        self.note = f"into the lee {'here' if found.name is None else f'at {found.name}'}"
-        return Action(DROP) if found.name is None else Action(WALK_TO, found.name)
+        self.note = f"into the lee by {found.action}, {found.frames:.0f} frames"
+        return found.action
 
     def _chances(
         self, decision: Decision, points: Array, category: str, courses: list[tuple[float, Course]]

@@ -1,4 +1,4 @@
-"""What shelters from the wind, as far as a semantic map shows it, over the cells of the maps of lees."""
+"""Things that shelter from the wind, as far as a semantic map shows them, over the cells of the maps of lees."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Shelters:
 
 
 def shelters(decision: Decision) -> Shelters:
-    """What stands on the map of a decision, and is not a target."""
+    """The things that stand on the map of a decision and are no targets, [Y, X]; their heights are in [m]."""
     seen = decision.map
     step = round(float(CELL) / seen.cell)
     size = len(seen.height) // step * step

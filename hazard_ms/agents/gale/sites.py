@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hazard_ms.planning.travel import Spot, Travel
 
 Array = NDArray[np.float64]
+DETOUR = 1.1  # length of ways in the open over that of straight lines [ours: as for all planning in the open]
 NEAREST = 2  # sites of each target, each of them at least APART from the others [ours]
 APART = 1.5  # [m] [ours]
 
@@ -23,7 +24,7 @@ class Sites(NamedTuple):
 
 
 def sites(points: Array, good: NDArray[np.bool_], goals: Array) -> Sites:
-    """Of `points` [m], [P, 2], of which some are `good` for each target, [M, P], those nearest to `goals` [m], [M, 2].
+    """The `points` [m], [P, 2], nearest to `goals` [m], [M, 2], of those that are `good` for each target, bool [M, P].
 
     One that is chosen for a target serves all others that it is good for.
     """

@@ -1,4 +1,4 @@
-"""Where an agent that holds a thing could put it down: before it, now or at the end of a walk to something it knows."""
+"""Places where an agent could put down what it holds: before it, now, or at the end or after a step of a walk."""
 
 from __future__ import annotations
 
@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 
 from hazard_ms.agents.search.walks import TURNING
 from hazard_ms.sketch.travel.ways import WALK
-from hazard_ms.skills.decision import Decision
+from hazard_ms.skills.decision import DROP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.mitigations.putting import BEFORE
 from hazard_ms.skills.motor.navigation import LOW, Ways
-from hazard_ms.skills.motor.walking import ARRIVED
+from hazard_ms.skills.motor.walking import ARRIVED, MIDPOINT, midpoint
 
-PUT_DOWN = 70.0  # frames in which a thing is put on the ground [ours]
+PUT_DOWN = 75.0  # frames in which a thing is put on the ground [measured: 68 to 82 in two episodes, Fetch]
+SEEKING = 60.0  # frames by which the way to a site is longer, since walks end where they may [ours]
 ROOM = 0.15  # distance around the place within which nothing may stand [m] [ours]
+ASIDE = 0.2  # how far from where it is planned a walk may end [m] [ours]
 FARTHEST = 9.0  # distance of the things to which a walk is weighed [m] [ours]
 SURER = 40.0  # frames by which a cart may be farther than a place on the ground, since it keeps things for good [ours]
 
@@ -26,7 +28,7 @@ Keeps = Callable[[NDArray[np.float64]], NDArray[np.bool_]]  # places x, y [m], [
 class Stop(NamedTuple):
     """A place where what is in the hand could be put down."""
 
-    name: str | None  # of the thing to walk to first; None: here
+    action: Action  # that leads there: a walk, whole or one step of it, or the drop itself
     place: tuple[float, float]  # [m]
     frames: float  # of the walk and of putting it down
 
@@ -35,7 +37,8 @@ def stops(decision: Decision, radius: float) -> list[Stop]:
     """The places that are free, for a robot of `radius` [m], whose arm puts things down before it."""
     seen, ahead = decision.map, radius + BEFORE
     here, heading = np.asarray(decision.agent_position), decision.agent_heading
-    made = [Stop(None, _point(here + ahead * np.array([np.cos(heading), np.sin(heading)])), PUT_DOWN)]
+    facing = np.array([np.cos(heading), np.sin(heading)])
+    made = [Stop(Action(DROP), _point(here + ahead * facing), PUT_DOWN)]
     things = {
         decision.names[index]: thing
         for index, thing in seen.objects.items()
@@ -50,23 +53,36 @@ def stops(decision: Decision, radius: float) -> list[Stop]:
             if path is None or path.short > ARRIVED + things[name].radius + ARRIVED:
                 continue
             end = path.points[-1] if len(path.points) else here
-            facing = (np.array(goal) - end) / max(float(np.hypot(*(np.array(goal) - end))), 1e-6)
-            made.append(Stop(name, _point(end + ahead * facing), WALK * path.length + TURNING + PUT_DOWN))
+            place = _point(end + ahead * _unit(np.array(goal) - end))
+            made.append(Stop(Action(WALK_TO, name), place, WALK * path.length + TURNING + PUT_DOWN))
+            step = midpoint(path, (*start, heading))
+            if step is not path.points:
+                before = step[-2] if len(step) > 1 else here
+                place = _point(step[-1] + ahead * _unit(step[-1] - before))
+                made.append(Stop(Action(WALK_ONE_STEP, name), place, WALK * MIDPOINT + TURNING + PUT_DOWN))
     return [stop for stop in made if _free(decision, stop.place)]
 
 
 def put_away(decision: Decision, radius: float, keeps: Keeps, cart: float) -> Stop | None:
     """The nearest place that keeps what is in the hand; None where there is none, or a cart is hardly farther.
 
-    `keeps` tells which places keep it; `cart`: the frames that putting it into the nearest cart takes, with the way.
+    `radius` of the robot [m]; `keeps` tells which places keep the thing; `cart`: the frames that putting it into the
+    nearest cart takes, with the way. Around the ends of walks, all places must keep it.
     """
     found = stops(decision, radius)
     if not found:
         return None
-    good = keeps(np.array([stop.place for stop in found]))
-    kept = [stop for stop, fine in zip(found, good, strict=True) if fine]
+    around = np.array([(0.0, 0.0), (ASIDE, 0.0), (-ASIDE, 0.0), (0.0, ASIDE), (0.0, -ASIDE)])
+    places = np.array([stop.place for stop in found])[:, None] + around
+    good = keeps(places.reshape(-1, 2)).reshape(len(found), -1)
+    fine = [row[0] if stop.action.verb == DROP else row.all() for stop, row in zip(found, good, strict=True)]
+    kept = [stop for stop, keep in zip(found, fine, strict=True) if keep]
     best = min(kept, key=lambda stop: stop.frames, default=None)
     return None if best is None or best.frames + SURER > cart else best
+
+
+def _unit(vector: NDArray[np.floating]) -> NDArray[np.floating]:
+    return vector / max(float(np.hypot(*vector)), 1e-6)
 
 
 def _point(place: NDArray[np.floating]) -> tuple[float, float]:

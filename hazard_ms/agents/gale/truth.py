@@ -1,4 +1,4 @@
-"""What the oracle knows of a gale: where each thing is blown, which places keep it, and the rescues that are needed.
+"""The oracle's knowledge of a gale: where each thing is blown, which places keep it, and which rescues are needed.
 
 A target is at stake if the wind will have moved it when time is up: by the record of the episode in which nobody acts
 if nobody has touched it, else by the course of the wind and what the thing withstands. What is not at stake need not be
@@ -15,16 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.gale.course import Array, Course, Front, Lees, kept
-from hazard_ms.agents.gale.sites import OnGround, Sites, sites
-from hazard_ms.agents.gale.stops import PUT_DOWN, put_away
+from hazard_ms.agents.gale.sites import DETOUR, OnGround, Sites, sites
+from hazard_ms.agents.gale.stops import PUT_DOWN, SEEKING, put_away
 from hazard_ms.hazards.places import MOVED
 from hazard_ms.hazards.wind.endurance import endurance
 from hazard_ms.hazards.wind.gale import WINDS, Gale
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import MovingTravel, straight_line
-from hazard_ms.sketch.rescue_problem import DETOUR, TURNING, Outset, RescueScene
+from hazard_ms.sketch.rescue_problem import TURNING, Outset, RescueScene
 from hazard_ms.sketch.travel.ways import WALK
-from hazard_ms.skills.decision import DROP, WALK_TO, Action, Decision
+from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.skills.motor.walking import ARRIVED
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ class GaleTruth:
         self._ground = ways.origin + (cells[(cells % EVERY == 0).all(1)][:, ::-1] + 0.5) * ways.cell
 
     def at_stake(self, record: Timeline) -> NDArray[np.bool_]:
-        """Whether the wind will have carried off each thing along B when time is up if nobody touches it any more."""
+        """Whether the wind will have carried off each thing when time is up if nobody touches it any more, bool [B]."""
         world, things = self._base.world, slice(len(record.names))
         place = self._state.place[0, things].cpu().numpy()
         untouched = np.linalg.norm(place - self._start[things], axis=-1) < 1e-3
@@ -111,7 +111,7 @@ class GaleTruth:
             values=(AVERTED * values * self.at_stake(record)[list(targets)]).tolist(),
             damaged_at=[np.inf] * len(targets),
             pick=np.maximum(scene.pick + delays - saved, 0.0).tolist(),
-            drop=[max(0.0, scene.cart - saved)] * len(carts) + [PUT_DOWN] * len(lee.places),
+            drop=[max(0.0, scene.cart - saved)] * len(carts) + [PUT_DOWN + SEEKING] * len(lee.places),
             limit=float(max(scene.limit, outset.frame)),
             frame=float(outset.frame),
             fading=fading,
@@ -120,7 +120,7 @@ class GaleTruth:
         )
 
     def put_away(self, decision: Decision, carts: NDArray[np.int64]) -> Action | None:
-        """How to put what is in the hand into the lee; None: into a cart is better, of those at `carts` along B."""
+        """The next action that puts the held thing into the lee; None where a cart is better, of indices `carts`, [C]."""
         assert decision.held is not None
         index = decision.index(decision.held)
         if not self._may_lie(index):
@@ -135,8 +135,8 @@ class GaleTruth:
         found = put_away(decision, self._base.agent.build.radius, keeps, float(frames.min()))
         if found is None:
             return None
-        self.note = f"into the lee {'here' if found.name is None else f'at {found.name}'}, {found.frames:.0f} frames"
-        return Action(DROP) if found.name is None else Action(WALK_TO, found.name)
+        self.note = f"into the lee by {found.action}, {found.frames:.0f} frames"
+        return found.action
 
     def _may_lie(self, index: int) -> bool:
         return self._mitigate and self._base.specs[0].things[index].category not in ROLLING

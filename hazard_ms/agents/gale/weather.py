@@ -1,4 +1,4 @@
-"""What an agent believes of a gale from the winds that it has seen: a filter over the courses that are possible.
+"""The belief of an agent about a gale, from the winds that it has seen: a filter over the courses that are possible.
 
 A course is where the wind blows to before the front, by how much and which way it turns, and when the front passes.
 Agents see how fast the air is, not where it blows to. The lee tells: over floor behind a car the air is slow. So each
@@ -9,8 +9,6 @@ comes, or where the front has passed far upwind already.
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import torch
 from numpy.typing import NDArray
@@ -19,7 +17,6 @@ from hazard_ms.agents.gale.course import Array, Course, Front, Lees
 from hazard_ms.agents.gale.shelters import Shelters, shelters
 from hazard_ms.hazards.wind import shelter
 from hazard_ms.hazards.wind.gale import GUST_RATIO, TURN, Gale
-from hazard_ms.kernels.launch import Launches
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Decision
 
@@ -45,7 +42,7 @@ class Weather:
         self._seconds, self._end = brief.frame_seconds, brief.max_frames * brief.frame_seconds
         # `shipped` has shorter frames, and all times of its front are as much shorter (hazard_ms.hazards.presets)
         self._scale = brief.frame_seconds / USUAL_FRAME
-        self._law, self._launches = Gale(), Launches()
+        self._law = Gale()
         half = HEADINGS // 2
         steps = np.linspace(TURN[0], TURN[1], TURNS) / (2.0 * np.pi / HEADINGS)
         sizes = np.unique(2 * np.rint(steps / 2).astype(int))  # even, so that half of a turn is a heading, too
@@ -149,7 +146,7 @@ class Weather:
             for part in (found.height, found.solidity, found.coefficient)
         )
         unit = torch.from_numpy(self._unit(np.arange(HEADINGS)).astype(np.float32))
-        made = shelter.lee(SimpleNamespace(launches=self._launches), *maps, unit)  # type: ignore[arg-type]
+        made = shelter.lee(None, *maps, unit)
         self._lees = Lees(found.corner, *(part.numpy().astype(np.float64) for part in made))
 
     @staticmethod

@@ -17,7 +17,7 @@ from hazard_ms.planning.travel import MovingTravel, straight_line
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.actions import skill
-from hazard_ms.skills.decision import DROP, Action
+from hazard_ms.skills.decision import DROP, WALK_TO, Action
 
 RADIUS = 0.29  # of the robot [m]
 AHEAD = RADIUS + 0.35  # of what it puts down from its middle [m]
@@ -39,16 +39,17 @@ def decision(wall: float | None = None) -> Any:
 
 
 def test_things_are_put_down_before_the_robot_where_it_stands_or_where_a_walk_ends() -> None:
-    """A walk to a thing of 0.1 m radius ends 0.6 m before its middle."""
-    found = {stop.name: stop for stop in stops(decision(), RADIUS)}
-    assert found[None].place == pytest.approx((AHEAD, 0.0)) and found[None].frames == PUT_DOWN
-    assert found["car_1"].place == pytest.approx((3.4 + AHEAD, 0.0), abs=0.15)
-    assert found["tree_1"].place == pytest.approx((0.0, 2.4 + AHEAD), abs=0.15)
-    assert found["car_1"].frames == pytest.approx(62.0 * 3.4 + 20.0 + PUT_DOWN, abs=10.0)
+    """A walk to a thing of 0.1 m radius ends 0.6 m before its middle; its first step is 1 m long."""
+    found = {str(stop.action): stop for stop in stops(decision(), RADIUS)}
+    assert found["drop"].place == pytest.approx((AHEAD, 0.0)) and found["drop"].frames == PUT_DOWN
+    assert found["walk_to car_1"].place == pytest.approx((3.4 + AHEAD, 0.0), abs=0.15)
+    assert found["walk_to tree_1"].place == pytest.approx((0.0, 2.4 + AHEAD), abs=0.15)
+    assert found["walk_one_step tree_1"].place == pytest.approx((0.0, 1.0 + AHEAD), abs=0.15)
+    assert found["walk_to car_1"].frames == pytest.approx(62.0 * 3.4 + 20.0 + PUT_DOWN, abs=10.0)
 
 
 def test_nothing_is_put_down_into_what_stands_there() -> None:
-    assert None not in {stop.name for stop in stops(decision(wall=AHEAD), RADIUS)}
+    assert Action(DROP) not in {stop.action for stop in stops(decision(wall=AHEAD), RADIUS)}
 
 
 def test_it_goes_to_the_nearest_place_that_keeps_the_thing_unless_a_cart_is_hardly_farther() -> None:
@@ -56,9 +57,12 @@ def test_it_goes_to_the_nearest_place_that_keeps_the_thing_unless_a_cart_is_hard
         return points[:, 0] > 2.0
 
     far = put_away(decision(), RADIUS, east, cart=1000.0)
-    assert far is not None and far.name == "car_1"
+    assert far is not None and far.action == Action(WALK_TO, "car_1")
     assert put_away(decision(), RADIUS, east, cart=far.frames + SURER - 1.0) is None
     assert put_away(decision(), RADIUS, lambda points: points[:, 0] > 9.0, cart=1000.0) is None
+    # its own place would do, but not 0.2 m before it: the walk may end there
+    end = 3.4 + AHEAD
+    assert put_away(decision(), RADIUS, lambda points: points[:, 0] > end - 0.15, cart=1000.0) is None
 
 
 def test_sites_are_the_nearest_good_places_of_each_target_and_serve_others() -> None:

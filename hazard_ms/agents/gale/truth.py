@@ -120,7 +120,10 @@ class GaleTruth:
         )
 
     def put_away(self, decision: Decision, carts: NDArray[np.int64]) -> Action | None:
-        """The next action that puts the held thing into the lee; None where a cart is better, of indices `carts`, [C]."""
+        """The next action that puts the held thing into the lee.
+
+        None where a cart is better, of those whose indices along B are `carts`, [M].
+        """
         assert decision.held is not None
         index = decision.index(decision.held)
         if not self._may_lie(index):

@@ -8,7 +8,6 @@ rescued: where it lies it counts as rescued.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -86,7 +85,7 @@ class GaleTruth:
     def problem(
         self,
         record: Timeline,
-        targets: Sequence[int],
+        targets: NDArray[np.int64],
         values: Array,
         carts: NDArray[np.int64],
         outset: Outset,
@@ -99,16 +98,16 @@ class GaleTruth:
         Sites in the lee follow the carts. Other arguments are those of `RescueScene.problem`.
         """
         future, scene = self.future(record), self._scene
-        ways = future.positions(np.array(targets))[..., :2].astype(np.float64)
+        ways = future.positions(targets)[..., :2].astype(np.float64)
         rest = self._base.world.position[0, carts.tolist(), :2].cpu().numpy().astype(np.float64)
         lee = self._sites(targets, ways[0])
         walk = straight_line(WALK * DETOUR)
         moving = MovingTravel(future.frames, ways, np.asarray(outset.place), walk, np.vstack([rest, lee.places]))
-        holding = None if outset.holding is None else list(targets).index(outset.holding)
+        holding = None if outset.holding is None else targets.tolist().index(outset.holding)
         saved = WALK * ARRIVED - TURNING
         return Problem(
             OnGround(moving, lee.keep, holding),
-            values=(AVERTED * values * self.at_stake(record)[list(targets)]).tolist(),
+            values=(AVERTED * values * self.at_stake(record)[targets]).tolist(),
             damaged_at=[np.inf] * len(targets),
             pick=np.maximum(scene.pick + delays - saved, 0.0).tolist(),
             drop=[max(0.0, scene.cart - saved)] * len(carts) + [PUT_DOWN + SEEKING] * len(lee.places),
@@ -144,10 +143,10 @@ class GaleTruth:
     def _may_lie(self, index: int) -> bool:
         return self._mitigate and self._base.specs[0].things[index].category not in ROLLING
 
-    def _sites(self, targets: Sequence[int], goals: Array) -> Sites:
+    def _sites(self, targets: NDArray[np.int64], goals: Array) -> Sites:
         """Sites on the ground near the places of `targets` now, `goals` [m], [T, 2]."""
         pressure = self._pressure(np.hstack([self._ground, np.full((len(self._ground), 1), LOW)]))
-        good = np.stack([kept(pressure, self._withstands[t]) & self._may_lie(t) for t in targets])
+        good = np.stack([kept(pressure, self._withstands[t]) & self._may_lie(t) for t in targets.tolist()])
         return sites(self._ground, good, goals)
 
     def _pressure(self, points: Array) -> Array:

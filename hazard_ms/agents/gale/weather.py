@@ -141,12 +141,12 @@ class Weather:
         self._shelters = found
         ground = np.argwhere(decision.map.explored)
         self._middle = decision.map.origin + (ground.mean(0)[::-1] + 0.5) * decision.map.cell
-        maps = (
+        height, solidity, coefficient = (
             torch.from_numpy(part).expand(HEADINGS, -1, -1).contiguous()
             for part in (found.height, found.solidity, found.coefficient)
         )
         unit = torch.from_numpy(self._unit(np.arange(HEADINGS)).astype(np.float32))
-        made = shelter.lee(None, *maps, unit)
+        made = shelter.lee(None, height, solidity, coefficient, unit)
         self._lees = Lees(found.corner, *(part.numpy().astype(np.float64) for part in made))
 
     @staticmethod

@@ -89,7 +89,7 @@ def test_the_lee_is_a_place_to_rescue_to_unless_that_is_forbidden(base: Any, mit
     carts = np.array([k for k, thing in enumerate(base.specs[0].things) if thing.category == "cart"])
     problem = truth(base, mitigate).problem(
         record(base, [heavy, can]),
-        [heavy, can],
+        np.array([heavy, can]),
         np.array([5.0, 1.0]),
         carts,
         Outset((8.0, 8.0), None, 0),

@@ -98,8 +98,10 @@ class Oracle(PrivilegedAgent):
             return self._otherwise(decision, truth)
         self._search = None
         holding = decision.held is not None
-        if holding and self._gale is not None and (lee := self._gale.put_away(decision, self._carts)) is not None:
-            return self._say(self._gale.note, lee)
+        if holding and (gale := self._gale) is not None:
+            lee = gale.put_away(decision, self._carts, self._attempts.failures)
+            if lee is not None:
+                return self._say(gale.note, lee)
         index = self._cart(decision, step.cart) if holding else self._arrived_at(decision, truth, step.target)
         name = self._goal = decision.names[index]
         if self._is_near(decision, truth, index):

@@ -8,6 +8,7 @@ rescued: where it lies it counts as rescued.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -118,23 +119,27 @@ class GaleTruth:
             holding=holding,
         )
 
-    def put_away(self, decision: Decision, carts: NDArray[np.int64]) -> Action | None:
+    def put_away(self, decision: Decision, carts: NDArray[np.int64], failures: Mapping[str, int]) -> Action | None:
         """The next action that puts the held thing into the lee.
 
-        None where a cart is better, of those whose indices along B are `carts`, [M].
+        None where no place keeps it, or where a cart is better, of those whose indices along B are `carts`, [M], and
+        that have no `failures`.
         """
         assert decision.held is not None
         index = decision.index(decision.held)
         if not self._may_lie(index):
             return None
-        places = self._base.world.position[0, carts.tolist(), :2].cpu().numpy().astype(np.float64)
-        frames = self._scene.ways.frames(np.array([decision.agent_position]), places) + self._scene.cart
+        nearest, work = np.inf, [int(cart) for cart in carts if not failures.get(decision.names[cart])]
+        if work:
+            places = self._base.world.position[0, work, :2].cpu().numpy().astype(np.float64)
+            frames = self._scene.ways.frames(np.array([decision.agent_position]), places) + self._scene.cart
+            nearest = float(frames.min())
 
         def keeps(points: Array) -> NDArray[np.bool_]:
             raised = np.hstack([points, np.full((len(points), 1), LOW)])
             return kept(self._pressure(raised), self._withstands[index])
 
-        found = put_away(decision, self._base.agent.build.radius, keeps, float(frames.min()))
+        found = put_away(decision, self._base.agent.build.radius, keeps, nearest)
         if found is None:
             return None
         self.note = f"into the lee by {found.action}, {found.frames:.0f} frames"

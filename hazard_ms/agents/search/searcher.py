@@ -89,7 +89,7 @@ class Searcher(Agent):
         ahead = outlook(self._brief, decision, self._memory, self._weights, self._give_up)
         if self._gale is not None:
             ahead = self._gale.aimed(decision, ahead)
-            if (lee := self._gale.put_away(decision, ahead.to_cart())) is not None:
+            if (lee := self._gale.put_away(decision, ahead.to_cart(self._memory.failures))) is not None:
                 return self._say(self._gale.note, lee)
         begin = None if decision.held is not None and not ahead.carts else self.first(ahead)
         if begin is None:

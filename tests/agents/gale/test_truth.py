@@ -106,3 +106,16 @@ def test_the_lee_is_a_place_to_rescue_to_unless_that_is_forbidden(base: Any, mit
 
 def test_no_other_hazard_is_a_gale() -> None:
     assert hazard_of(SimpleNamespace(task=SimpleNamespace(hazards=()))) is None
+
+
+def test_a_cart_that_failed_is_no_reason_not_to_use_the_lee(base: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`put_away` is asked with the frames to the nearest cart that works, or inf where none does."""
+    asked: list[float] = []
+    monkeypatch.setattr("hazard_ms.agents.gale.truth.put_away", lambda *given: asked.append(given[-1]))
+    names, heavy = base.world.names[0], of_category(base, "suitcase")
+    carts = np.array([k for k, thing in enumerate(base.specs[0].things) if thing.category == "cart"])
+    decision: Any = SimpleNamespace(held=names[heavy], index=names.index, names=names, agent_position=(8.0, 8.0))
+    known = truth(base)
+    for failures in ({}, {names[k]: 1 for k in carts}):
+        assert known.put_away(decision, carts, failures) is None
+    assert np.isfinite(asked[0]) and asked[1] == np.inf

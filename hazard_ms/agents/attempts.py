@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from hazard_ms.skills.decision import Decision
 from hazard_ms.skills.failures import NO_PATH
 
-ENCLOSED = 2  # targets to which there is no path, from which it is the robot that cannot get away [ours]
+ENCLOSED = 2  # things to which there is no path, from which it is the robot that cannot get away [ours]
 
 
 @dataclass
@@ -24,13 +24,13 @@ class Attempts:
 
 
 class Enclosure:
-    """The targets to which there was no path, one after another."""
+    """Tells from failed walks that no way leads out of where the robot stands."""
 
     def __init__(self) -> None:
-        self._no_path: set[str] = set()
+        self._no_path: set[str] = set()  # things to which there was no path, one after another
 
-    def found(self, decision: Decision) -> bool:
-        """Whether there is no way to one target after another: not they are to blame, but where the robot stands."""
+    def noticed(self, decision: Decision) -> bool:
+        """Whether there is no way to one thing after another: not they are to blame, but where the robot stands."""
         last, result = decision.last_action, decision.last_result
         if last is None or result is None or last.target is None or result.reason != NO_PATH or result.frames:
             self._no_path.clear()

@@ -4,27 +4,27 @@ It alone sees what is hidden: where everything is, what is damaged, and what wil
 At each decision it plans by the exact search of hazard_ms.planning, enters into its map where things really are, and
 acts by ordinary skills, so that what fails in their execution fails for the oracle, too. With `known=true` it plans
 only with what its map holds, and searches when that is all done: the difference between the two is what it costs not
-to know.
+to know. Where a gale blows it rescues what that will carry off, into carts or into the lee (hazard_ms.agents.gale).
 """
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hazard_ms.agents.attempts import Attempts, Enclosure
 from hazard_ms.agents.base import PrivilegedAgent
+from hazard_ms.agents.gale.truth import GaleTruth, hazard_of
 from hazard_ms.agents.mitigating.doing import Mitigator
 from hazard_ms.agents.search.landmark_search import LandmarkSearch
 from hazard_ms.agents.search.memory import ELSEWHERE, SAME_AGAIN, after
 from hazard_ms.agents.search.outlook import SPREAD
-from hazard_ms.agents.search.walks import detours
 from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.averting import averting
 from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import PlannedRescue, Problem, soonest
 from hazard_ms.sketch.recording import pushes
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
+from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
@@ -70,7 +70,11 @@ class Oracle(PrivilegedAgent):
         self._goal: str | None = None
         self._before: tuple[Action, tuple[float, float]] | None = None  # the last action, and where it began [m]
         self._search = LandmarkSearch()
-        self._mitigator = Mitigator(self._truth, brief) if self._mitigates and brief.mitigations else None
+        gale = hazard_of(base)
+        self._gale = None if gale is None else GaleTruth(base, gale, self._scene, self._mitigates)
+        self._truth.furniture = gale is not None
+        fights = self._mitigates and brief.mitigations and not pushes(base.task.hazards)
+        self._mitigator = Mitigator(self._truth, brief) if fights else None
         self._enclosure = Enclosure()
 
     def act(self, decision: Decision) -> Action:
@@ -83,7 +87,7 @@ class Oracle(PrivilegedAgent):
         if self._mitigator is None or not self._mitigator.took(decision):
             self._judge(decision, self._truth)
         self._attempts.in_vain = self._in_vain(decision, self._truth)
-        action = self._get_out(decision) if self._enclosure.found(decision) else self._choose(decision, self._truth)
+        action = self._get_out(decision) if self._enclosure.noticed(decision) else self._choose(decision, self._truth)
         self._before = (action, decision.agent_position)
         self._truth.reveal()
         return action
@@ -108,11 +112,13 @@ class Oracle(PrivilegedAgent):
             return self._otherwise(decision, truth)
         self._search.leave()
         holding = decision.held is not None
+        if holding and self._gale is not None and (lee := self._gale.put_away(decision, self._carts)) is not None:
+            return self._say(self._gale.note, lee)
         index = self._cart(decision, step.cart) if holding else self._arrived_at(decision, truth, step.target)
         name = self._goal = decision.names[index]
         if self._is_near(decision, truth, index):
             return Action(DROP if holding else PICK_UP, name)
-        met = truth.future().position_at(step.met)[index]
+        met = self._future(truth).position_at(step.met)[index]
         moves = float(np.linalg.norm(met - truth.position(index))) > MOVED
         truth.aim = {index: met} if moves and decision.walked_up_to != name else {}
         one_step = Action(WALK_ONE_STEP, name)
@@ -123,28 +129,32 @@ class Oracle(PrivilegedAgent):
         """The targets of the next plan, by index along B, and its problem; None where nothing can be rescued."""
         targets = [t for t in decision.targets if t.held or self._considered(t.name, t.index, truth, GIVE_UP)]
         targets = [t for t in targets if not t.rescued and (t.held or t.name not in self._attempts.in_vain)]
+        if self._gale is not None:
+            stake = self._gale.at_stake(truth.record())
+            targets = [t for t in targets if stake[t.index]]
         if not targets or (decision.containers and not self._usable(decision, truth)):
             return [], None
         held = next((t.index for t in targets if t.held), None)
-        problem = self._scene.problem(
-            truth.future(),
-            np.array([t.index for t in targets]),
+        told = (
+            np.array([t.index for t in targets], np.int64),
             np.array([t.value * self._chance(t.name, decision) for t in targets]),
             np.array(self._usable(decision, truth), np.int64),
             Outset(decision.agent_position, decision.agent_heading, decision.frame, held),
-            self._detours(decision, truth, [t.index for t in targets])
+            truth.detours(decision, self._scene, [t.index for t in targets])
             - [LOYALTY * (t.name == self._goal) for t in targets],
             FADING,
             SPREAD,
-            truth.env.base.task.averted and pushes(truth.env.base.task.hazards),
         )
-        return [t.index for t in targets], problem
+        if self._gale is not None:
+            return [t.index for t in targets], self._gale.problem(truth.record(), *told)
+        carried_off = truth.env.base.task.averted and pushes(truth.env.base.task.hazards)
+        return [t.index for t in targets], self._scene.problem(truth.future(), *told, carried_off)
 
     def _next_rescue(
         self, decision: Decision, truth: Truth, targets: list[int], problem: Problem
     ) -> PlannedRescue | None:
         """The first step of the best plan, with indices along B for targets; None where nothing can be rescued."""
-        aimed = averting(problem) if truth.env.base.task.averted else problem
+        aimed = averting(problem) if truth.env.base.task.averted and self._gale is None else problem
         plan = solve(aimed, MOST_LABELS, BEAM)
         self.note = f"plan of {plan.value:g} in {len(plan.rescues)} rescues by frame {plan.frame:.0f}"
         first = plan.rescues[0] if plan.rescues else soonest(problem)
@@ -152,19 +162,16 @@ class Oracle(PrivilegedAgent):
             return None
         self.note = self.note if plan.rescues else "too late by any plan, but the nearest"
         carts = self._usable(decision, truth)
-        cart = int(np.flatnonzero(self._carts == carts[first.cart])[0]) if decision.containers else -1
+        used = min(first.cart, len(carts) - 1)  # sites in the lee have the numbers beyond the carts
+        cart = int(np.flatnonzero(self._carts == carts[used])[0]) if decision.containers else -1
         return first._replace(target=targets[first.target], cart=cart)
 
     def _usable(self, decision: Decision, truth: Truth) -> list[int]:
         """The carts that did not fail too often, by index along B."""
         return [int(c) for c in self._carts if self._considered(decision.names[c], int(c), truth, CART_FAILURES)]
 
-    def _detours(self, decision: Decision, truth: Truth, targets: list[int]) -> NDArray[np.float64]:
-        """Frames by which the walk to each of `targets`, [T], is longer now, past what floats or was pushed about."""
-        goals, edges = np.stack([truth.position(i)[:2] for i in targets]), self._scene.edges[targets]
-        plain = self._scene.ways.frames(np.array([decision.agent_position]), goals, edge=edges)
-        seen, here, radius = decision.map, decision.agent_position, truth.env.base.agent.build.radius
-        return detours(seen, here, goals.astype(float), ARRIVED + edges, radius, plain)
+    def _future(self, truth: Truth) -> Timeline:
+        return truth.future() if self._gale is None else self._gale.future(truth.record())
 
     def _chance(self, name: str, decision: Decision) -> float:
         """The chance that it gets hold of a thing, as a share of that of a first attempt."""

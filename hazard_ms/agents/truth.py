@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.agents.search.walks import detours
 from hazard_ms.sensing.furniture import told
 from hazard_ms.sensing.sighting import Sighting
-from hazard_ms.sketch.recording import ahead
+from hazard_ms.sketch.recording import ahead, recorded
+from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.sketch.timeline import Timeline
+from hazard_ms.skills.decision import Decision
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.motor.walking import ARRIVED
 from hazard_ms.skills.options.landmarks import WALKABLE
 
 LASTS = 300  # frames for which the future of a home is kept, whatever is picked up [ours]
@@ -61,6 +67,8 @@ class Truth:
         self.aim: dict[int, NDArray[np.float32]] = {}  # where the map is to place some things instead [m], by index
         self.also: set[int] = set()  # things that are entered beside targets and containers, by index
         self._future = Future(env)
+        self._record: Timeline | None = None
+        self.furniture = False  # whether the map is told where all furniture is, as it is of containers
         look = env.stage.look
 
         def looked() -> None:
@@ -86,6 +94,20 @@ class Truth:
         """Predict the future anew when it is asked for next: something was done about the hazard."""
         self._future.forget()
 
+    def record(self) -> Timeline:
+        """The timeline of the whole episode if nobody acts from its start on."""
+        if self._record is None:
+            base = self.env.base
+            self._record = recorded(base.task, base.physics, base.specs[0], int(base.world.chance.seed[0]))
+        return self._record
+
+    def detours(self, decision: Decision, scene: RescueScene, targets: Sequence[int]) -> NDArray[np.float64]:
+        """Frames by which the walk to each of `targets`, [T], is longer now, past what floats or was pushed about."""
+        goals, edges = np.stack([self.position(i)[:2] for i in targets]), scene.edges[list(targets)]
+        here, radius = decision.agent_position, self.env.base.agent.build.radius
+        plain = scene.ways.frames(np.array([here]), goals, edge=edges)
+        return detours(decision.map, here, goals.astype(float), ARRIVED + edges, radius, plain)
+
     def furnish(self) -> None:
         """Enter furniture and walls into the map.
 
@@ -101,6 +123,9 @@ class Truth:
         world = base.world
         there = (world.target[0] & ~(world.safe | world.held | world.away)[0]).cpu().numpy()
         there[[*(world.index(0, cart.name) for cart in base.specs[0].containers), *self.also]] = True
+        if self.furniture:
+            spec = base.specs[0]
+            there[len(spec.bodies) : len(spec.things)] = True
         if base.task.mitigations and not self._only_known:
             for number in range(len(base.specs[0].room.openings)):
                 self.env.stage.doors.enter(number, self.env.frame, self.env.maps)

@@ -120,6 +120,13 @@ class Hazard(abc.ABC):
         """
         return False
 
+    def withstands(self, category: str) -> tuple[float, ...]:
+        """Pressure of the air from which each model of a `category` slides, a square of a wind speed [m^2/s^2].
+
+        What agents are told where wind carries things off for good; by default nothing.
+        """
+        return ()
+
     def forbids(self, state: Any, world: World, points: Tensor) -> Tensor:
         """Whether an agent that the hazard affects must avoid `points` [m], [E, P, 3]: [E, P]. By default none."""
         return torch.zeros(points.shape[:2], dtype=torch.bool, device=points.device)

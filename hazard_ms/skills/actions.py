@@ -56,6 +56,8 @@ def skill(stage: Stage, action: Action) -> Skill:
         tools = stage.world.equipment
         if tools is not None and stage.held >= 0 and bool(tools.tool[0, stage.held]):
             return put_down(stage)
+        if index is None and stage.on_ground:
+            return put_down(stage)
         return drop(stage, index)
     assert index is not None  # Action sees to it
     if action.verb == PICK_UP:

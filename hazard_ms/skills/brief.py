@@ -25,6 +25,8 @@ class HazardBrief:
     unit: str  # unit of its level: "°C"
     # whether a target is damaged at a level of the hazard and a height above the floor [m]
     threatens: Callable[[Target, float, float], bool]
+    # pressure [m^2/s^2] from which the air moves each model of a category; empty where that loses nothing
+    withstands: Callable[[str], tuple[float, ...]] = lambda category: ()
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,9 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int, sight: float = FAR)
         targets=labeller.targets(),
         containers=labeller.containers,
         safe_place=base.task.safe_place.name,
-        hazards=tuple(HazardBrief(h.name, h.level.title, h.level.unit, h.threatens) for h in base.task.hazards),
+        hazards=tuple(
+            HazardBrief(h.name, h.level.title, h.level.unit, h.threatens, h.withstands) for h in base.task.hazards
+        ),
         max_frames=max_frames,
         frame_seconds=float(base.control_timestep),
         robot=robot_name(base.agent.uid),

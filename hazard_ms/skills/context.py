@@ -54,6 +54,7 @@ class Stage:
         self.seen = seen
         self.look = look
         self.bumps: list[tuple[float, float, int]] = []  # x, y [m], frame
+        self.on_ground = False  # whether a thing can be rescued by putting it on the ground, where nothing moves it
         self._arm = self.robot.arm()  # last commanded joints [rad]
 
     @property

@@ -118,7 +118,7 @@ class SkillEnv:
         self._seen = SemanticMap(start, self._labeller.loose, cells=cells, hazards=hazards, ceiling=ceiling)
         self.maps = [self._seen]
         self.stage = Stage(self.base, self._seen, self.look, self._labeller)
-        self.stage.maps = self.maps
+        self.stage.maps, self.stage.on_ground = self.maps, self.base.task.safe_place.at_rest
         self._images: Images | None = None
         self._last: tuple[Action | None, Result | None] = (None, None)
         self._reward, self._over = 0.0, False

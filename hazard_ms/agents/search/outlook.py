@@ -104,6 +104,12 @@ class Outlook:
         travel = self.problem.travel
         return max(travel.to_carts(travel.start)[cart] - TURNING, 0.0) / WALK
 
+    def to_cart(self, failures: Mapping[str, int]) -> float:
+        """Frames in which what is in the hand can be put into the nearest of `carts` without `failures`; inf: none."""
+        travel, drop = self.problem.travel, self.problem.drop
+        ways = zip(self.carts, travel.to_carts(travel.start), drop, strict=False)
+        return min((way + frames for cart, way, frames in ways if not failures.get(cart)), default=np.inf)
+
     def is_search(self, goal: int) -> bool:
         """Whether a goal is a place to search."""
         return goal >= len(self.targets)

@@ -6,6 +6,7 @@ import abc
 from typing import NamedTuple
 
 from hazard_ms.agents.base import Agent, distance, known, open_targets
+from hazard_ms.agents.gale.aims import aims_of
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.mitigating import Mitigator
 from hazard_ms.agents.search.outlook import Outlook, Weights, outlook
@@ -54,6 +55,7 @@ class Searcher(Agent):
         self._brief, self._memory = brief, Memory(brief.random_seed, self._weights.belief > 0.0)
         acts = self._mitigate and brief.several_rooms and brief.averted and brief.mitigations
         self._mitigator = Mitigator(brief, self._memory) if acts else None
+        self._gale = aims_of(brief)
         self._goal: tuple[str, frozenset[str]] | None = None  # where it goes to search, and the targets known then
 
     def act(self, decision: Decision) -> Action:
@@ -61,6 +63,8 @@ class Searcher(Agent):
         self._memory.note(decision)
         if self._mitigator is not None:
             self._mitigator.note(decision)
+        if self._gale is not None:
+            self._gale.see(decision)
         action = self._choose(decision)
         self._memory.chose(decision, action)
         return action
@@ -92,6 +96,10 @@ class Searcher(Agent):
         measure = None if self._mitigator is None else self._mitigator.action(decision, ahead)
         if self._mitigator is not None and measure is not None:
             return self._say(self._mitigator.why, measure)
+        if self._gale is not None:
+            ahead = self._gale.aimed(decision, ahead)
+            if (lee := self._gale.put_away(decision, ahead.to_cart(self._memory.failures))) is not None:
+                return self._say(self._gale.note, lee)
         begin = None if decision.held is not None and not ahead.carts else self.first(ahead)
         if begin is None:
             return self._without_plan(decision, ahead)

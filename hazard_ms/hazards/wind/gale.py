@@ -31,7 +31,7 @@ from torch import Tensor
 
 from hazard_ms.hazards.base import Push, State, none_set
 from hazard_ms.hazards.places import SETTLING, follow, strayed
-from hazard_ms.hazards.wind import kernels, shelter
+from hazard_ms.hazards.wind import endurance, kernels, shelter
 from hazard_ms.hazards.wind.gale_state import GaleState
 from hazard_ms.hazards.wind.sweeping import sweeping_speed
 from hazard_ms.hazards.wind.wind import Wind
@@ -68,6 +68,9 @@ class Gale(Wind):
                 raise ValueError(f"{name} must be a positive number, got {getattr(self, name)}")
         if not 0 <= self.earliest <= self.latest < math.inf:
             raise ValueError(f"earliest must be from 0 to latest, {self.latest}, got {self.earliest}")
+
+    def withstands(self, category: str) -> tuple[float, ...]:
+        return endurance.of_models(self, category)
 
     def loosens(self, spec: SceneSpec) -> frozenset[str]:
         return frozenset(f.name for f in spec.fixtures if f.category == CATEGORY)

@@ -17,6 +17,7 @@ from torch import Tensor
 from hazard_ms.hazards.fire.floor import half_spans
 from hazard_ms.hazards.wind import wakes
 from hazard_ms.hazards.wind.air import CELL, LOWEST
+from hazard_ms.kernels.launch import Launches
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.catalogue import CATEGORIES
 
@@ -79,20 +80,23 @@ def _over(x: Tensor, y: Tensor, middle: Tensor, rotation: Tensor, extent: Tensor
     return ((c * dx + s * dy).abs() < half_x) & ((c * dy - s * dx).abs() < half_y)
 
 
-def lee(world: World, height: Tensor, solidity: Tensor, coefficient: Tensor, heading: Tensor) -> tuple[Tensor, Tensor]:
+def lee(
+    world: World | None, height: Tensor, solidity: Tensor, coefficient: Tensor, heading: Tensor
+) -> tuple[Tensor, Tensor]:
     """Loss of wind near the ground, 0 to DEEPEST [-], and height [m] of what causes it, both [N, Y, X].
 
     `height` [m], `solidity` and `coefficient` [-], [N, Y, X], are those of `height_map`; `heading` has unit vectors,
-    [N, 2]. The kernels run in the launches of `world`.
+    [N, 2]. The kernels run in the launches of `world`, or where that is None in new ones.
     """
+    launches = Launches() if world is None else world.launches
     heading, nowhere = heading.contiguous(), torch.full_like(height, math.inf)
     right, left, ends = nowhere, -nowhere, (nowhere.clone(), -nowhere)
     for _ in range(sum(height.shape[1:])):  # an end is known to cells that are so many steps away, at reset only
-        world.launches.run(wakes.widen, tuple(height.shape), heading, height, right, left, *ends)
+        launches.run(wakes.widen, tuple(height.shape), heading, height, right, left, *ends)
         if height.device.type == "cpu" and torch.equal(right, ends[0]) and torch.equal(left, ends[1]):
             break
         (right, left), ends = ends, (right, left)
     loss, cause = torch.empty_like(height), torch.empty_like(height)
     maps = height, solidity, coefficient, right, left
-    world.launches.run(wakes.lee, tuple(height.shape), DEEPEST, heading, *maps, loss, cause)
+    launches.run(wakes.lee, tuple(height.shape), DEEPEST, heading, *maps, loss, cause)
     return loss, cause

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from hazard_ms.agents.search.memory import ELSEWHERE, SAME_AGAIN, after
 from hazard_ms.skills.decision import Decision
 from hazard_ms.skills.failures import NO_PATH
 
@@ -21,6 +24,15 @@ class Attempts:
     rounds: int = 0  # times that what was given up was tried again
     visits: dict[str, int] = field(default_factory=dict)  # of landmarks in search
     looked: bool = False  # around, in search
+
+    def chance(self, name: str, here: tuple[float, float], under_way: bool) -> float:
+        """The chance to get hold of a thing from `here` [m], as a share of that of a first attempt.
+
+        `under_way`: whether that is what it is doing anyway.
+        """
+        missed = self.missed.get(name)
+        again = missed is not None and float(np.hypot(*np.subtract(missed, here))) < ELSEWHERE
+        return after(self.failures.get(name, 0)) * (SAME_AGAIN if again and not under_way else 1.0)
 
 
 class Enclosure:

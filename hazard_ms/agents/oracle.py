@@ -16,7 +16,6 @@ from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.agents.gale.truth import GaleTruth, hazard_of
 from hazard_ms.agents.mitigating.doing import Mitigator
 from hazard_ms.agents.search.landmark_search import LandmarkSearch
-from hazard_ms.agents.search.memory import ELSEWHERE, SAME_AGAIN, after
 from hazard_ms.agents.search.outlook import SPREAD
 from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.averting import averting
@@ -112,8 +111,8 @@ class Oracle(PrivilegedAgent):
             return self._otherwise(decision, truth)
         self._search.leave()
         holding = decision.held is not None
-        if holding and self._gale is not None and (lee := self._gale.put_away(decision, self._carts)) is not None:
-            return self._say(self._gale.note, lee)
+        if holding and (lee := self._into_lee(decision)) is not None:
+            return lee
         index = self._cart(decision, step.cart) if holding else self._arrived_at(decision, truth, step.target)
         name = self._goal = decision.names[index]
         if self._is_near(decision, truth, index):
@@ -134,12 +133,12 @@ class Oracle(PrivilegedAgent):
             targets = [t for t in targets if stake[t.index]]
         if not targets or (decision.containers and not self._usable(decision, truth)):
             return [], None
-        held = next((t.index for t in targets if t.held), None)
+        held, here = next((t.index for t in targets if t.held), None), decision.agent_position
         told = (
             np.array([t.index for t in targets], np.int64),
-            np.array([t.value * self._chance(t.name, decision) for t in targets]),
+            np.array([t.value * self._attempts.chance(t.name, here, t.name == self._goal) for t in targets]),
             np.array(self._usable(decision, truth), np.int64),
-            Outset(decision.agent_position, decision.agent_heading, decision.frame, held),
+            Outset(here, decision.agent_heading, decision.frame, held),
             truth.detours(decision, self._scene, [t.index for t in targets])
             - [LOYALTY * (t.name == self._goal) for t in targets],
             FADING,
@@ -170,14 +169,12 @@ class Oracle(PrivilegedAgent):
         """The carts that did not fail too often, by index along B."""
         return [int(c) for c in self._carts if self._considered(decision.names[c], int(c), truth, CART_FAILURES)]
 
+    def _into_lee(self, decision: Decision) -> Action | None:
+        put = self._gale and self._gale.put_away(decision, self._carts, self._attempts.failures)
+        return self._say(self._gale.note, put) if self._gale and put else None
+
     def _future(self, truth: Truth) -> Timeline:
         return truth.future() if self._gale is None else self._gale.future(truth.record())
-
-    def _chance(self, name: str, decision: Decision) -> float:
-        """The chance that it gets hold of a thing, as a share of that of a first attempt."""
-        missed = self._attempts.missed.get(name)
-        here = missed is not None and float(np.hypot(*np.subtract(missed, decision.agent_position))) < ELSEWHERE
-        return after(self._attempts.failures.get(name, 0)) * (SAME_AGAIN if here and name != self._goal else 1.0)
 
     def _cart(self, decision: Decision, planned: int) -> int:
         """The cart that it is on its way to, so that it does not waver, else the planned one; indices along B."""

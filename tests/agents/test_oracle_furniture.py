@@ -15,7 +15,7 @@ from hazard_ms.evaluation.runner import Runner
 from hazard_ms.scenes.boxes import turned
 from hazard_ms.scenes.floor import boxes_of, partitions
 from hazard_ms.sensing.furniture import told
-from hazard_ms.sensing.semantic_map import CEILING, SemanticMap
+from hazard_ms.sensing.semantic_map import LINTELS, SemanticMap
 from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition, Room, SceneSpec, Task
@@ -87,12 +87,12 @@ def test_the_furniture_is_in_the_map_before_the_first_skill(known: bool, room: S
         inner = dataclasses.replace(box, half_x=box.half_x - 0.05, half_y=box.half_y - 0.05)
         if min(inner.half_x, inner.half_y) > 0.05:
             top = player.height[inner.distance(x, y) == 0.0]
-            assert len(top) > 4 and top == pytest.approx(min(box.high, CEILING), abs=0.03)  # the last sample below
+            assert len(top) > 4 and top == pytest.approx(min(box.high, LINTELS), abs=0.03)  # the last sample below
         free &= box.distance(x, y) > corner
     hidden = np.hypot(x - 1.4, y - 1.0) < 0.2
     assert free.sum() > 1000 and (player.height[free & ~hidden] < 0.02).all()
     ring = ~inside & (x > -0.1) & (x < 6.1) & (y > -0.1) & (y < size[1] + 0.1)
-    assert (player.height[ring] > 2.4).all() and player.explored[ring].all()
+    assert (player.height[ring] > LINTELS - 0.1).all() and player.explored[ring].all()
     behind = free & (x < 1.8)
     assert player.explored[behind].all() if not known else not player.explored[behind].any()
     assert not player.explored_before[behind].any()  # recorders begin with the map of an honest agent

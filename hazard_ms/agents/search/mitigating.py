@@ -156,7 +156,7 @@ def _measures(
             *(np.inf if one.guards == name else 0.0 for name in unseen),
         ]
         needs = fetched[one.tool] if one.tool else None
-        made.append(Measure(one.name, one.frames, spares, needs, one.uses, one.charge, one.closes))
+        made.append(Measure(one.name, one.frames, spares, needs, one.uses, one.charge, closes=one.closes))
     unreachable = np.full((len(unseen), len(found)), np.inf)
     return Measures(
         made,

@@ -71,7 +71,7 @@ def ahead() -> Outlook:
     table = np.full((5, 5), 100.0)
     table[:, 3] = 500.0
     problem = Problem(StaticTravel(table, 1), [5.0, 5.0, 1.0], [np.inf] * 3, [50.0] * 3, [60.0], limit=3000.0)
-    return Outlook(NAMES[:3], (), NAMES[3:], problem)
+    return Outlook(NAMES[:3], (), NAMES[3:], problem, problem, table)
 
 
 def test_values_are_those_of_what_the_wind_will_move_and_a_tenth_beside() -> None:

@@ -113,10 +113,10 @@ def test_a_place_shows_its_share_of_all_that_may_be_hidden() -> None:
 def test_what_a_detector_saw_from_afar_is_hardly_searched() -> None:
     """With a sight of 1.8 m, floor that was seen counts HIDDEN within that of the look, and FROM_AFAR beyond."""
     decision = looked({"border": (2.9, 0.0)})
-    y, x = np.mgrid[-60:60, -60:60] * 0.1 + 0.05
-    away = np.hypot(x, y)
-    floor = away < 5.0
-    left = np.where(away < 1.8, HIDDEN, np.where(away < 3.0, FROM_AFAR, 1.0)) * floor
+    y, x = decision.map.origin[::-1, None, None] + 0.1 * (np.indices(decision.map.explored.shape) + 0.5)
+    ring, away = unseen_floor(decision.map), np.hypot(x, y)
+    floor = decision.map.explored | ring
+    left = np.where(away < 1.8, HIDDEN, np.where(ring, 1.0, FROM_AFAR)) * floor
     missed = (1 - HIDDEN) * left / floor.sum()
     expected = missed[np.hypot(x - 2.9, y) < 1.8].sum() / (missed.sum() + HIDDEN)
     assert lookouts(decision, {}, [HERE], [], sight=1.8)[0].share == pytest.approx(expected, rel=0.07)

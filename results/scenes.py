@@ -149,7 +149,7 @@ def table() -> None:
         if kept:
             means = " | ".join(f"{mean:.0f}" for mean in means_of(kept))
             told, nearly = sum(r["chosen"] == "1" for r in mine), sum(p.margin(FIRE) >= 0.0 for p in kept)
-            print(f"| `{split}` | {looked} of {len(kept)} scenes | {told} | {nearly} | {means} |")
+            print(f"| `{split}` | {looked} | {told} of {len(kept)} | {nearly} | {means} |")
 
 
 def flood() -> None:

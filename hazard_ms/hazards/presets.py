@@ -104,7 +104,8 @@ def gale(preset: str, severity: str = USUAL) -> Gale:
 
     A frame of `shipped` is 0.3 of that of the others, and so are the times of its front.
     """
-    steady = vars(wind(preset, severity)) | {"sheltered": True}
+    calm = wind(preset, severity)
+    steady = {field.name: getattr(calm, field.name) for field in dataclasses.fields(calm)} | {"sheltered": True}
     if preset != "shipped":
         return Gale(**steady)
     usual = Gale()

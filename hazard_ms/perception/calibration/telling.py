@@ -1,4 +1,4 @@
-"""What the chances that a detector itself gives are worth: how sharp they are, and how sure looks at things are.
+"""Measures how sharp the chances are that a detector itself gives, and how sure its looks at things and at clutter are.
 
 The sharpness and the even share (`hazard_ms.sensing.detection.confusion`) are those of a grid by which the true
 categories of what was found are likeliest.

@@ -133,7 +133,7 @@ class FloorPlan:
         return self.spread(start, 1.0)
 
     def reached(self, ways: Array, point: NDArray[np.floating]) -> bool:
-        """Whether `ways` [m], [Y, X], from somewhere lead to the cell of a `point` [m], [2] or [3], or to one beside it."""
+        """Whether `ways` [m], [Y, X], lead to the cell of a `point` [m], [2] or [3], or to one beside it."""
         y, x = np.clip(self._cells(np.asarray(point, np.float64)[:2]), 0, np.array(ways.shape) - 1)
         return bool(np.isfinite(ways[max(y - 1, 0) : y + 2, max(x - 1, 0) : x + 2]).any())
 

@@ -86,9 +86,13 @@ class _Kept:
     ways: Tensor  # what is open in the walls
 
 
+def _still(fire: Fire) -> StillFire:
+    return StillFire(**{field.name: getattr(fire, field.name) for field in dataclasses.fields(fire)})
+
+
 def _task(env_id: str) -> Task:
     task = task_of(env_id, "paper")
-    made = (StillFire(**vars(h)) if isinstance(h, Fire) else h for h in task.hazards)
+    made = (_still(h) if isinstance(h, Fire) else h for h in task.hazards)
     return dataclasses.replace(task, hazards=tuple(made))
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -66,6 +68,21 @@ def things_of(decision: Decision) -> tuple[list[int], Things]:
 
 def _flames(seen: SemanticMap, levels: NDArray, warm: NDArray[np.bool_], things: Things) -> Flames | None:
     """The flames behind the warm floor of a map."""
+    floor = warm_floor(seen, levels, warm)
+    return None if floor is None else found(floor.points, floor.levels, things, floor.blocked)
+
+
+class WarmFloor(NamedTuple):
+    """The places by which fires are found on a map, the hottest first."""
+
+    points: NDArray  # [m], [P, 3]
+    levels: NDArray  # temperatures there [C], [P]
+    cells: tuple[NDArray, NDArray]  # y and x of these places on the map, [P] each
+    blocked: NDArray  # places where furniture stands [m], [Q, 2]
+
+
+def warm_floor(seen: SemanticMap, levels: NDArray, warm: NDArray[np.bool_]) -> WarmFloor | None:
+    """The floor of a map where it is `warm`, [Y, X], at most MOST_POINTS places of it, by `levels` [C], [Y, X]."""
     height = seen.height
     y, x = np.nonzero(warm & (height < FURNITURE))
     if not len(y):
@@ -74,4 +91,5 @@ def _flames(seen: SemanticMap, levels: NDArray, warm: NDArray[np.bool_], things:
     some = hottest[:: max(1, -(-len(hottest) // MOST_POINTS))]
     y, x = y[some], x[some]
     points = np.column_stack([seen.centre_of(y, x), height[y, x]])
-    return found(points, levels[y, x].astype(np.float64), things, seen.centre_of(*np.nonzero(height >= FURNITURE)))
+    blocked = seen.centre_of(*np.nonzero(height >= FURNITURE))
+    return WarmFloor(points, levels[y, x].astype(np.float64), (y, x), blocked)

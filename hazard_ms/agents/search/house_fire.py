@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from hazard_ms.agents.search.fire_watch import FURNITURE, MOST_POINTS, WARM, things_of
+from hazard_ms.agents.search.fire_watch import WARM, things_of, warm_floor
 from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
 from hazard_ms.planning.creeping_fire import CELL, STEP, Flames, Things, burning_from, found
 from hazard_ms.skills.decision import Decision
@@ -92,21 +92,14 @@ class HouseFire:
         return replace(things, temperature=temperature, whole_at=seen)
 
     def _found(self, decision: Decision, levels: NDArray, warm: NDArray[np.bool_]) -> Flames | None:
-        seen = decision.map
-        height = seen.height
-        y, x = np.nonzero(warm & (height < FURNITURE))
-        if not len(y):
+        floor = warm_floor(decision.map, levels, warm)
+        if floor is None:
             return None
-        hottest = np.argsort(-levels[y, x], kind="stable")
-        some = hottest[:: max(1, -(-len(hottest) // MOST_POINTS))]
-        y, x = y[some], x[some]
-        points = np.column_stack([seen.centre_of(y, x), height[y, x]])
-        blocked = seen.centre_of(*np.nonzero(height >= FURNITURE))
-        flames = found(points, levels[y, x].astype(np.float64), self._things, blocked, FARTHEST, self._plan.clear)
+        flames = found(floor.points, floor.levels, self._things, floor.blocked, FARTHEST, self._plan.clear)
         if flames is None:
             return None
-        nearest = ((flames.places[:, None, :2] - points[:, :2]) ** 2).sum(axis=-1).argmin(axis=1)
-        since = seen.told_at[y, x][nearest].astype(np.float64).reshape(flames.chance.shape)
+        nearest = ((flames.places[:, None, :2] - floor.points[:, :2]) ** 2).sum(axis=-1).argmin(axis=1)
+        since = decision.map.told_at[floor.cells][nearest].astype(np.float64).reshape(flames.chance.shape)
         return replace(flames, since=since)
 
     def _seats(self) -> tuple[Seat, ...]:

@@ -1,7 +1,7 @@
 """Our own small detector, which looks at colours and depth, on one core.
 
 Its network tells the category of every pixel and where the middle of its thing is. Pixels that point at the same place
-are one thing.
+are one thing. Where the weights have a second stage, it looks at each such thing by itself and says what it is.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from torch.nn import functional
 
+from hazard_ms.perception.detectors import second_stage
+from hazard_ms.perception.detectors.second_stage import SecondNetwork, SecondStage, both
 from hazard_ms.perception.detectors.small_network import SCALE, SmallNetwork, features, without_normalisation
 from hazard_ms.perception.detectors.weights import read_recipe, read_weights
 from hazard_ms.sensing.detection.confusion import Confusion
@@ -30,6 +32,7 @@ SPREAD = 1.0  # pixels by which votes for a middle are smoothed [ours]
 WINDOW = 7  # side of that in which a middle has the most votes [pixels] [ours]
 FEWEST_VOTES = 0.02  # at a middle, once smoothed [ours]
 NEAR = 0.35  # distance of two middles that are of one thing, as a share of the side of a square of its pixels [ours]
+ASKED = 0.25  # score from which the second stage is asked what a thing is: it takes 4 ms of a core each [ours]
 
 
 class Small(Detector):
@@ -51,43 +54,56 @@ class Small(Detector):
         self.classes = read_recipe(file.with_suffix(".json"), (NETWORK,))["classes"]
         table = file.with_name(f"{file.stem}{CONFUSION}")
         self.confusion = Confusion.read(table) if table.is_file() else None
-        made = SmallNetwork(len(self.classes) + 2)
+        made, weights = SmallNetwork(len(self.classes) + 2), read_weights(file)
         try:
-            made.load_state_dict({name: value.float() for name, value in read_weights(file).items()})
+            second = second_stage.loaded(weights, len(self.classes))
+            own = {name: value for name, value in weights.items() if not name.startswith(second_stage.PREFIX)}
+            made.load_state_dict({name: value.float() for name, value in own.items()})
         except RuntimeError as error:
             raise ValueError(f"weights must fit the network small, got {file}: {str(error).splitlines()[0]}") from None
-        self._use(made)
+        self._use(made, second)
 
     @classmethod
-    def of(cls, network: SmallNetwork, classes: list[str]) -> Small:
-        """The detector that asks `network`, whose classes from 1 on are the categories `classes`."""
+    def of(cls, network: SmallNetwork, classes: list[str], second: SecondNetwork | None = None) -> Small:
+        """The detector that asks `network`, whose classes from 1 on are the categories `classes`.
+
+        `second`: the network of the second stage, if there is one.
+        """
         made = cls.__new__(cls)
         made.classes = classes
-        made._use(network)
+        made._use(network, second)
         return made
 
-    def _use(self, network: SmallNetwork) -> None:
+    def _use(self, network: SmallNetwork, second: SecondNetwork | None) -> None:
         self._device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+        self._second = SecondStage(second, self._device) if second is not None else None
         self._network = without_normalisation(network).to(self._device).to(memory_format=torch.channels_last)
-        self._camera: tuple[torch.Tensor, torch.Tensor] | None = None
+        self._camera: tuple[NDArray[np.floating], NDArray[np.floating]] | None = None
 
     def aim(self, intrinsic: NDArray[np.floating], cam2world: NDArray[np.floating]) -> None:
-        matrices = (torch.from_numpy(np.asarray(m, np.float32))[None].to(self._device) for m in (intrinsic, cam2world))
-        self._camera = (next(matrices), next(matrices))
+        self._camera = np.asarray(intrinsic, np.float32), np.asarray(cam2world, np.float32)
 
     @torch.inference_mode()
     def detect(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> list[Detection]:
         """Find things in the colours `rgb`, [H, W, 3], and the `depth`, [H, W] [m], of the camera told to `aim`."""
         assert self._camera is not None, "aim comes first"
         picture, far = (torch.from_numpy(np.ascontiguousarray(a)).to(self._device)[None] for a in (rgb, depth))
-        given = features(picture, far, *self._camera)
+        matrices = (torch.from_numpy(matrix)[None].to(self._device) for matrix in self._camera)
+        given = features(picture, far, *matrices)
         below, beside = (-size % SCALE for size in depth.shape)
-        given = functional.pad(given, (0, beside, 0, below)).contiguous(memory_format=torch.channels_last)
-        logits, offsets = self._network(given)
+        padded = functional.pad(given, (0, beside, 0, below)).contiguous(memory_format=torch.channels_last)
+        logits, offsets = self._network(padded)
         height, width = depth.shape
         by_pixel = logits[0, :, :height, :width].permute(1, 2, 0)  # as they lie in memory, which is quicker
         chances = by_pixel.softmax(-1).permute(2, 0, 1).cpu().numpy()
-        return things(chances, offsets[0, :, :height, :width].cpu().numpy(), self.classes)
+        found = things(chances, offsets[0, :, :height, :width].cpu().numpy(), self.classes)
+        asked = [k for k, one in enumerate(found) if one.score >= ASKED]
+        if self._second is not None and asked:
+            first = np.array([found[k].chances for k in asked])
+            second = self._second.chances(given[0], depth, self._camera, [found[k].mask for k in asked])
+            for k, each in zip(asked, both(first, second), strict=True):
+                found[k] = named(each, found[k].mask, self.classes)
+        return found
 
 
 def things(chances: NDArray[np.float32], offsets: NDArray[np.float32], classes: Sequence[str]) -> list[Detection]:
@@ -115,11 +131,14 @@ def things(chances: NDArray[np.float32], offsets: NDArray[np.float32], classes: 
         if mine.sum() < FEWEST:
             continue
         mask = _without_strays(rows[mine], columns[mine], (height, width))
-        mean = chances[1:-1, mask].mean(1)
-        best = int(mean.argmax())
-        each = tuple(mean.tolist())
-        found.append(Detection(classes[best], float(np.sqrt(mean[best])), box_of(mask), mask, each))
+        found.append(named(chances[1:-1, mask].mean(1), mask, classes))
     return found
+
+
+def named(chances: NDArray[np.floating], mask: NDArray[np.bool_], classes: Sequence[str]) -> Detection:
+    """The thing with a `mask`, [H, W], by the `chances`, [C], of each of `classes`."""
+    best = int(chances.argmax())
+    return Detection(classes[best], float(np.sqrt(chances[best])), box_of(mask), mask, tuple(chances.tolist()))
 
 
 def _without_strays(rows: NDArray[np.int64], columns: NDArray[np.int64], shape: tuple[int, int]) -> NDArray[np.bool_]:

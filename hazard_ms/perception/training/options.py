@@ -29,11 +29,13 @@ class TrainOptions:
     """Datasets, OUTPUT/TASK; one or more."""
     output: Annotated[Path, flag("-o")]
     """Folder for MODEL.safetensors, MODEL.json, MODEL.csv and MODEL.svg (the curve) and MODEL.training."""
-    model: Literal["mask_rcnn", "small"] = "mask_rcnn"
-    """Mask R-CNN of torchvision, or the small detector that looks at depth, too."""
+    model: Literal["mask_rcnn", "small", "second_stage"] = "mask_rcnn"
+    """Mask R-CNN of torchvision, the small detector that looks at depth, too, or the second stage of a trained small
+    one, which names what that one finds."""
     weights: str = UNTRAINED
     """File .pth or .safetensors to begin with: torchvision's COCO weights, or an earlier training's; for small those of
-    another small one, with its NAME.json; none: random weights, for Mask R-CNN of a smaller network."""
+    another small one, with its NAME.json; for second_stage those of its first stage; none: random weights, for Mask
+    R-CNN of a smaller network."""
     split: str = "train"
     """Split to learn from."""
     validate: tuple[Path, ...] = ()
@@ -51,7 +53,7 @@ class TrainOptions:
     seed: Annotated[int, flag("-s")] = 0
     """Seed of weights, pictures and crops."""
     batch: int | None = None
-    """Pictures or crops of a step; by default 2, small 8."""
+    """Pictures or crops of a step; by default 2, small 8, second_stage 64 things."""
     size: int | None = None
     """Shorter side to which Mask R-CNN brings pictures (by default 192 untrained, else as `weights` learned, or
     torchvision's), or side of the crops of small (160, a multiple of 32), in pixels."""
@@ -80,7 +82,7 @@ class TrainOptions:
     @property
     def batch_size(self) -> int:
         """Pictures or crops of a step."""
-        return self.batch or {"small": 8, "mask_rcnn": 2}[self.model]
+        return self.batch or {"small": 8, "mask_rcnn": 2, "second_stage": 64}[self.model]
 
     @property
     def command(self) -> str:

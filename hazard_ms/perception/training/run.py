@@ -61,7 +61,8 @@ def train(options: TrainOptions) -> int:
     steps = options.steps or max(1, math.ceil(options.epochs * len(pictures) / options.batch_size))
     print(f"{len(pictures)} pictures, {len(run.student.classes)} categories, {steps:,} steps", flush=True)
     run.train(steps, options.minutes)
-    print(f"hazard-ms evaluate -e {options.data[0].name} --perception {options.model}:{path}")
+    detector = "mask_rcnn" if options.model == "mask_rcnn" else "small"
+    print(f"hazard-ms evaluate -e {options.data[0].name} --perception {detector}:{path}")
     return 0
 
 
@@ -72,12 +73,16 @@ def student(options: TrainOptions, pictures: Sequence[Picture], before: dict[str
     """
     recipe = before["recipe"] if before else None
     weights = None if options.weights == UNTRAINED else Path(options.weights)
-    size = options.size or (SIZES[options.model] if weights is None or options.model == "small" else None)
+    size = options.size or (SIZES.get(options.model) if weights is None or options.model == "small" else None)
     if options.model == "small":
         from hazard_ms.perception.training.small import SmallStudent
 
         assert size is not None
         return SmallStudent(pictures, options.batch_size, size, recipe, weights)
+    if options.model == "second_stage":
+        from hazard_ms.perception.training.second_stage import SecondStageStudent
+
+        return SecondStageStudent(pictures, options.batch_size, weights, recipe, options.seed)
     from hazard_ms.perception.training.mask_rcnn import MaskRcnnStudent
 
     return MaskRcnnStudent(pictures, options.batch_size, size, weights, recipe)

@@ -18,7 +18,7 @@ from hazard_ms.perception.detectors.small_network import REACH, SCALE, SmallNetw
 from hazard_ms.perception.detectors.weights import read_recipe, read_weights
 from hazard_ms.perception.training.drawing import Drawing
 from hazard_ms.perception.training.pictures import Picture, classes_of, names_of
-from hazard_ms.perception.training.student import Student, device, half_precision
+from hazard_ms.perception.training.student import Student, averaged, device, half_precision, relit
 from hazard_ms.spec.catalogue import CATEGORIES
 
 # [ours], all of them
@@ -73,7 +73,7 @@ class SmallStudent(Student):
             torch.from_numpy(np.stack(part)).to(self._device) for part in zip(*crops, strict=True)
         )
         given = features(rgb, depth, intrinsic, cam2world)
-        given[:, :3] = _relit(given[:, :3], chance)
+        given[:, :3] = relit(given[:, :3], chance, LIGHT, TINT, CONTRAST)
         with torch.autocast(self._device.type, torch.bfloat16, enabled=self._half):
             logits, told = self.network(given.contiguous(memory_format=torch.channels_last))
         by_pixel = functional.log_softmax(logits.permute(0, 2, 3, 1).flatten(0, 2), -1)  # [P, C] as they lie in memory
@@ -97,9 +97,7 @@ class SmallStudent(Student):
     @torch.no_grad()
     def learned(self) -> None:
         self._steps += 1
-        kept = min(AVERAGE_DECAY, (1 + self._steps) / (10 + self._steps))
-        for mean, now in zip(self._average.state_dict().values(), self.network.state_dict().values(), strict=True):
-            mean.copy_(now if not mean.is_floating_point() else torch.lerp(now, mean, kept))
+        averaged(self._average, self.network, min(AVERAGE_DECAY, (1 + self._steps) / (10 + self._steps)))
 
     def detector(self) -> Small:
         return Small.of(copy.deepcopy(self._average), self.classes)
@@ -160,12 +158,3 @@ def begin(network: SmallNetwork, classes: Sequence[str], path: Path) -> None:
         spare = [str(error).splitlines()[-1].strip()]
     if spare:
         raise ValueError(f"weights must fit the network small, got {path}: {spare[0]:.200}")
-
-
-def _relit(colours: Tensor, chance: np.random.Generator) -> Tensor:
-    """The `colours` of crops, [N, 3, H, W], -1 to 1, in another light for each."""
-    count = len(colours)
-    light = np.exp(chance.normal(0.0, LIGHT, (count, 1)) + chance.normal(0.0, TINT, (count, 3)))
-    gamma = np.exp(chance.normal(0.0, CONTRAST, (count, 1)))
-    gain, power = (torch.from_numpy(a).float().to(colours.device)[:, :, None, None] for a in (light, gamma))
-    return (gain * (0.5 * colours + 0.5).clamp(min=1e-3) ** power).clamp(0.0, 1.0) * 2.0 - 1.0

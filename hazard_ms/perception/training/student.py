@@ -70,3 +70,23 @@ def half_precision(where: torch.device) -> bool:
         return torch.cuda.is_bf16_supported(including_emulation=False)
     told: dict[str, bool] = getattr(torch.cpu, "get_capabilities", dict)()  # not in older versions of torch
     return any(told.get(name, False) for name in ("amx_bf16", "avx512_bf16"))
+
+
+@torch.no_grad()
+def averaged(mean: torch.nn.Module, now: torch.nn.Module, kept: float) -> None:
+    """Move the weights of `mean` to those of `now`, of which they keep the share `kept`; counts become those of now."""
+    for old, new in zip(mean.state_dict().values(), now.state_dict().values(), strict=True):
+        old.copy_(torch.lerp(new, old, kept) if old.is_floating_point() else new)
+
+
+def relit(colours: Tensor, chance: np.random.Generator, light: float, tint: float, contrast: float) -> Tensor:
+    """The `colours` of pictures, [N, 3, H, W], -1 to 1, in another light for each.
+
+    `light`, `tint` and `contrast`: standard deviations of the logarithms of brightness, of that of each colour, and of
+    the exponent of colours.
+    """
+    count = len(colours)
+    gain = np.exp(chance.normal(0.0, light, (count, 1)) + chance.normal(0.0, tint, (count, 3)))
+    gamma = np.exp(chance.normal(0.0, contrast, (count, 1)))
+    by, power = (torch.from_numpy(a).float().to(colours.device)[:, :, None, None] for a in (gain, gamma))
+    return (by * (0.5 * colours + 0.5).clamp(min=1e-3) ** power).clamp(0.0, 1.0) * 2.0 - 1.0

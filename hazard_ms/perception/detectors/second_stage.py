@@ -51,7 +51,7 @@ class SecondNetwork(nn.Module):
         self.head = nn.Linear(8 * w, classes)
 
     def forward(self, patches: Tensor, sizes: Tensor) -> Tensor:
-        """Logits, [N, C] [-], of things by their `patches`, [N, CHANNELS + 1, SIDE, SIDE], and `sizes`, [N, SIZES]."""
+        """Logits, [N, L] [-], of things by their `patches`, [N, CHANNELS + 1, SIDE, SIDE], and `sizes`, [N, SIZES]."""
         seen = self.body(patches)
         mask = functional.adaptive_avg_pool2d(patches[:, -1:].clamp(0.0, 1.0), seen.shape[-2:]) + 0.02
         inside = (seen * mask).sum((2, 3)) / mask.sum((2, 3))
@@ -74,7 +74,7 @@ class SecondStage:
         camera: tuple[NDArray[np.floating], NDArray[np.floating]],
         masks: Sequence[NDArray[np.bool_]],
     ) -> NDArray[np.float64]:
-        """How likely things are of each category, and last of none, [N, C + 1] [-], by their `masks`, [H, W] each.
+        """Chances of each category, and last of none, [N, L + 1] [-], of things by their `masks`, [H, W] each.
 
         `given`: what `features` tells of the picture, [CHANNELS, H, W]; `depth` [m], [H, W]; `camera`: its matrix
         [pixels], [3, 3], and its pose [m], [4, 4].
@@ -87,7 +87,7 @@ class SecondStage:
 
 
 def both(first: NDArray[np.floating], second: NDArray[np.floating]) -> NDArray[np.float64]:
-    """The chances of each category, [N, C] [-], by what two stages say: `first`, [N, C], and `second`, [N, C + 1].
+    """Chances of each category, [N, L] [-], by what two stages say: `first`, [N, L], and `second`, [N, L + 1].
 
     What is missing to 1 in `first` is the chance of none, which `second` tells last. Logarithms are added with weights.
     """
@@ -98,7 +98,7 @@ def both(first: NDArray[np.floating], second: NDArray[np.floating]) -> NDArray[n
 
 
 def patch_of(given: Tensor, mask: NDArray[np.bool_], side: int, margin: float) -> Tensor:
-    """What is seen of a thing and around it, [CHANNELS + 1, side, side]: features, and whether a pixel is of the thing.
+    """A thing and what is around it, [CHANNELS + 1, side, side]: features, and whether a pixel is of the thing.
 
     `given`: what `features` tells of the picture, [CHANNELS, H, W]; `mask`, [H, W], of the thing; `margin`: side of
     what is seen as a multiple of the longer side of its box. Beside the picture its edge goes on.
@@ -121,7 +121,7 @@ def sizes_of(
     camera: tuple[NDArray[np.floating], NDArray[np.floating]],
     mask: NDArray[np.bool_],
 ) -> NDArray[np.float32]:
-    """How large a thing is, float32 [SIZES].
+    """Sizes of a thing, float32 [SIZES].
 
     Logarithms of its height, length and width [m]; the heights of its lower and upper end above the floor [m];
     logarithms of its distance [m], of its pixels, and of the side of a square of its area [m]. `depth` [m], [H, W]; `camera`: its matrix [pixels], [3, 3], and its pose [m], [4, 4], looking along -z with y up.

@@ -125,11 +125,11 @@ class SecondStageStudent(Student):
 def gathered(
     pictures: Sequence[Picture], first: Small, chance: np.random.Generator
 ) -> tuple[Tensor, Tensor, Tensor, NDArray[np.int64]]:
-    """What is kept of all things of FEWEST pixels or more, masked as in the truth and as `first` finds them.
+    """All things of FEWEST pixels or more in `pictures`, as they are kept, 90 kB each.
 
-    Each takes 90 kB of memory: patches, int8 [N, C, KEPT, KEPT] [1/FINEST]; what `sizes_of` tells, [N, SIZES]; numbers of their categories in
-    `classes`, or their count for others, [N]; pixels, [N]. Takes about half a second a picture on one core. Raises
-    ValueError for pictures without things.
+    They are masked as in the truth and, once more, as `first` finds them. Patches, int8 [N, C, KEPT, KEPT] [1/FINEST];
+    what `sizes_of` tells, [N, SIZES]; numbers of their categories in `classes`, or their count for others, [N]; pixels,
+    [N]. Takes about half a second a picture on one core. Raises ValueError for pictures without things.
     """
     patches, sizes, kinds, pixels = [], [], [], []
     for picture in pictures:

@@ -124,7 +124,8 @@ def sizes_of(
     """Sizes of a thing, float32 [SIZES].
 
     Logarithms of its height, length and width [m]; the heights of its lower and upper end above the floor [m];
-    logarithms of its distance [m], of its pixels, and of the side of a square of its area [m]. `depth` [m], [H, W]; `camera`: its matrix [pixels], [3, 3], and its pose [m], [4, 4], looking along -z with y up.
+    logarithms of its distance [m], of its pixels, and of the side of a square of its area [m]. `depth` [m], [H, W];
+    `camera`: its matrix [pixels], [3, 3], and its pose [m], [4, 4], looking along -z with y up.
     """
     intrinsic, cam2world = camera
     rows, columns = np.nonzero(mask & (depth > 0.0))

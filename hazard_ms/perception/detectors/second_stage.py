@@ -20,6 +20,7 @@ from hazard_ms.sensing.detection.detector import box_of
 PREFIX = "second."  # of the names of its weights beside those of the first stage
 SIDE = 64  # of a patch [pixels] [ours]
 MARGIN = 1.5  # side of what a patch shows, as a multiple of the longer side of the thing's box [ours]
+LEAST_PIXELS = 40  # of a thing about which it is asked; it learns from none with fewer [ours]
 LEAST_SIDE = 8.0  # of that box [pixels] [ours]
 WIDTH = 24  # channels after the first convolution [ours]
 SIZES = 8  # numbers that `sizes_of` tells

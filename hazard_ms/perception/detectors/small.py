@@ -16,7 +16,7 @@ from scipy import ndimage
 from torch.nn import functional
 
 from hazard_ms.perception.detectors import second_stage
-from hazard_ms.perception.detectors.second_stage import SecondNetwork, SecondStage, both
+from hazard_ms.perception.detectors.second_stage import LEAST_PIXELS, SecondNetwork, SecondStage, both
 from hazard_ms.perception.detectors.small_network import SCALE, SmallNetwork, features, without_normalisation
 from hazard_ms.perception.detectors.weights import read_recipe, read_weights
 from hazard_ms.sensing.detection.confusion import Confusion
@@ -32,7 +32,7 @@ SPREAD = 1.0  # pixels by which votes for a middle are smoothed [ours]
 WINDOW = 7  # side of that in which a middle has the most votes [pixels] [ours]
 FEWEST_VOTES = 0.02  # at a middle, once smoothed [ours]
 NEAR = 0.35  # distance of two middles that are of one thing, as a share of the side of a square of its pixels [ours]
-ASKED = 0.25  # score from which the second stage is asked what a thing is: it takes 4 ms of a core each [ours]
+ASKED = 0.35  # score from which the second stage is asked what a thing is: it takes 4 ms of a core each [ours]
 
 
 class Small(Detector):
@@ -97,7 +97,7 @@ class Small(Detector):
         by_pixel = logits[0, :, :height, :width].permute(1, 2, 0)  # as they lie in memory, which is quicker
         chances = by_pixel.softmax(-1).permute(2, 0, 1).cpu().numpy()
         found = things(chances, offsets[0, :, :height, :width].cpu().numpy(), self.classes)
-        asked = [k for k, one in enumerate(found) if one.score >= ASKED]
+        asked = [k for k, one in enumerate(found) if one.score >= ASKED and one.mask.sum() >= LEAST_PIXELS]
         if self._second is not None and asked:
             first = np.array([found[k].chances for k in asked])
             second = self._second.chances(given[0], depth, self._camera, [found[k].mask for k in asked])

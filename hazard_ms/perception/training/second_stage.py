@@ -15,6 +15,7 @@ from torch import Tensor
 from torch.nn import functional
 
 from hazard_ms.perception.detectors.second_stage import (
+    LEAST_PIXELS,
     PREFIX,
     SIDE,
     SecondNetwork,
@@ -30,7 +31,7 @@ from hazard_ms.perception.training.student import Student, averaged, device, rel
 # [ours], all of them
 RATE, WARM, DECAY, AVERAGE_DECAY = 3e-3, 200, 2e-2, 0.998  # rate, steps until it is reached, decay; as in small.py
 SMOOTH = 0.05  # of the chance that is given to other categories than the right one
-FEWEST, FULLY = 40, 256  # pixels from which a thing is learned from, and from which it is as often as others
+FULLY = 256  # pixels from which a thing is drawn as often as others
 OTHERS = 0.3  # share of things of no known category that are learned from
 SAME, NONE = 0.5, 0.2  # intersection over union from which what is found is a thing, and below which it is none
 KEPT, KEPT_MARGIN = 96, 2.25  # side of what is kept of a thing [pixels], and what it shows, as MARGIN
@@ -125,7 +126,7 @@ class SecondStageStudent(Student):
 def gathered(
     pictures: Sequence[Picture], first: Small, chance: np.random.Generator
 ) -> tuple[Tensor, Tensor, Tensor, NDArray[np.int64]]:
-    """All things of FEWEST pixels or more in `pictures`, as they are kept, 90 kB each.
+    """All things of LEAST_PIXELS pixels or more in `pictures`, as they are kept, 90 kB each.
 
     They are masked as in the truth and, once more, as `first` finds them. Patches, int8 [N, C, KEPT, KEPT] [1/FINEST];
     what `sizes_of` tells, [N, SIZES]; numbers of their categories in `classes`, or their count for others, [N]; pixels,
@@ -138,7 +139,7 @@ def gathered(
         given = features(*told)[0]
         for mask, kind in shown(picture, first):
             count = int(mask.sum())
-            if count < FEWEST or (kind == len(first.classes) and chance.random() >= OTHERS):
+            if count < LEAST_PIXELS or (kind == len(first.classes) and chance.random() >= OTHERS):
                 continue
             patch = (FINEST * patch_of(given, mask, KEPT, KEPT_MARGIN)).round().clamp(-127, 127)
             patches.append(patch.to(torch.int8))
@@ -146,7 +147,7 @@ def gathered(
             kinds.append(kind)
             pixels.append(count)
     if not patches:
-        raise ValueError(f"DATA must hold things of {FEWEST} pixels or more, got none")
+        raise ValueError(f"DATA must hold things of {LEAST_PIXELS} pixels or more, got none")
     return torch.stack(patches), torch.stack(sizes), torch.tensor(kinds), np.array(pixels)
 
 

@@ -39,6 +39,7 @@ class Small(Detector):
     """The trained network, asked on one core or on a GPU."""
 
     eyes = "512/120"  # of the original; with fewer pixels it tells fewer categories right (docs/perception.md)
+    second: SecondStage | None  # None: the first stage alone says what things are
 
     def __init__(self, path: str = "") -> None:
         """Load the weights at `path`, NAME.safetensors with NAME.json beside it; by default those of the package.
@@ -76,7 +77,7 @@ class Small(Detector):
 
     def _use(self, network: SmallNetwork, second: SecondNetwork | None) -> None:
         self._device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
-        self._second = SecondStage(second, self._device) if second is not None else None
+        self.second = SecondStage(second, self._device) if second is not None else None
         self._network = without_normalisation(network).to(self._device).to(memory_format=torch.channels_last)
         self._camera: tuple[NDArray[np.floating], NDArray[np.floating]] | None = None
 
@@ -98,9 +99,9 @@ class Small(Detector):
         chances = by_pixel.softmax(-1).permute(2, 0, 1).cpu().numpy()
         found = things(chances, offsets[0, :, :height, :width].cpu().numpy(), self.classes)
         asked = [k for k, one in enumerate(found) if one.score >= ASKED and one.mask.sum() >= LEAST_PIXELS]
-        if self._second is not None and asked:
+        if self.second is not None and asked:
             first = np.array([found[k].chances for k in asked])
-            second = self._second.chances(given[0], depth, self._camera, [found[k].mask for k in asked])
+            second = self.second.chances(given[0], depth, self._camera, [found[k].mask for k in asked])
             for k, each in zip(asked, both(first, second), strict=True):
                 found[k] = named(each, found[k].mask, self.classes)
         return found

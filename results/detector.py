@@ -1,10 +1,11 @@
-"""Our small detector: `./run python results/detector.py [capture|train|calibrate|tables...]`.
+"""Our small detector: `./run python results/detector.py [capture|train|name|calibrate|tables...]`.
 
 `capture` takes pictures with 512 pixels and 120 degrees of whole episodes: few of each of many scenes, those of the
 split `train` and spare ones of the same places; narrower ones of some of them; those of the test rooms, also for
-results/eyes.py; and those in which errors are counted. `train` goes on from the package's weights, `calibrate` counts
-the errors, `tables` scores the detector in the test rooms and writes detector.md beside this file. Without words it
-does all of it. Each step resumes where it stopped; takes hours on one core. What is shipped is build/detector.
+results/eyes.py; and those in which errors are counted. `train` goes on from the first stage of the package's weights,
+`name` trains the second stage on what that one finds, `calibrate` counts the errors, `tables` scores the detector in
+the test rooms and writes detector.md beside this file. Without words it does all of it. Each step resumes where it
+stopped; takes hours on one core. What is shipped is build/detector/second_stage, called small.
 """
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ from results.eyes import COLUMNS, HOME, Look, scored, values
 from results.tables import COMMAND, HERE, TASKS, machine
 
 PICTURES, NARROW, CAMERA, UNSEEN = (HOME / name for name in ("pictures", "narrow", "camera", "unseen"))
-FIRST, DETECTOR = HOME / "first" / "small.safetensors", HOME / "detector" / "small.safetensors"
+FIRST, TRAINED = HOME / "first" / "small.safetensors", HOME / "first_stage" / "small.safetensors"
+DETECTOR = HOME / "detector" / "second_stage.safetensors"
 WIDE = ("--per-scene", "6", "--size", "512", "--fov", "120", "-o", PICTURES)
 CLOSE = ("--per-scene", "8", "--size", "512", "--fov", "60", "-o", NARROW)
 SPARE = "24"  # spare scenes of each place
@@ -36,15 +38,16 @@ ROOMS = ("fire", "flood")  # tasks that are seen more closely, too
 CLOSER = [f"{place}/{n}" for place in ("kitchen_a", "living_room_a", "craft_room_a") for n in range(26, 36, 2)]
 ERRORS = {"fire": "large", "flood": "large", "wind": "hard"}  # splits in which errors are counted, by task
 FEW = 6  # scenes of each of these
-STEPS_IN_ALL = "40000"
-STEPS = ("capture", "train", "calibrate", "tables")
+STEPS_IN_ALL, SECOND_STEPS = "40000", "10000"
+STEPS = ("capture", "train", "name", "calibrate", "tables")
 Row = dict[str, Any]
 HEAD = """# The small detector
 
 Made by `./run python results/detector.py`: {pictures} pictures of 512 x 512 with 120 degrees, and with 60, of {scenes}
 scenes of the three tasks; {steps} steps of 6 crops of 160 x 160 at half to one and a half times their size, after those
-of the weights that the training went on from. Scored in {tests} pictures, 512/120, of rooms and streets that it was not
-trained in, on things that can be moved and carts. One training. Written at
+of the weights that the training went on from; {second} steps of 64 things for the second stage. Scored in {tests}
+pictures, 512/120, of rooms and streets that it was not trained in, on things that can be moved and carts. One training.
+Written at
 {machine}.
 
 AP50 of masks by task, with the number of things; goals are 0.60 for all of 256 pixels or more, and 0.45 for those of
@@ -56,10 +59,10 @@ them that burn and that are or were wet. "Any category" counts a thing as found 
 CURVE = """
 ## Curve
 
-AP50 of masks of all things in 60 of these pictures, on the way. The rate of learning falls to the end.
+AP50 of masks of all things in 60 of these pictures, on the way, of each stage. The rate of learning falls to the end.
 
-| step | AP50 |
-|---|---|
+| stage | step | AP50 |
+|---|---|---|
 """
 
 
@@ -94,15 +97,25 @@ def train() -> None:
         FIRST.parent.mkdir(parents=True, exist_ok=True)
         for ending in (".json", ".safetensors"):
             shutil.copyfile(SHIPPED.with_suffix(ending), FIRST.with_suffix(ending))
+    words = ("--model", "small", "--weights", FIRST, "--batch", "6", "--steps", STEPS_IN_ALL)
+    learn(TRAINED.parent, *words)
+
+
+def name() -> None:
+    """Train the second stage on the things in the pictures, and on what the first stage finds in them."""
+    learn(DETECTOR.parent, "--model", "second_stage", "--weights", TRAINED, "--steps", SECOND_STEPS)
+
+
+def learn(output: Path, *words: str | Path) -> None:
+    """Train a model on all pictures."""
     wide = [PICTURES / env_id for env_id in TASKS.values()]
     close = [NARROW / TASKS[task] for task in ROOMS]
-    words = ("--model", "small", "--weights", FIRST, "--batch", "6", "--steps", STEPS_IN_ALL, "--every", "1000")
-    run("perception", "train", *wide, *close, "-o", DETECTOR.parent, *words, "--validate", *wide)
+    run("perception", "train", *wide, *close, "-o", output, *words, "--every", "1000", "--validate", *wide)
 
 
 def calibrate() -> None:
     """Count the errors in rooms and streets that belong to neither `train` nor `test`."""
-    table_of = DETECTOR.with_name("small_confusion.json")
+    table_of = DETECTOR.with_name(f"{DETECTOR.stem}_confusion.json")
     data = [UNSEEN / TASKS[task] for task in ERRORS]
     told = f"small:{os.path.relpath(DETECTOR, HERE.parent)}"
     run("perception", "calibrate", *data, "--perception", told, "--split", "large", "hard", "-o", table_of)
@@ -133,25 +146,27 @@ def tables() -> None:
     rows += row_of("all", truth, found)
     homes = [home / env_id for home in (PICTURES, NARROW) for env_id in TASKS.values()]
     learned = read([home for home in homes if (home / layout.instances("train")).is_file()], "train")
-    recipe = json.loads(DETECTOR.with_suffix(".json").read_text(encoding="utf-8"))
+    steps = [json.loads(at.with_suffix(".json").read_text(encoding="utf-8"))["step"] for at in (TRAINED, DETECTOR)]
     told = {"pictures": len(learned), "scenes": len({(p.dataset.name, p.row["scene"]) for p in learned})}
-    told |= {"steps": recipe["step"], "tests": len(truth["images"]), "columns": " | ".join(COLUMNS)}
+    told |= {"steps": steps[0], "second": steps[1], "tests": len(truth["images"]), "columns": " | ".join(COLUMNS)}
     text = HEAD.format(**told, line="---|" * (2 + len(COLUMNS)), machine=machine()) + rows
     for kind, name in KINDS.items():
         text += f"\n## {name.capitalize()}\n\n{table(truth, found, kind)}"
-    with DETECTOR.with_suffix(".csv").open(newline="", encoding="utf-8") as file:
-        curve = [(float(row["step"]), float(row["mask AP50"])) for row in csv.DictReader(file)]
-    text += CURVE + "".join(f"| {step:,.0f} | {value:.3f} |\n" for step, value in curve if math.isfinite(value))
+    text += CURVE
+    for number, at in enumerate((TRAINED, DETECTOR), start=1):
+        with at.with_suffix(".csv").open(newline="", encoding="utf-8") as file:
+            curve = [(float(row["step"]), float(row["mask AP50"])) for row in csv.DictReader(file)]
+        text += "".join(f"| {number} | {step:,.0f} | {value:.3f} |\n" for step, value in curve if math.isfinite(value))
     (HERE / "detector.md").write_text(text, encoding="utf-8")
     print(text)
 
 
 def main(wanted: list[str]) -> None:
     """Take the steps called `wanted`, or all. Raises ValueError for unknown names."""
-    todo = [one_of(name, STEPS, "a step") for name in wanted] or [*STEPS]
-    for name in STEPS:
-        if name in todo:
-            {"capture": capture, "train": train, "calibrate": calibrate, "tables": tables}[name]()
+    todo = [one_of(each, STEPS, "a step") for each in wanted] or [*STEPS]
+    for step in STEPS:
+        if step in todo:
+            {"capture": capture, "train": train, "name": name, "calibrate": calibrate, "tables": tables}[step]()
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
-"""The track with perception: `./run python results/perceived.py [TASK-AGENT...]`; resumes where it stopped.
+"""The track with perception: `./run python results/perceived.py [TASK-AGENT...] [SCENES]`; resumes where it stopped.
 
-Every agent plays the 25 scenes of each task's split `test` and sees through our small detector. Writes perceived.md
+Every agent plays the first scenes, 25 by default, of each task's split `test` and sees through our small detector. Writes perceived.md
 beside this file, with the same agents' scores of scores.csv and the paper's; rows of what was played elsewhere stay.
 With `tables` alone it plays nothing. `parts [SCENES]` plays the first scenes, 5 by default, with each part of the track
 alone, with all and with none, and writes perceived_parts.md.
@@ -58,7 +58,7 @@ Written at
 HEAD = """# With perception
 
 Made by `./run python results/perceived.py`. Agents see through `--perception small`: segmentation is withheld, things
-are found by the package's detector and followed by tracks of our own. 25 scenes of `test`, Fetch, presets `paper`.
+are found by the package's detector and followed by tracks of our own. First scenes of `test`, Fetch, presets `paper`.
 Values are in percent, with 95 % bootstrap intervals over scenes; "less the truth" is the difference from the same
 agent that is told what its camera sees, paired by episode (results/README.md). A dash: not played. Written at
 {machine}.
@@ -75,9 +75,9 @@ simulator, Value:
 """
 
 
-def play(task: str, agent: str) -> None:
-    """Play what is missing of an agent in a task."""
-    options = ("--split", "test", "--episodes", str(SCENES), "--perception", DETECTOR, "--agents", agent)
+def play(task: str, agent: str, scenes: int = SCENES) -> None:
+    """Play what is missing of an agent in the first `scenes` of a task."""
+    options = ("--split", "test", "--episodes", str(scenes), "--perception", DETECTOR, "--agents", agent)
     evaluate(task, RAW / task, *options)
 
 
@@ -146,9 +146,10 @@ def main(wanted: list[str]) -> None:
         parts(int(wanted[1]) if len(wanted) > 1 else 5)
         return
     names = [f"{task}-{agent}" for task in TASKS for agent in AGENTS]
+    scenes = int(wanted.pop()) if wanted and wanted[-1].isdecimal() else SCENES
     for name in [] if wanted == ["tables"] else [one_of(each, names, "an agent of a task") for each in wanted] or names:
         task, _, agent = name.partition("-")
-        play(task, agent)
+        play(task, agent, scenes)
     text = HEAD.format(machine=machine()) + rows() + OTHERS
     text += "".join(f"| {name} | {' | '.join(map(str, values))} |\n" for name, values in PAPER.items())
     (HERE / "perceived.md").write_text(text, encoding="utf-8")

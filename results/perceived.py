@@ -1,7 +1,8 @@
 """The track with perception: `./run python results/perceived.py [TASK-AGENT...] [SCENES]`; resumes where it stopped.
 
-Every agent plays the first scenes, 25 by default, of each task's split `test` and sees through our small detector. Writes perceived.md
-beside this file, with the same agents' scores of scores.csv and the paper's; rows of what was played elsewhere stay.
+Every agent plays the first scenes, 25 by default, of each task's split `test` and sees through our small detector.
+Writes perceived.md beside this file, with the same agents' scores of scores.csv and the paper's; rows of what was
+played elsewhere stay.
 With `tables` alone it plays nothing. `parts [SCENES]` plays the first scenes, 5 by default, with each part of the track
 alone, with all and with none, and writes perceived_parts.md.
 """

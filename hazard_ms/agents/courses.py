@@ -19,6 +19,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.agents.aims import VALUE, Aim
+from hazard_ms.agents.mitigating.costs import PUT_DOWN
 from hazard_ms.planning.committed import committed
 from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import Problem
@@ -53,7 +55,8 @@ class State:
     frame: int
     holding: int | None  # index along B of the target in the hand
     left: tuple[int, ...]  # targets that are not safe, indices along B, the one in the hand among them
-    saved: float  # value rescued so far
+    saved: float  # value rescued so far, and what its aim counts without any rescue
+    tool: int | None = None  # index along B of the tool in the hand, which is put down before anything is rescued
 
 
 @dataclass(frozen=True)
@@ -67,9 +70,9 @@ class Notion:
 class Courses:
     """The courses that a rescue can take in one scene, whose future is known."""
 
-    def __init__(self, scene: RescueScene, carts: tuple[int, ...], times: SkillTimes) -> None:
+    def __init__(self, scene: RescueScene, carts: tuple[int, ...], times: SkillTimes, aim: Aim = VALUE) -> None:
         """`carts`: indices along B of those of `scene`, none where the safe place is the bag; `times` of skills."""
-        self._scene, self._carts, self._times = scene, carts, times
+        self._scene, self._carts, self._times, self._aim = scene, carts, times, aim
         self._explore, self._lost = (times.typical(s)[1] for s in (skill_times.EXPLORE, skill_times.NO_PATH))
 
     def limits(self, frame: int) -> Reach:
@@ -150,9 +153,7 @@ class Courses:
             goal = place if index < 0 else future.position_at(state.frame)[index, :2]
             edge = 0.0 if index < 0 else self._scene.edges[index]
             return state if goal is None else self._walked(state, goal, edge, action.verb == WALK_ONE_STEP)
-        if index < 0 and action.verb == PICK_UP:
-            return state
-        if action.verb == PICK_UP:
+        if action.verb == PICK_UP and index >= 0:
             away, pick = self._away(state, index, future), self._pick(index, state.frame, future)
             if state.holding is not None or index not in state.left or away > MOST_REACH:
                 return state
@@ -160,23 +161,33 @@ class Courses:
         if action.verb != DROP or state.holding is None:
             return state
         if not self._carts:
-            return _stowed(self._later(state, self._scene.bag), notion, future)
+            return self._stowed(self._later(state, self._scene.bag), notion, future)
         if index not in self._carts:
             return replace(state, holding=None)
         if self._away(state, index, future) > CART_REACH:
             return state
-        return _stowed(self._later(state, self._scene.cart), notion, future)
+        return self._stowed(self._later(state, self._scene.cart), notion, future)
 
     def _problem(self, state: State, notion: Notion, future: Timeline) -> tuple[Problem | None, list[int]]:
+        """The rest of the rescue as its aim counts it: see `problem`."""
+        problem, targets = self.problem(state, notion, future)
+        return problem and self._aim.of(problem), targets
+
+    def problem(self, state: State, notion: Notion, future: Timeline) -> tuple[Problem | None, list[int]]:
         """The rest of the rescue, None where nothing can be rescued any more, and its targets, indices along B."""
         targets = [t for t in state.left if t in notion.values or t == state.holding]
         if not targets:
             return None, targets
-        outset = Outset(state.place, state.heading, state.frame, state.holding)
+        frame = state.frame if state.tool is None else state.frame + round(PUT_DOWN)
+        outset = Outset(state.place, state.heading, frame, state.holding)
         values = np.array([notion.values.get(t, 0.0) for t in targets])
-        told, carts = _moved(future, notion.places, outset.frame), np.array(self._carts, np.int64)
+        told, carts = future.displaced(notion.places, outset.frame), np.array(self._carts, np.int64)
         delays = np.array([self._pick(t, state.frame, future) - self._scene.pick for t in targets])
-        return self._scene.problem(told, np.array(targets), values, carts, outset, delays), targets
+        off = self._aim.carried_off
+        made = self._scene.problem(told, np.array(targets), values, carts, outset, delays, carried_off=off)
+        if made.holding is not None and made.gone_at is not None:
+            made = replace(made, gone_at=[np.inf if t == made.holding else at for t, at in enumerate(made.gone_at)])
+        return made, targets
 
     def _pick(self, index: int, frame: int, future: Timeline) -> float:
         """Frames that it usually takes to pick up the thing `index`, at its height at a frame."""
@@ -209,6 +220,16 @@ class Courses:
         x, y = self._scene.ways.along(place, goal, route.metres, edge)
         return replace(self._later(state, frames), place=(float(x), float(y)), heading=float(route.last))
 
+    def _stowed(self, state: State, notion: Notion, future: Timeline) -> State:
+        """The state in which what was in the hand is safe."""
+        held = state.holding
+        assert held is not None
+        value = np.array([notion.values.get(held, 0.0)])
+        kept = float(self._aim.kept(np.array([held]), value, future, self._scene, held)[0])
+        share = 1.0 if state.frame <= future.whole_until()[held] else DAMAGED_SHARE
+        left = tuple(t for t in state.left if t != held)
+        return replace(state, holding=None, left=left, saved=state.saved + share * float(value[0]) - kept)
+
     def _later(self, state: State, frames: float) -> State:
         return replace(state, frame=state.frame + round(frames))
 
@@ -227,22 +248,3 @@ def _solved(problem: Problem | None, limit: float) -> float:
     if problem is None or problem.frame >= limit:
         return 0.0
     return solve(replace(problem, limit=limit), MOST_LABELS, BEAM).value
-
-
-def _stowed(state: State, notion: Notion, future: Timeline) -> State:
-    """The state in which what was in the hand is safe."""
-    held = state.holding
-    assert held is not None
-    left = tuple(t for t in state.left if t != held)
-    share = 1.0 if state.frame <= future.whole_until()[held] else DAMAGED_SHARE
-    return replace(state, holding=None, left=left, saved=state.saved + share * notion.values.get(held, 0.0))
-
-
-def _moved(future: Timeline, places: Mapping[int, Place], frame: int) -> Timeline:
-    """The same future with some things elsewhere from `frame` on: they move as they would from where they are."""
-    if not places:
-        return future
-    start, now = future.start.copy(), future.position_at(frame)
-    for index, place in places.items():
-        start[index, :2] += np.asarray(place, np.float32) - now[index, :2]
-    return replace(future, start=start)

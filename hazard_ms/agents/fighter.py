@@ -7,6 +7,7 @@ extinguisher and leaves everything to the other agent, as it does where nothing 
 
 from __future__ import annotations
 
+from hazard_ms.agents.attempts import Repeats
 from hazard_ms.agents.base import Agent, agent, distance, known
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_TO, Action, Decision, Tool
@@ -41,6 +42,7 @@ class Fighter(Agent):
         self._fights = self._fire >= 0 and EXTINGUISH in brief.mitigations
         self._failures = 0
         self._looked = False
+        self._repeats = Repeats(bool(brief.mitigations))
         self._mine: Action | None = None  # its own last action, which the other agent has not chosen
         self._out: set[str] = set()  # what it has put out, or found not to burn
 
@@ -50,15 +52,21 @@ class Fighter(Agent):
             self._count(decision)
             action = self._fought(decision) if self._fights else None
             if action is not None:
-                self._mine = action
-                return action
+                self._mine = self._unless_repeated(decision, action)
+                return self._mine
         self._mine = None
         if decision.held is not None and any(t.held for t in decision.tools):
             self.note = "it is of no use any more"
-            return Action(DROP)
+            return self._unless_repeated(decision, Action(DROP))
         action = self._base.act(decision)
         self.note = self._base.note
         return action
+
+    def _unless_repeated(self, decision: Decision, action: Action) -> Action:
+        """Its own `action`, or what is done instead where that has failed too often from here."""
+        other = self._repeats.instead(decision, action)
+        self.note = self.note if other is None else self._repeats.note
+        return action if other is None else other
 
     def _count(self, decision: Decision) -> None:
         """Count failures of the fight, end it after TRIES, and remember what was put out."""

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from hazard_ms.agents.attempts import Repeats
 from hazard_ms.agents.base import Agent, distance, known, open_targets
 from hazard_ms.agents.search.lookouts import lookouts
 from hazard_ms.agents.search.stands import stands
@@ -63,11 +64,14 @@ class Greedy(Agent):
         self._landmark: str | None = None  # to which a search is on its way
         self._legs: dict[str, int] = {}
         self._before: tuple[Action, tuple[float, float]] | None = None  # the last action, and where it began [m]
+        self._repeats = Repeats(bool(brief.mitigations))
 
     def act(self, decision: Decision) -> Action:
         """The next action: put away what it holds, else fetch the cheapest target, else search."""
         self._judge(decision)
         action = self._choose(decision)
+        if (other := self._repeats.instead(decision, action)) is not None:
+            action, self.note = other, self._repeats.note
         self._before = (action, decision.agent_position)
         if action.verb == EXPLORE:
             self._looked_from, self._look_again = decision.agent_position, False

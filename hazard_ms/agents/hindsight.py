@@ -7,11 +7,16 @@ from collections import Counter
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.agents.aims import Aim
 from hazard_ms.agents.courses import Courses, Notion, Place, Reach, State
 from hazard_ms.agents.truth import Future
+from hazard_ms.planning.problem import Problem
+from hazard_ms.registry.mitigations import MITIGATIONS
 from hazard_ms.sketch import skill_times
+from hazard_ms.sketch.recording import pushes
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.sketch.skill_times import SkillTimes
+from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.skills.decision import Action, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.failures import BLOCKED, NO_PATH, UNREACHABLE
@@ -28,9 +33,11 @@ class Hindsight:
         """Take an environment in which an episode has just begun; `times` of skills, as measured if None."""
         base, robot = env.base, env.brief().robot
         self._env, self._future = env, Future(env)
-        scene = RescueScene(base.specs[0], robot, base.agent.build.radius, env.max_frames)
+        self.scene = scene = RescueScene(base.specs[0], robot, base.agent.build.radius, env.max_frames)
+        averts = base.task.averted and base.task.several_rooms
+        self.aim = Aim(averts, averts and pushes(base.task.hazards))
         carts = tuple(base.world.index(0, cart.name) for cart in base.specs[0].containers)
-        self._courses = Courses(scene, carts, times or skill_times.shipped(robot))
+        self._courses = Courses(scene, carts, times or skill_times.shipped(robot), self.aim)
         self.targets = {target.index: target for target in base.observer.table.rows(base.world)}
         self.truth = Notion({index: target.value for index, target in self.targets.items()})
         self._failures: Counter[int] = Counter()
@@ -42,13 +49,41 @@ class Hindsight:
         safe, gone, held = world.safe[0].cpu(), (world.away & ~world.safe)[0].cpu(), world.held[0].cpu()
         damaged = rescue.damaged[0].cpu()
         saved = sum(t.value * (DAMAGED_SHARE if damaged[b] else 1.0) for b, t in self.targets.items() if safe[b])
+        saved += self._kept([b for b in self.targets if not safe[b]])
         left = [b for b in self.targets if held[b] or not (safe[b] or gone[b] or self._failures[b] >= OUT_OF_REACH)]
         holding = next((b for b in left if held[b]), None)
         x, y, heading = base.agent.base()
-        return State((float(x), float(y)), float(heading), self._env.frame, holding, tuple(left), float(saved))
+        tools = () if world.equipment is None else (world.equipment.tool & world.held)[0].nonzero()[:, 0].tolist()
+        tool = tools[0] if len(tools) else None
+        return State((float(x), float(y)), float(heading), self._env.frame, holding, tuple(left), float(saved), tool)
+
+    def _kept(self, targets: list[int]) -> float:
+        """What `targets`, indices along B, count by the aim if nobody rescues them."""
+        if not self.aim.averts:
+            return 0.0
+        held = (self._env.base.world.held[0].nonzero()[:, 0].tolist() or [None])[0]
+        values = np.array([self.targets[b].value for b in targets])
+        return float(self.aim.kept(np.array(targets, np.int64), values, self.future(), self.scene, held).sum())
+
+    def future(self) -> Timeline:
+        """The timeline from here on if nobody acts."""
+        return self._future.timeline()
+
+    def problem(self, state: State) -> tuple[Problem | None, list[int]]:
+        """The true rest of the rescue with the targets' own values, and its targets, indices along B."""
+        return self._courses.problem(state, self.truth, self.future())
+
+    def after(self, state: State, action: Action, place: Place | None = None) -> State:
+        """The state in which `action` usually leaves a rescue; `place` as for `choice`."""
+        return self._courses.after(state, action, self.truth, self.future(), place)
 
     def note(self, action: Action, result: Result) -> None:
-        """Count a failure of `action` that can be due to where its target is; what works ends the count."""
+        """Count a failure of `action` that can be due to where its target is; what works ends the count.
+
+        What was done about a hazard changes what will happen.
+        """
+        if action.verb in MITIGATIONS and result.frames:
+            self._future.forget()
         for index, target in self.targets.items():
             if target.name == action.target and (result.ok or result.reason in FAILED):
                 self._failures[index] = 0 if result.ok else self._failures[index] + FAILED[result.reason]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from hazard_ms.agents.attempts import Repeats
 from hazard_ms.agents.base import Agent, known, open_targets
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision
@@ -34,9 +35,15 @@ class Rule(Agent):
         self._chance = np.random.default_rng([brief.random_seed, 0x52554C45])
         self._failures: dict[str, float] = {}
         self._goal: str | None = None  # the thing that it goes to
+        self._repeats = Repeats(bool(brief.mitigations))
 
     def act(self, decision: Decision) -> Action:
         """The next step: put away what it holds, else fetch what it has drawn, else search."""
+        action = self._choose(decision)
+        other = self._repeats.instead(decision, action)
+        return action if other is None else self._say(self._repeats.note, other)
+
+    def _choose(self, decision: Decision) -> Action:
         last, result = decision.last_action, decision.last_result
         if last is None or result is None:
             return self._say("look around first", Action(EXPLORE))

@@ -10,8 +10,8 @@ A file is the digest of its contents, then the contents: a file in which a singl
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -87,6 +87,15 @@ class Timeline:
     def whole_until(self) -> NDArray[np.float64]:
         """The last frame at which a rescue finds each thing whole; inf if it is never damaged, [B]."""
         return np.where(self.damaged_at < 0, np.inf, self.damaged_at - 1.0)
+
+    def displaced(self, places: Mapping[int, tuple[float, float]], frame: float) -> Timeline:
+        """The same with things, by index along B, at `places` [m] at a frame: they move as they would from there."""
+        if not places:
+            return self
+        start, now = self.start.copy(), self.position_at(frame)
+        for index, place in places.items():
+            start[index, :2] += np.asarray(place, np.float32) - now[index, :2]
+        return replace(self, start=start)
 
     def to_bytes(self) -> bytes:
         """The record as the content of a file."""

@@ -69,14 +69,12 @@ class Memory:
             self._belief and decision.last_result is not None and decision.last_result.reason == NOT_A_TARGET
         ):
             return
+        came = float(np.hypot(*np.subtract(decision.agent_position, start))) > PROGRESS
         if action.verb in MITIGATIONS:
             unfinished = decision.last_result is not None and decision.last_result.reason in UNFINISHED
-            self.failures[str(action)] = self.failures.get(str(action), 0) + (not unfinished)
+            self.failures[str(action)] = self.failures.get(str(action), 0) + (not (unfinished and came))
             return
-        if (
-            action.verb in (WALK_TO, WALK_ONE_STEP)
-            and np.hypot(*np.subtract(decision.agent_position, start)) > PROGRESS
-        ):
+        if action.verb in (WALK_TO, WALK_ONE_STEP) and came:
             self._legs[name] = self._legs.get(name, 0) + 1
             if self._legs[name] % LEGS:
                 return

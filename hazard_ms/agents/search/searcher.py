@@ -5,6 +5,7 @@ from __future__ import annotations
 import abc
 from typing import NamedTuple
 
+from hazard_ms.agents.attempts import Repeats
 from hazard_ms.agents.base import Agent, distance, known, open_targets
 from hazard_ms.agents.gale.aims import aims_of
 from hazard_ms.agents.search.memory import Memory
@@ -56,6 +57,7 @@ class Searcher(Agent):
         acts = self._mitigate and brief.several_rooms and brief.averted and brief.mitigations
         self._mitigator = Mitigator(brief, self._memory) if acts else None
         self._gale = aims_of(brief)
+        self._repeats = Repeats(bool(brief.mitigations))
         self._goal: tuple[str, frozenset[str]] | None = None  # where it goes to search, and the targets known then
 
     def act(self, decision: Decision) -> Action:
@@ -66,6 +68,8 @@ class Searcher(Agent):
         if self._gale is not None:
             self._gale.see(decision)
         action = self._choose(decision)
+        if (other := self._repeats.instead(decision, action)) is not None:
+            action = self._say(self._repeats.note, other)
         self._memory.chose(decision, action)
         return action
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.agents.courses import Notion, Reach, State, mean
+from hazard_ms.agents.courses import Notion, mean
 from hazard_ms.agents.hindsight import Hindsight
 from hazard_ms.evaluation.metrics import Tally
-from hazard_ms.evaluation.regret.causes import LATENCY, LEAST, MEMORY, PERCEPTION, Appraisal, Without
+from hazard_ms.evaluation.regret.causes import LATENCY, LEAST, MEMORY, MITIGATION, PERCEPTION, Appraisal, Without
 from hazard_ms.evaluation.regret.identities import Identities, Meant
+from hazard_ms.evaluation.regret.judged import Judged
+from hazard_ms.evaluation.regret.measures import MeasureWorth
 from hazard_ms.evaluation.result import Played
 from hazard_ms.evaluation.runner import fates
 from hazard_ms.evaluation.watchers import Watcher
@@ -40,11 +42,12 @@ class Appraiser(Watcher):
     appraisals   one for each decision
     bests        value that the best plan reached when the agent was asked, each time, as a share of all
     value        share that was rescued in the end
+    averts       whether shares are of what is not lost when time is up, as in homes, and plans have measures
     """
 
     def __init__(self, count: int | None = None, mind: Callable[[SkillEnv], Hindsight] = Hindsight) -> None:
         """`count`: see above; `mind` makes the judge."""
-        self._count, self._made = count, mind
+        self._count, self._made, self.averts = count, mind, False
         self.appraisals: list[Appraisal] = []
         self.bests: list[float] = []
         self.value = 0.0
@@ -53,6 +56,8 @@ class Appraiser(Watcher):
         """Take the environment, and notice from now on what each look shows."""
         self._env, self._mind = env, self._made(env)
         self._total = sum(self._mind.truth.values.values())
+        self.averts = self._mind.aim.averts
+        self._worth = MeasureWorth(env, self._mind) if self.averts else None
         self._clear: dict[int, str] = {}  # targets that were clearly in view, and how
         self._held_once: set[int] = set()  # targets that the map of a decision once held
         self._identities = Identities(env)
@@ -82,7 +87,10 @@ class Appraiser(Watcher):
         """Work out what the best plan reaches from here."""
         self._identities.looked()  # after the look that ends an action
         self._state = self._mind.state()
-        self._best = mean(self._mind.best(self._state, self._mind.limits(self._state)))
+        plain = mean(self._mind.best(self._state, self._mind.limits(self._state)))
+        self._gain = 0.0 if self._worth is None else self._worth.gain(self._state, plain)
+        self._helps = "" if self._worth is None else ", ".join(self._worth.names)
+        self._best = plain + self._gain
         self.bests.append(self._best / self._total)
 
     def decided(self, decision: Decision, action: Action, note: str) -> None:
@@ -92,7 +100,7 @@ class Appraiser(Watcher):
         if len(self.appraisals) == self._count:
             return
         now = self._state if self._env.frame == decision.frame else self._mind.state()
-        judged = _Judged(self._mind, self._state, now, meant, self._total)
+        judged = Judged(self._mind, self._state, now, meant, self._total)
         known = self._known(decision)
         regret = judged.regret(self._mind.truth)
         seen, without, instead = regret, {}, ""
@@ -101,10 +109,40 @@ class Appraiser(Watcher):
         if seen > LEAST:
             without, instead = self._without(judged, known), judged.instead()
         self._held_once |= set(known)
+        if self._worth is not None:
+            regret, seen, without = self._with_measures(judged, decision, self._worth, regret, seen, without)
         best, mistaken = self._best / self._total, self._mistaken(decision, action, meant)
         self.appraisals.append(
             Appraisal(decision.frame, action.verb, action.target, best, regret, seen, without, instead, mistaken)
         )
+
+    def _with_measures(
+        self,
+        judged: Judged,
+        decision: Decision,
+        worth: MeasureWorth,
+        plain: float,
+        seen: float,
+        without: dict[str, Without],
+    ) -> tuple[float, float, dict[str, Without]]:
+        """The regret where plans have measures, that among what had been seen, and that without what went wrong.
+
+        `plain`, `seen` and `without` are the same by rescues alone.
+        """
+        best = self._best - self._gain
+        left = max(best - plain * self._total, judged.reached(worth, best))
+        regret = max(0.0, self._best - left) / self._total
+        if regret <= LEAST:
+            return regret, regret, {}
+        if worth.is_measure(self._action):
+            what = f"{self._action} was done about the hazard, where something else averts more"
+            return regret, regret, {MITIGATION: Without(0.0, what)}
+        extra = max(0.0, regret - plain)
+        known = worth.gain(judged.seen, best, decision) / self._total
+        extra = min(extra, known)  # what nobody could know of is unseen
+        made = {cause: Without(one.regret + extra, one.what) for cause, one in without.items()}
+        made[MITIGATION] = Without(seen, f"nothing was done about the hazard, where it helps to {self._helps}")
+        return regret, min(regret, seen + extra), made
 
     def _mistaken(self, decision: Decision, action: Action, meant: Meant) -> str:
         """What the target of an action really is, in words, where it was taken for something to rescue and is not."""
@@ -124,7 +162,7 @@ class Appraiser(Watcher):
             if body in self._mind.targets
         }
 
-    def _without(self, judged: _Judged, known: dict[int, Known]) -> dict[str, Without]:
+    def _without(self, judged: Judged, known: dict[int, Known]) -> dict[str, Without]:
         """What the choice would have lost without each thing that went wrong before it."""
         left = [index for index in judged.seen.left if index != judged.seen.holding]
         unknown = [b for b in left if b in self._clear and b not in known and b not in self._held_once]
@@ -134,7 +172,7 @@ class Appraiser(Watcher):
                 missed[index] = f"counts as a {known[index].category}"
         gone = [b for b in left if b in self._held_once and b not in known]
         off = {b: known[b].place for b in left if b in known and self._error(b, known[b]) > OFF}
-        told = {b: float(CATEGORIES[known[b].category].value) for b in left if b in known}
+        told = {b: self._told(b, known[b]) for b in left if b in known}
         if judged.seen.holding is not None:
             told[judged.seen.holding] = self._mind.truth.values[judged.seen.holding]
         made = {}
@@ -150,6 +188,12 @@ class Appraiser(Watcher):
             made[LATENCY] = Without(judged.at_once(), f"the agent took {judged.waited} frames to choose")
         return made
 
+    def _told(self, index: int, known: Known) -> float:
+        """The value of a target as the map has it: its own, or that of the category that it is taken for."""
+        if known.category == self._mind.targets[index].category:
+            return self._mind.truth.values[index]
+        return float(CATEGORIES[known.category].value)
+
     def _name(self, index: int) -> str:
         return self._mind.targets[index].name
 
@@ -160,50 +204,12 @@ class Appraiser(Watcher):
     def ended(self, result: Result) -> None:
         """Note how the action went."""
         self._mind.note(self._action, result)
+        if self._worth is not None:
+            self._worth.note(self._action, result)
 
     def finish(self, reason: str) -> None:
-        """Note what was rescued."""
-        self.value = Tally.of(fates(self._env)).value
-
-
-class _Judged:
-    """One choice between the state in which the agent saw the world, and that in which it had chosen."""
-
-    def __init__(self, mind: Hindsight, seen: State, now: State, meant: Meant, total: float) -> None:
-        self._mind, self.seen, self._now, self._meant, self._total = mind, seen, now, meant, total
-        self._limits = mind.limits(seen)
-
-    @property
-    def waited(self) -> int:
-        """Frames that the choice took."""
-        return self._now.frame - self.seen.frame
-
-    def only(self, targets: Iterable[int]) -> Notion:
-        """The truth about some targets, and nothing of the others."""
-        return Notion({index: self._mind.truth.values[index] for index in targets})
-
-    def regret(self, notion: Notion) -> float:
-        """How much less the choice reaches than the best plan when the agent was asked, as a share of all value."""
-        best = self._mind.best(self.seen, self._limits, notion)
-        later = self._mind.best(self._now, self._limits, notion) if self.waited else best
-        choice = self._choice(self._now, later, notion)
-        return max(0.0, mean(best) - mean(choice)) / self._total
-
-    def instead(self) -> str:
-        """What the best plan began with, at the pace at which the choice loses most, in words."""
-        best = self._mind.best(self.seen, self._limits)
-        choice = self._choice(self._now, best)
-        lost = [b - c for b, c in zip(best, choice, strict=True)]
-        return self._mind.begins_with(self.seen, self._limits[lost.index(max(lost))])
-
-    def at_once(self) -> float:
-        """The same if the agent had chosen at once."""
-        best = self._mind.best(self.seen, self._limits)
-        return (mean(best) - mean(self._choice(self.seen, best))) / self._total
-
-    def _choice(self, state: State, best: Reach, notion: Notion | None = None) -> Reach:
-        """The value that the best course from `state` reaches that begins with the choice; `best`: any course."""
-        return self._mind.choice(state, self._meant.action, self._limits, best, notion, self._meant.place)
+        """Note what was rescued, or is not lost if nobody acts any more."""
+        self.value = self._mind.state().saved / self._total if self.averts else Tally.of(fates(self._env)).value
 
 
 def _list(words: list[str]) -> str:

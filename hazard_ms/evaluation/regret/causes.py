@@ -1,7 +1,8 @@
 """The cause of each decision's regret, by the definitions of docs/regret.md, and the record of a whole episode.
 
 All values are shares of that of all targets. They add up: what the best plan could have rescued from the start on, less
-what was rescued, is the sum of all parts of `EpisodeRegret.lost`.
+what was rescued, is the sum of all parts of `EpisodeRegret.lost`. In homes what is not lost when time is up counts in
+place of what is rescued, and plans have measures about the hazard, too (`averts`).
 """
 
 from __future__ import annotations
@@ -20,13 +21,14 @@ from hazard_ms.spec.foreign import plain
 from hazard_ms.spec.foreign.files import printable, sha256_of
 from hazard_ms.spec.foreign.plain import Within
 
-FORMAT = 1  # goes up when a field changes its meaning
+FORMAT = 2  # goes up when a field changes its meaning
 LEAST = 0.02  # share of the value of all targets, beyond which a decision's regret has a cause
 EXPLAINED = 0.5  # at most this share of a regret may be left without its cause [ours]
 
 PERCEPTION, MEMORY, BY_FORMAT, LATENCY, PLANNING = "perception", "memory", "format", "latency", "planning"
+MITIGATION = "mitigation"
 UNSEEN, SMALL, EXECUTION, ENDED = "unseen", "small", "execution", "ended"
-CAUSES = (PERCEPTION, MEMORY, BY_FORMAT, LATENCY, PLANNING)  # of a decision, the first that fits
+CAUSES = (PERCEPTION, MEMORY, BY_FORMAT, LATENCY, MITIGATION, PLANNING)  # of a decision, the first that fits
 PARTS = (*CAUSES, UNSEEN, SMALL, EXECUTION, ENDED)
 Share = Annotated[float, Within(-1000, 1000)]  # of the value of all targets; what was lost or gained by it [ours]
 
@@ -85,6 +87,7 @@ class EpisodeRegret:
     value: Share  # that was rescued
     lost: dict[str, Share]
     decisions: Annotated[tuple[DecisionRegret, ...], Within(0, 20_000)]
+    averts: bool = False  # whether what is not lost counts, and not what is rescued
     format: int = FORMAT
 
     def write(self, path: Path) -> None:
@@ -150,9 +153,10 @@ def cause_of(appraisal: Appraisal, fallback: bool) -> tuple[str, str]:
             return cause, found
     if fallback:
         return BY_FORMAT, "the agent's answer could not be read, and something else was done in its place"
-    found = _explained(appraisal, LATENCY)
-    if found:
-        return LATENCY, found
+    for cause in (LATENCY, MITIGATION):
+        found = _explained(appraisal, cause)
+        if found:
+            return cause, found
     return PLANNING, f"{appraisal.instead or 'another choice'} was worth {_percent(appraisal.seen)} more"
 
 

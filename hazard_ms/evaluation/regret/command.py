@@ -58,7 +58,8 @@ def regret(folders: Sequence[Path], workers: int, load: tuple[str, ...]) -> list
 def line(found: EpisodeRegret) -> str:
     """The regret of one episode in words."""
     parts = [f"{name} {100 * share:.1f}" for name, share in found.lost.items() if abs(share) >= 0.0005]
-    return f"{100 * found.value:.1f} of {100 * found.start:.1f} % of the value; lost by {', '.join(parts) or 'nothing'}"
+    what = "the value is not lost" if found.averts else "the value"
+    return f"{100 * found.value:.1f} of {100 * found.start:.1f} % of {what}; lost by {', '.join(parts) or 'nothing'}"
 
 
 def regret_of(record: EpisodeResult, known: str, appraiser: Appraiser) -> EpisodeRegret:
@@ -79,6 +80,7 @@ def regret_of(record: EpisodeResult, known: str, appraiser: Appraiser) -> Episod
         value=appraiser.value,
         lost=lost_by(decisions, ended),
         decisions=decisions,
+        averts=appraiser.averts,
     )
 
 

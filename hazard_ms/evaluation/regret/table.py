@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hazard_ms.evaluation.regret.causes import PARTS, EpisodeRegret
+from hazard_ms.evaluation.regret.causes import MITIGATION, PARTS, EpisodeRegret
 
 
 def shares(found: Sequence[EpisodeRegret]) -> dict[str, float]:
@@ -19,9 +19,13 @@ def shares(found: Sequence[EpisodeRegret]) -> dict[str, float]:
 
 
 def table(found: Sequence[EpisodeRegret]) -> str:
-    """The parts of each agent's loss in per cent of the value of all targets, one line for each agent."""
+    """The parts of each agent's loss in per cent of the value of all targets, one line for each agent.
+
+    `mitigation` is among them in tasks with `averted` alone.
+    """
     agents = list(dict.fromkeys(one.agent for one in found))
-    names = ("start", "value", *PARTS)
+    averts = any(one.averts for one in found)
+    names = ("start", "value", *(part for part in PARTS if averts or part != MITIGATION))
     lines = [f"{'lost, % of value':16s} " + " ".join(f"{name:>10s}" for name in names) + "  episodes"]
     for agent in agents:
         own = [one for one in found if one.agent == agent]

@@ -1,8 +1,8 @@
 """The action `look_at`: the robot comes near enough to a thing to tell what it is, and faces it.
 
 A small thing that had n pixels at the distance r and the depth z, along the optical axis, has n z^3 / r of them 1 m
-before the middle of the picture (`Sighting.size`), since a pinhole camera shows it on f^2 / cos^3 times its solid angle.
-From a horizontal distance d a level camera that faces it shows at least size / d^2: it stands lower or higher than the
+before the middle of the picture (`Sighting.size`): a pinhole camera shows it on f^2 / cos^3 times its solid angle. From
+a horizontal distance d a level camera that faces it shows at least size / d^2: it stands lower or higher than the
 camera, which makes its picture larger by the same law. A camera that looks down shows a thing below it on fewer.
 """
 

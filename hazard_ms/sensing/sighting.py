@@ -27,6 +27,7 @@ class Sighting:
     levels: tuple[float, ...] = ()  # mean level of each hazard over it when last seen; empty without a hazard image
     damaged: bool = False  # whether it was damaged when last seen
     history: tuple[tuple[int, tuple[float, ...]], ...] = ()  # (frame, levels), oldest first
+    size: float = 0.0  # its pixels 1 m before the middle of the picture, by the view that gave its position; 0: unknown
 
     @property
     def hazard(self) -> float:
@@ -64,7 +65,15 @@ def _sighting(view: View, frame: int, pixels: NDArray[np.int64], damaged: bool) 
     radius = float(np.hypot(*(points[:, :2] - middle[:2]).T).max())
     levels = view.level_at(row, column)
     means = () if levels is None else tuple(float(level.mean()) for level in levels)
-    return Sighting(middle, radius, float(points[:, 2].max()), frame, len(pixels), means, damaged, ((frame, means),))
+    history, size = ((frame, means),), len(pixels) * _of_one_metre(view, middle)
+    return Sighting(middle, radius, float(points[:, 2].max()), frame, len(pixels), means, damaged, history, size)
+
+
+def _of_one_metre(view: View, point: NDArray[np.float32]) -> float:
+    """Factor by which a small thing at `point` [m], [3], has more pixels 1 m before the middle of the `view`."""
+    away = point - view.cam2world[:3, 3]
+    depth = float(-away @ view.cam2world[:3, 2])
+    return depth**3 / float(np.linalg.norm(away))
 
 
 def merged(known: Sighting | None, seen: Sighting) -> Sighting:

@@ -49,6 +49,7 @@ class Brief:
     several_rooms: bool = False  # whether doors or doorways divide the place
     averted: bool = False  # whether it counts what is averted: what would be lost if nobody acted, and is not
     sight: float = FAR  # distance up to which a look tells most of what is there [m]
+    looks: bool = False  # whether it can `look_at` things: a detector tells what there is
 
 
 def brief_of(base: Any, labeller: Labeller, max_frames: int, sight: float = FAR) -> Brief:
@@ -74,6 +75,7 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int, sight: float = FAR)
         several_rooms=has_several_rooms(base),
         averted=base.task.averted,
         sight=sight,
+        looks=labeller.withheld,
     )
 
 

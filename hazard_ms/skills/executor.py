@@ -22,7 +22,7 @@ from hazard_ms.skills.brief import Brief, brief_of, has_several_rooms
 from hazard_ms.skills.context import LowLevel, Skill, Stage
 from hazard_ms.skills.decision import PICK_UP, STOP, Action, Decision, Images, Result, available
 from hazard_ms.skills.failures import EPISODE_OVER, NOT_A_TARGET, REFUSED
-from hazard_ms.skills.mitigations.offers import check, offered, tools
+from hazard_ms.skills.mitigations.offers import check, offered, tools, verbs_of
 
 
 class SkillEnv:
@@ -102,6 +102,11 @@ class SkillEnv:
         """The things of the episode as its agent knows them; the map refers to them by their index there."""
         return self._labeller
 
+    @property
+    def verbs(self) -> tuple[str, ...]:
+        """The verbs that its agents have beyond the six of the benchmark; without a detector those of the task."""
+        return verbs_of(self._labeller, self.base.task.mitigations)
+
     def brief(self) -> Brief:
         """Everything that an agent is told before the episode: nothing that shows which scene it is."""
         return brief_of(self.base, self._labeller, self.max_frames, self._perception.sight)
@@ -137,7 +142,7 @@ class SkillEnv:
             raise ValueError("the episode must be running, but it is over: call reset first")
         if not isinstance(action, Action):
             raise ValueError(f"an action must be an Action(verb, target), got {action!r}")
-        check(action, self.stage, self.base.task.mitigations)
+        check(action, self.stage, self.verbs)
         self._reward, doing = 0.0, skill(self.stage, action)
         result = self.run(doing)
         if action.verb == PICK_UP and action.target is not None:
@@ -219,7 +224,7 @@ class SkillEnv:
         """All that an agent may know now; the map is a copy that cannot be written to."""
         labeller = self._labeller
         x, y, heading = self.stage.robot.base()
-        targets, verbs = labeller.targets(self._seen.seen_damaged), self.base.task.mitigations
+        targets, acts = labeller.targets(self._seen.seen_damaged), bool(self.base.task.mitigations)
         return Decision(
             frame=self.frame,
             max_frames=self.max_frames,
@@ -230,10 +235,10 @@ class SkillEnv:
             containers=labeller.containers,
             map=self._seen.frozen(),
             images=self._images,
-            available=available(labeller, self._seen.objects, targets) + (offered(self.stage, verbs) if verbs else ()),
+            available=available(labeller, self._seen.objects, targets) + offered(self.stage, self.verbs),
             names=labeller.names,
             last_action=self._last[0],
             last_result=self._last[1],
-            openings=self.stage.doors.rows() if verbs else (),
-            tools=tools(self.stage) if verbs else (),
+            openings=self.stage.doors.rows() if acts else (),
+            tools=tools(self.stage) if acts else (),
         )

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.agents.llm.scene_text import Block, as_text, shortened
 from hazard_ms.agents.search.outlook import skill_frames
-from hazard_ms.registry.mitigations import MITIGATIONS
+from hazard_ms.registry.mitigations import LOOK_AT, MITIGATIONS
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.brief import Brief
 
@@ -63,6 +63,7 @@ def system_text(brief: Brief, macro: bool) -> str:
         rooms=brief.several_rooms and bool(brief.mitigations),
         averted=brief.averted,
         text=brief.text,
+        looks=(LOOK_AT.replace("_", " "), MITIGATIONS[LOOK_AT].text) if brief.looks else (),
         mitigations=[(verb.replace("_", " "), MITIGATIONS[verb].text) for verb in brief.mitigations],
     )
 

@@ -145,7 +145,14 @@ def _targets(
     brief: Brief, decision: Decision, memory: Memory, menu: Menu, names: dict[str, str], forecast: bool
 ) -> list[list[Any]]:
     """The known targets: those on offer, and those that are not, as while something is held."""
-    header = ["option", "thing", "value", "metres", *(_column(h.title, h.unit) for h in brief.hazards)]
+    header = [
+        "option",
+        "thing",
+        "value",
+        *(["belief"] if brief.looks else []),
+        "metres",
+        *(_column(h.title, h.unit) for h in brief.hazards),
+    ]
     header += ["frames_ago", "damaged", "failures"] + (["damaged_from_frame"] if forecast else [])
     rises = [f"{_column(h.title, h.unit)}{tables.RISE}" for h in brief.hazards if brief.mitigations]
     header += [*rises, *(["room"] if brief.mitigations and brief.several_rooms else [])]
@@ -155,7 +162,8 @@ def _targets(
         letter, target = menu.letter(FETCH, name) or menu.letter(PICK, name), decision.target(name)
         if letter is None and decision.held is None:
             continue  # given up, or too far for the menu
-        row = [letter, names[name], _short(target.value), _metres(distance(decision, seen))]
+        row = [letter, names[name], _short(target.value), *([round(target.belief, 2)] if brief.looks else [])]
+        row.append(_metres(distance(decision, seen)))
         row += [_level(seen, number, hazard.unit) for number, hazard in enumerate(brief.hazards)]
         row += [decision.frame - seen.frame, int(target.damaged), memory.believed.failures.get(name, 0)]
         if ahead is not None:

@@ -166,7 +166,7 @@ def _described(env: SkillEnv) -> dict[str, Any]:
 
 
 def _verbs(env: SkillEnv) -> list[str]:
-    return [*VERBS, *env.base.task.mitigations]
+    return [*VERBS, *env.verbs]
 
 
 def _names(env: SkillEnv) -> list[str]:

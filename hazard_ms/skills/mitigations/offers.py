@@ -5,16 +5,28 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hazard_ms.registry import load
-from hazard_ms.registry.mitigations import MITIGATIONS
+from hazard_ms.registry.mitigations import LOOK_AT, MITIGATIONS
+from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.simulation.jet import KINDS
 from hazard_ms.skills.context import Stage
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, VERBS, Action, Tool
 from hazard_ms.spec.checks import one_of
 
 
+def verbs_of(labeller: Labeller, mitigations: Sequence[str]) -> tuple[str, ...]:
+    """The verbs beyond those of the benchmark that an agent has: a task's `mitigations`, and to look at what it finds.
+
+    It can look where a detector tells what there is; the truth needs no second look.
+    """
+    looks = (LOOK_AT,) if labeller.withheld else ()
+    return tuple(dict.fromkeys((*mitigations, *looks)))
+
+
 def offered(stage: Stage, verbs: Sequence[str]) -> tuple[Action, ...]:
     """The actions beyond those of the benchmark that can be tried: to pick up tools, and the mitigations of `verbs`."""
-    made = []
+    made: list[Action] = []
+    if not verbs:
+        return ()
     if stage.held < 0:
         light = [tool for tool in tools(stage) if stage.labeller.index(tool.name) in stage.seen.objects]
         made = [Action(PICK_UP, tool.name) for tool in light if _carries(stage, tool.name)]

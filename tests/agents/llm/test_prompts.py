@@ -174,3 +174,22 @@ def test_a_history_keeps_its_first_sightings_and_its_last() -> None:
         ground.remember(0, seen((1.0 + frame, 0.0), frame, 20.0 + frame))
         memory.note(ground.decision())
     assert [sight.frame for sight in memory.history("mug_1")] == [0, 1, 2, 5, 6, 7]
+
+
+def test_where_things_may_be_something_else_a_model_is_told_how_sure_and_can_look_closer() -> None:
+    ground = Playground({"a": (2.5, 0.0)}, {"a": 5.0})
+    ground.look()
+    look = Action("look_at", "a")
+    made = ground.decision()
+    decision = dataclasses.replace(
+        made, available=(*made.available, look), targets=(dataclasses.replace(made.targets[0], belief=0.4567),)
+    )
+    memory = Memory(0)
+    memory.note(decision)
+    on_offer = menu(decision, {}, {}, 4, "macro", 20)
+    assert look in [choice.action for choice in on_offer.choices]
+    for looks in (False, True):
+        told = dataclasses.replace(brief(), looks=looks)
+        assert ('"look at" comes near enough' in system_text(told, macro=True)) == looks
+        header, row = block(told, decision, memory, on_offer, False, False)["targets"]
+        assert dict(zip(header, row, strict=True)).get("belief") == (0.46 if looks else None)

@@ -35,7 +35,7 @@ class Mitigator:
         self._queue: list[Prospect] = []  # what was chosen and is not yet done
         self._failures: dict[Key, int] = {}
         self._last: Action | None = None  # its own last action
-        self._weighed = 0  # frame at which it last weighed measures
+        self._weighed = -AGAIN  # frame at which it last weighed measures
         self._shares: tuple[float, ...] = ()
         self._scene: RescueScene | None = None
         self.note = ""
@@ -75,19 +75,26 @@ class Mitigator:
         self._truth.reveal()
         return self._last
 
-    def act(self, decision: Decision, problem: Problem, targets: Sequence[int], scene: RescueScene) -> Action | None:
-        """The next action about the hazard; None where a rescue is next."""
+    def go_on(self, decision: Decision, scene: RescueScene) -> Action | None:
+        """The next action of what was chosen before; None where that is done, and the future has changed."""
         self._scene = scene
         self._last = self._next(decision)
-        if self._last is None and not any(t.held for t in decision.targets) and self._is_due(decision):
-            self._choose(decision, problem, targets, scene)
-            self._last = self._next(decision)
         if self._last is not None:
             self._truth.reveal()
         return self._last
 
+    def act(self, decision: Decision, problem: Problem, targets: Sequence[int], scene: RescueScene) -> Action | None:
+        """The first action of what is worth doing now, after `go_on`; None where a rescue is next.
+
+        `problem` and `targets` as for `Chooser.course`.
+        """
+        if any(t.held for t in decision.targets) or not self._is_due(decision):
+            return None
+        self._choose(decision, problem, targets, scene)
+        return self.go_on(decision, scene)
+
     def _is_due(self, decision: Decision) -> bool:
-        """Whether to weigh measures again: after a rescue, after a failure, and every AGAIN frames."""
+        """Whether to weigh measures again: after a measure, a rescue or a failure, and every AGAIN frames."""
         last, result = decision.last_action, decision.last_result
         changed = last is None or result is None or not result.ok or last.verb == DROP
         if changed or decision.frame - self._weighed >= AGAIN:
@@ -125,7 +132,7 @@ class Mitigator:
 
     def _end(self) -> None:
         """Give up what was chosen, or be done with it."""
-        self._queue = []
+        self._queue, self._weighed = [], -AGAIN
         self._chooser.forget()
         self._truth.forget()
         self._truth.also = set()

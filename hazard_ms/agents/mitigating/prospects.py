@@ -86,15 +86,17 @@ def fights(base: Home, scene: RescueScene, lost: Array, start: Array) -> list[Pr
     next.
     """
     near = [seat for seat in seats_of(base) if _gap(seat.place, lost) <= THREAT]
-    stands = {seat.number: stand for seat in near if (stand := _stand(base.world, scene.ways, seat, start)) is not None}
+    stands = {
+        seat.number: stand for seat in near if (stand := view_of(base.world, scene.ways, seat, start)) is not None
+    }
     near = [seat for seat in near if seat.number in stands]
     sets: list[Sequence[Seat]] = [[seat] for seat in near]
     sets += [near] if len(near) > 2 else []
     sets += list(itertools.combinations(near, 2))
-    return [_fight(group, stands, scene.ways, start) for group in sets]
+    return [fight(group, stands, scene.ways, start) for group in sets]
 
 
-def _stand(world: World, ways: Ways, seat: Seat, start: Array) -> Array | None:
+def view_of(world: World, ways: Ways, seat: Seat, start: Array) -> Array | None:
     """The place [m], [2], with the shortest way from `start` [m] from which the jet gets to a seat; None for none."""
     places = ways.places[np.hypot(*(ways.places - seat.place).T) <= JET]
     aim = np.array([*seat.place, LOW])
@@ -103,7 +105,8 @@ def _stand(world: World, ways: Ways, seat: Seat, start: Array) -> Array | None:
     return places[int(np.argmin(ways.frames(places, start)))] if len(places) else None
 
 
-def _fight(group: Sequence[Seat], stands: Mapping[int, Array], ways: Ways, start: Array) -> Prospect:
+def fight(group: Sequence[Seat], stands: Mapping[int, Array], ways: Ways, start: Array) -> Prospect:
+    """The seats of a `group` put out, the nearest next, from their `stands` [m], [2] each; it begins at `start` [m]."""
     left, order, walked = {seat.number: stands[seat.number] for seat in group}, list[int](), list[float]()
     here = start
     while left:

@@ -11,7 +11,7 @@ from hazard_ms.agents.attempts import Repeats
 from hazard_ms.agents.base import Agent, agent, distance, known
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_TO, Action, Decision, Tool
-from hazard_ms.skills.failures import UNFINISHED
+from hazard_ms.skills.failures import NOT_BURNING, UNFINISHED
 
 EXTINGUISH = "extinguish"
 FIRE = "fire"
@@ -72,8 +72,10 @@ class Fighter(Agent):
         """Count failures of the fight, end it after TRIES, and remember what was put out."""
         if self._mine is None or decision.last_result is None:
             return
-        self._failures += not decision.last_result.ok and decision.last_result.reason not in UNFINISHED
-        if self._mine.verb == EXTINGUISH and self._mine.target is not None and decision.last_result.ok:
+        result = decision.last_result
+        done = result.ok or result.reason == NOT_BURNING
+        self._failures += not done and result.reason not in UNFINISHED
+        if self._mine.verb == EXTINGUISH and self._mine.target is not None and done:
             self._out.add(self._mine.target)
         if self._failures >= TRIES:
             self._fights = False

@@ -99,7 +99,10 @@ class Oracle(PrivilegedAgent):
         tool = any(t.held for t in decision.tools)
         if decision.held is not None and not decision.containers and not tool:
             return self._say("into the bag", Action(DROP))
-        targets, problem = self._problem(decision, truth)
+        begun = self._mitigator and self._mitigator.go_on(decision, self._scene)
+        if self._mitigator and begun:
+            return self._say(self._mitigator.note, begun)
+        targets, problem = self._problem(decision, truth)  # not earlier: measures change the future
         if self._mitigator is not None and problem is not None:
             action = self._mitigator.act(decision, problem, targets, self._scene)
             if action is not None:

@@ -92,7 +92,7 @@ register_mitigation(
     "puts out a thing that burns, and flames around it, with the fire extinguisher in the hand, from a few metres "
     "away, until it is empty",
     tools=("fire_extinguisher",),
-    reasons=("no_extinguisher", "empty", "no_line_of_sight", "too_hot", "still_burning"),
+    reasons=("no_extinguisher", "empty", "no_line_of_sight", "too_hot", "not_burning", "still_burning"),
 )
 register_mitigation(
     "put_on",

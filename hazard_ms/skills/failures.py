@@ -34,6 +34,7 @@ NO_BOARD = "no_board"  # none is in the hand, or it is narrower than the opening
 NO_RAILS = "no_rails"  # a board cannot stand there
 TOO_DEEP = "too_deep"  # water presses on the board harder than the arm does
 NOT_MOVABLE = "not_movable"  # no cart that could roll here
+NOT_BURNING = "not_burning"  # no flame is on the thing or around it
 STILL_BURNING = "still_burning"  # the jet reached the flames, but does not put them out
 
 FAILURES = (

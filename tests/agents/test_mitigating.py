@@ -4,14 +4,22 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 import pytest
+import torch
 
 from hazard_ms.agents.base import agent
 from hazard_ms.agents.mitigating import prospects
+from hazard_ms.agents.mitigating.choice import Chooser
 from hazard_ms.evaluation.runner import Runner
+from hazard_ms.planning.problem import Problem
+from hazard_ms.simulation.building import make_world
+from hazard_ms.sketch.recording import ahead
+from hazard_ms.sketch.travel.ways import Ways
+from hazard_ms.skills.decision import Action
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.spec import AgentStart, Body, Opening, Partition, Room, SceneSpec, Task
 from hazard_ms.tasks.fire import hazard_fire
@@ -76,6 +84,44 @@ def test_the_oracle_puts_out_what_would_burn_more_than_it_can_carry_off(env: Ski
     assert ("pick_up", "powder_0") in done and "extinguish" in verbs
     assert "extinguish" not in {verb for verb, _ in without}
     assert lost < burnt
+
+
+@pytest.mark.render
+def test_after_a_fight_it_plans_with_the_future_without_that_fire(
+    env: SkillEnv, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whenever it weighs measures, books are to burn when they will if nobody acts from then on."""
+    weighed, course = [], Chooser.course
+
+    def spied(self: Chooser, problem: Problem, targets: Sequence[int], *rest: Any) -> Any:
+        if env.decision().last_action == Action("drop") or not weighed:
+            will = ahead(env.base).whole_until()[list(targets)]
+            weighed.append((env.frame, np.allclose(problem.damaged_at, will)))
+        return course(self, problem, targets, *rest)
+
+    monkeypatch.setattr(Chooser, "course", spied)
+    done, _ = played(env, "oracle")
+    last = max(k for k, (verb, _) in enumerate(done) if verb == "extinguish")
+    assert done[last + 1][0] == "drop"
+    assert weighed[0] == (0, True) and len(weighed) > 1 and weighed[1][1]
+
+
+def test_a_fire_is_fought_from_where_the_jet_gets_to_it_and_the_nearest_first() -> None:
+    """East of a wall at x = 3 m with a doorway from y = 1.55 to 2.45 m; who comes from the west looks through it."""
+    spec = dataclasses.replace(ROOM, room=DOORS, bodies=(), fires=(), agent_start=AgentStart((1.0, 2.0)))
+    world, ways = make_world((spec,), torch.device("cpu")), Ways(spec)
+    start = np.array([1.0, 2.0])
+    behind = prospects.Seat(0, np.array([3.4, 0.5]), 1)  # beside the wall: within 3 m of the start, and hidden
+    ahead_of = prospects.Seat(1, np.array([1.0, 3.5]), 1)
+    stands = [prospects.view_of(world, ways, seat, start) for seat in (behind, ahead_of)]
+    assert stands[0] is not None and stands[1] is not None
+    x, y = stands[0]
+    crosses = y + (0.5 - y) * (3.0 - x) / (3.4 - x)  # where the straight line to it meets the wall
+    assert x > 3.0 or 1.55 < crosses < 2.45
+    assert np.hypot(*(stands[1] - start)) < 0.2  # it is in view at once
+    fight = prospects.fight([behind, ahead_of], dict(enumerate(stands)), ways, start)
+    assert fight.numbers == (1, 0)
+    np.testing.assert_allclose(fight.between, ways.frames(stands[1], stands[0]))
 
 
 def test_what_is_behind_a_door_is_closed_off_by_it() -> None:

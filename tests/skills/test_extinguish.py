@@ -28,8 +28,8 @@ def bottle_of(name: str, mass: float) -> Body:
     return Body(name, "fire_extinguisher", "plain_box", (1.6, 1.6, 0.0), scale=(0.12, 0.12, 0.4), mass=mass)
 
 
-def box(place: tuple[float, float, float] = AT) -> Body:
-    return Body("box_0", "box", "plain_box", place, scale=(0.4, 0.4, 0.4), mass=3.0)
+def box(place: tuple[float, float, float] = AT, name: str = "box_0") -> Body:
+    return Body(name, "box", "plain_box", place, scale=(0.4, 0.4, 0.4), mass=3.0)
 
 
 def scene(kind: str = "powder_0", mass: float = 3.3, door: Opening | None = None, place: Any = AT) -> Any:
@@ -44,17 +44,19 @@ def armed(rooms: TwoRooms, name: str = "powder_0") -> None:
     ignite(rooms)
 
 
-def ignite(rooms: TwoRooms) -> None:
-    state, b = rooms.base.episode.states["fire"], rooms.index("box_0")
-    state.status[0, b], state.temperature[0, b] = BURNING, 600.0
-    if hasattr(state, "burn_age"):  # a realistic fire grows: this one burns already
-        state.burn_age[0, b] = 60.0
+def ignite(rooms: TwoRooms, *others: str) -> None:
+    state = rooms.base.episode.states["fire"]
+    for name in ("box_0", *others):
+        b = rooms.index(name)
+        state.status[0, b], state.temperature[0, b] = BURNING, 600.0
+        if hasattr(state, "burn_age"):  # a realistic fire grows: this one burns already
+            state.burn_age[0, b] = 60.0
     rooms.base.advance(rooms.stage.act())
     rooms.look()
 
 
-def burns(rooms: TwoRooms) -> bool:
-    return int(rooms.base.episode.states["fire"].status[0, rooms.index("box_0")]) == BURNING
+def burns(rooms: TwoRooms, name: str = "box_0") -> bool:
+    return int(rooms.base.episode.states["fire"].status[0, rooms.index(name)]) == BURNING
 
 
 @pytest.mark.parametrize("physics", ["paper", "realistic"])
@@ -117,12 +119,42 @@ def test_no_charge_puts_out_what_smoulders_on_and_the_jet_stops_when_it_is_spent
 
 def test_a_wall_is_walked_around_and_a_shut_door_is_not() -> None:
     behind = (5.8, 3.4, 0.0)
-    # before a shut door it looks for a way round through what it has not seen
-    shut = (failures.NO_LINE_OF_SIGHT, failures.NO_PATH, failures.MAX_FRAMES)
+    # before a shut door it looks for a way round through what it has not seen, until the box has burnt down
+    shut = (failures.NO_LINE_OF_SIGHT, failures.NO_PATH, failures.MAX_FRAMES, failures.NOT_BURNING)
     for door, reason in ((DOOR, shut), (None, ("",))):
         with two_rooms(scene(door=door, place=behind)) as rooms:
             armed(rooms)
             assert acted(rooms, PUT_OUT).reason in reason
+
+
+def test_all_that_burns_around_a_thing_is_put_out_and_nothing_behind_a_wall() -> None:
+    """Two boxes 1.2 m apart, and a third as near to the first in the next room, behind a shut door."""
+    boxes = (box((2.6, 0.8, 0.0)), box((2.6, 2.0, 0.0), "box_1"), box((4.0, 0.8, 0.0), "box_2"))
+    with two_rooms(spec(start=START, bodies=(bottle_of("powder_0", 3.3), *boxes))) as rooms:
+        armed(rooms)
+        ignite(rooms, "box_1", "box_2")
+        assert acted(rooms, PUT_OUT).ok
+        assert [burns(rooms, f"box_{k}") for k in range(3)] == [False, False, True]
+
+
+def test_where_nothing_burns_it_says_so_and_the_pin_is_pulled_once() -> None:
+    """The pin takes two seconds, 60 frames; the jet of the second fight opens as soon as the robot has turned."""
+    with two_rooms(scene()) as rooms:
+        armed(rooms)
+        flowing, advance = [], rooms.base.advance
+
+        def advanced(low_level: Any) -> Any:
+            flowing.append(bool(rooms.world.jet.flowing[0]))
+            return advance(low_level)
+
+        rooms.base.advance = advanced
+        assert acted(rooms, PUT_OUT).ok and flowing.index(True) >= 60
+        result = acted(rooms, PUT_OUT)
+        assert (result.ok, result.reason, result.frames) == (False, failures.NOT_BURNING, 0)
+        ignite(rooms)
+        flowing.clear()
+        assert acted(rooms, PUT_OUT).ok and flowing.index(True) < 30
+        del rooms.base.advance
 
 
 def test_what_is_too_heavy_for_the_arm_stays_and_tools_are_put_down_on_the_floor() -> None:

@@ -6,7 +6,6 @@ prospects (prospects.py) are foreseen in one batch, and kept until something was
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Collection, Sequence
 
 import numpy as np
@@ -75,18 +74,23 @@ class Chooser:
             return None, []
         goals = self._base.world.position[0, list(targets), :2].cpu().numpy().astype(np.float64)
         edges, start = scene.edges[list(targets)], np.array(here)
-        ends = [p for p in (*fights(self._base, goals[lost], start), *doors(self._base, goals[lost]))]
+        # a fire that is out also saves the time of rescues
+        fires = fights(self._base, scene, goals[self._risky(problem)], start)
+        ends = [*fires, *doors(self._base, goals[lost])]
         ends = [p for p in ends if (p.kind, p.numbers) not in failed][:MOST_FUTURES]
         tools = [t for t in tools_of(self._base, scene) if (t.kind, t.numbers) not in failed]
         ends = [p for p in ends if tools or p.kind != OUT]
         if not ends:
             return None, []
         foreseen = self._foresee(ends, tools, scene, start)
-        made = [*tools, *ends] if not tools else [*tools, *(p for p in ends for _ in (tools if p.kind == OUT else [0]))]
+        made = [*tools, *ends]
         ways = ways_between(scene, start, goals, edges, made)
         gone_at = self._gone_at(problem, targets)
-        measures = self._measures(made, len(tools), foreseen, targets, scene, here, goals, edges, gone_at)
         held = [k for k, tool in enumerate(tools) if tool.numbers[0] == in_hand]
+        fetching = ways["to"][-1, : len(tools)] + [tool.frames for tool in tools]
+        fetching[held] = 0.0
+        needs = (fetching[:, None] + ways["between"][: len(tools)]).argmin(0).tolist() if tools else [0] * len(made)
+        measures = self._measures(made, needs, foreseen, targets, scene, here, goals, edges, gone_at)
         chosen = Measures(measures, **ways, in_hand=held[0] if held else None, put_down=costs.PUT_DOWN)
         course = best_course(problem, chosen, most_labels=EFFORT[0], beam=EFFORT[1])
         least = LEAST_GAIN * sum(problem.values[t] for t in self._risky(problem))
@@ -150,7 +154,7 @@ class Chooser:
     def _measures(
         self,
         made: Sequence[Prospect],
-        tools: int,
+        needs: Sequence[int],
         foreseen: Foreseen,
         targets: Sequence[int],
         scene: RescueScene,
@@ -159,11 +163,11 @@ class Chooser:
         edges: Array,
         gone_at: Array | None,
     ) -> list[Measure]:
-        """The measures that stand for what can be done: first `tools` to fetch, then fights with each, and doors."""
+        """The measures that stand for what can be `made`; `needs`: numbers of the tools that are fetched for each."""
         whole = foreseen.whole_until()[:, list(targets)]
         stays = None if gone_at is None else foreseen.stays_until(gone_at)[:, list(targets)]
-        measures, turn = [], itertools.count()
-        for p in made:
+        measures = []
+        for p, tool in zip(made, needs, strict=True):
             if p.kind == FETCH:
                 nothing = [0.0] * len(targets)
                 measures.append(Measure(f"fetch {p.numbers[0]}", p.frames, nothing, charge=p.charge))
@@ -173,8 +177,8 @@ class Chooser:
             name = f"{p.kind} {'+'.join(map(str, p.numbers))}"
             if p.kind == OUT:
                 jet = costs.FLAME * float(foreseen.burning[row])
-                frames = costs.FIGHT * len(p.numbers) + UNEXPECTED * jet
-                measures.append(Measure(name, frames, spared.tolist(), next(turn) % tools, jet, stays_until=there))
+                frames = costs.FIGHT * len(p.numbers) + p.between + UNEXPECTED * jet
+                measures.append(Measure(name, frames, spared.tolist(), tool, jet, stays_until=there))
                 continue
             behind: list[int] = []
             gains = (spared > whole[0]).any() or (stays is not None and bool((stays[row] > stays[0]).any()))

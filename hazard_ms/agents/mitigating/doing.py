@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import torch
 
 from hazard_ms.agents.mitigating.choice import Chooser, Key
-from hazard_ms.agents.mitigating.prospects import ANY_WAY, FETCH, Array, Prospect, as_now, seats_of
+from hazard_ms.agents.mitigating.prospects import FETCH, Array, Prospect, as_now, seats_of
 from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.problem import Problem
 from hazard_ms.sketch.futures import seats
@@ -20,12 +21,7 @@ from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.skills.mitigations.extinguish import AROUND
 
 EXTINGUISH, SHUT_DOOR, OPEN_DOOR = "extinguish", "shut", "open"
-EYES = 1.0  # height from which a jet is aimed [m] [ours]
-VIEW, AROUND_IT = (
-    3.0,
-    16,
-)  # distance from flames [m], and number of the things that it walks to for a view of them [ours]
-LOW = 0.1  # height of flames on the floor [m] [ours]
+AGAIN = 200  # frames after which measures are weighed again although nothing was done [ours]
 TRIES = 3  # failures after which something is given up [ours]
 
 
@@ -39,6 +35,7 @@ class Mitigator:
         self._queue: list[Prospect] = []  # what was chosen and is not yet done
         self._failures: dict[Key, int] = {}
         self._last: Action | None = None  # its own last action
+        self._weighed = -AGAIN  # frame at which it last weighed measures
         self._shares: tuple[float, ...] = ()
         self._scene: RescueScene | None = None
         self.note = ""
@@ -78,16 +75,32 @@ class Mitigator:
         self._truth.reveal()
         return self._last
 
-    def act(self, decision: Decision, problem: Problem, targets: Sequence[int], scene: RescueScene) -> Action | None:
-        """The next action about the hazard; None where a rescue is next."""
+    def go_on(self, decision: Decision, scene: RescueScene) -> Action | None:
+        """The next action of what was chosen before; None where that is done, and the future has changed."""
         self._scene = scene
         self._last = self._next(decision)
-        if self._last is None and not any(t.held for t in decision.targets):
-            self._choose(decision, problem, targets, scene)
-            self._last = self._next(decision)
         if self._last is not None:
             self._truth.reveal()
         return self._last
+
+    def act(self, decision: Decision, problem: Problem, targets: Sequence[int], scene: RescueScene) -> Action | None:
+        """The first action of what is worth doing now, after `go_on`; None where a rescue is next.
+
+        `problem` and `targets` as for `Chooser.course`.
+        """
+        if any(t.held for t in decision.targets) or not self._is_due(decision):
+            return None
+        self._choose(decision, problem, targets, scene)
+        return self.go_on(decision, scene)
+
+    def _is_due(self, decision: Decision) -> bool:
+        """Whether to weigh measures again: after a measure, a rescue or a failure, and every AGAIN frames."""
+        last, result = decision.last_action, decision.last_result
+        changed = last is None or result is None or not result.ok or last.verb == DROP
+        if changed or decision.frame - self._weighed >= AGAIN:
+            self._weighed = decision.frame
+            return True
+        return False
 
     def way_out(self, decision: Decision) -> Action | None:
         """The opening of the nearest shut door, where the robot cannot get away; None where there is none."""
@@ -119,7 +132,7 @@ class Mitigator:
 
     def _end(self) -> None:
         """Give up what was chosen, or be done with it."""
-        self._queue = []
+        self._queue, self._weighed = [], -AGAIN
         self._chooser.forget()
         self._truth.forget()
         self._truth.also = set()
@@ -165,52 +178,24 @@ class Mitigator:
             return None
         found = self._aim(left[0], np.array(decision.agent_position), held)
         if found < 0:
+            self._failures[OUT, tuple(numbers)] = TRIES
             return None
         self._truth.also = {found}
-        before = self._in_view_from(found, np.array(decision.agent_position))
-        if before >= 0 and decision.walked_up_to != decision.names[before]:
-            self._truth.also = {found, before}
-            return Action(WALK_TO, decision.names[before])
         return Action(EXTINGUISH, decision.names[found])
 
-    def _in_view_from(self, index: int, here: Array) -> int:
-        """The thing to walk to from `here` [m] for a view of the thing `index` that a wall hides; -1: none, or no wall.
-
-        Of the things around it, it is the one with the shortest way that ends where no wall is between.
-        """
-        world = self._base.world
-        aim = world.position[0, index].cpu().numpy().astype(np.float64)
-        if self._scene is None or not hidden(world, _standing(here[None]), aim)[0]:
-            return -1
-        places = world.position[0, :, :2].cpu().numpy().astype(np.float64)
-        there = (world.exists & ~world.away & ~world.held)[0].cpu().numpy()[: len(self._scene.edges)]
-        gaps = np.where(there, np.hypot(*(places[: len(there)] - places[index]).T), np.inf)
-        near = [b for b in np.argsort(gaps)[:AROUND_IT].tolist() if gaps[b] < VIEW]
-        goals, edges = places[near], self._scene.edges[near]
-        ends = self._scene.ways.along(here[None], goals, ANY_WAY, edges)
-        frames = self._scene.ways.frames(here[None], goals, edge=edges)
-        frames = np.where(hidden(world, _standing(ends), aim), np.inf, frames)
-        return near[int(np.argmin(frames))] if len(near) and np.isfinite(frames).any() else -1
-
     def _aim(self, seat: int, here: Array, held: int) -> int:
-        """The thing to name, along B, for putting out the flames of a seat that are nearest to `here` [m]; -1: none."""
+        """The thing to name, along B, for putting out the flames of a seat that are next from `here` [m]; -1: none."""
         fire, world = fire_of(self._base.episode), self._base.world
-        assert fire is not None
-        places = world.position[0, :, :2].cpu().numpy().astype(np.float64)
-        goods = np.flatnonzero((seats.alight(fire, world) == seat)[0].cpu().numpy())
-        if len(goods):
-            return int(goods[np.argmin(np.hypot(*(places[goods] - here).T))])
-        floor = fire.flame_place[0, :, :2][seats.flames(fire, world.frame)[0] == seat].cpu().numpy().astype(np.float64)
-        if not len(floor):
+        assert fire is not None and self._scene is not None
+        burns = np.concatenate([seats.flames(fire, world.frame)[0].cpu(), seats.alight(fire, world)[0].cpu()]) == seat
+        every = torch.cat([fire.flame_place, world.position], 1)[0].cpu().numpy().astype(np.float64)
+        flames, places = every[burns], every[-world.num_bodies :]
+        if not len(flames):
             return -1
-        nearest = floor[np.argmin(np.hypot(*(floor - here).T))]
+        ways = self._scene.ways.frames(flames[:, :2], here)
+        nearest = flames[int(np.argmin(ways))]
         there = (world.exists & ~world.away & ~world.held)[0].cpu().numpy()
-        there &= ~hidden(world, world.position[0].cpu().numpy().astype(np.float64), np.array([*nearest, LOW]))
-        gaps = np.where(there, np.hypot(*(places - nearest).T), np.inf)
+        there &= ~hidden(world, places, nearest)
+        gaps = np.where(there, np.hypot(*(places - nearest)[:, :2].T), np.inf)
         best = int(np.argmin(gaps))
         return best if gaps[best] < AROUND else -1
-
-
-def _standing(places: Array) -> Array:
-    """Places of a nozzle above `places` [m], [P, 2]: [P, 3]."""
-    return np.concatenate([places, np.full((len(places), 1), EYES)], axis=1)

@@ -4,25 +4,29 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.mitigating import costs
+from hazard_ms.simulation.world import World
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, fire_of
-from hazard_ms.sketch.futures.surroundings import Home, charge_of, inner_doors
+from hazard_ms.sketch.futures.surroundings import Home, charge_of, hidden, inner_doors
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.sketch.travel.ways import Ways
+from hazard_ms.skills.mitigations.views import facing
 from hazard_ms.spec import SceneSpec
 
 Array = NDArray[np.float64]
 FETCH = "fetch"
 THREAT = 3.0  # distance from a target that would be lost within which a fire is fought [m] [ours]
 MOST_FUTURES = 11  # beside that in which nobody acts [ours]
-SPRAY_FROM = 1.0  # from flames to where they are fought [m] [ours]
+JET = 3.0  # from flames to where they are fought [m] [ours: a view of them from farther away may need another step]
+EYES, LOW = 0.8, 0.1  # heights of the nozzle and of flames on the floor [m] [ours]
+ASIDE = 0.25  # to both sides of a place, from where flames must be in view, too: the hand is off the middle [m] [ours]
 ANY_WAY = 1e6  # longer than any way [m]
 
 
@@ -45,6 +49,7 @@ class Prospect(NamedTuple):
     frames: float  # that it takes there
     jet: float = 0.0  # frames of discharge among these
     charge: float = 0.0  # frames that a tool lasts
+    between: float = 0.0  # frames of ways from seat to seat among these
 
 
 def seats_of(base: Home) -> list[Seat]:
@@ -62,30 +67,57 @@ def seats_of(base: Home) -> list[Seat]:
 
 def tools_of(base: Home, scene: RescueScene) -> list[Prospect]:
     """The extinguishers that still hold something: to fetch them."""
-    made, equipment = [], base.world.equipment
-    rows = [] if equipment is None else equipment.tool[0].nonzero()[:, 0].tolist()
-    for b in rows:
+    made, equipment = list[Prospect](), base.world.equipment
+    if equipment is None:
+        return made
+    for b in equipment.tool[0].nonzero()[:, 0].tolist():
         charge = charge_of(base, b)
         if charge > 0.0:
             at = base.world.position[0, b, :2].cpu().numpy().astype(np.float64)
-            made.append(Prospect(FETCH, (b,), at, at, float(scene.edges[b]), scene.pick, charge=charge))
+            pin = costs.PIN if equipment.state.charge[0, b] >= equipment.full[0, b] else 0.0
+            made.append(Prospect(FETCH, (b,), at, at, float(scene.edges[b]), scene.pick + pin, charge=charge))
     return made
 
 
-def fights(base: Home, lost: Array, here: Array) -> list[Prospect]:
-    """Seats, pairs of them and all of them put out that threaten things at `lost` [m], [L, 2], nearest first."""
+def fights(base: Home, scene: RescueScene, lost: Array, start: Array) -> list[Prospect]:
+    """Seats, pairs of them and all of them put out that threaten things at `lost` [m], [L, 2].
+
+    Ways lead from `start` [m], [2], to where each seat is in view: those of one fight one after another, the nearest
+    next.
+    """
     near = [seat for seat in seats_of(base) if _gap(seat.place, lost) <= THREAT]
-    near.sort(key=lambda seat: float(np.hypot(*(seat.place - here))))
+    stands = {
+        seat.number: stand for seat in near if (stand := view_of(base.world, scene.ways, seat, start)) is not None
+    }
+    near = [seat for seat in near if seat.number in stands]
     sets: list[Sequence[Seat]] = [[seat] for seat in near]
     sets += [near] if len(near) > 2 else []
     sets += list(itertools.combinations(near, 2))
-    return [_fight(group) for group in sets]
+    return [fight(group, stands, scene.ways, start) for group in sets]
 
 
-def _fight(group: Sequence[Seat]) -> Prospect:
-    jet = sum(costs.FLAME * seat.burning for seat in group)
-    numbers = tuple(seat.number for seat in group)
-    return Prospect(OUT, numbers, group[0].place, group[-1].place, SPRAY_FROM, costs.FIGHT * len(group) + jet, jet)
+def view_of(world: World, ways: Ways, seat: Seat, start: Array) -> Array | None:
+    """The place [m], [2], with the shortest way from `start` [m] from which the jet gets to a seat; None for none."""
+    places = ways.places[np.hypot(*(ways.places - seat.place).T) <= JET]
+    aim = np.array([*seat.place, LOW])
+    seen = [~hidden(world, facing(places, aim, np.array([0.0, side, EYES])), aim) for side in (-ASIDE, ASIDE)]
+    places = places[np.logical_and(*seen)]
+    return places[int(np.argmin(ways.frames(places, start)))] if len(places) else None
+
+
+def fight(group: Sequence[Seat], stands: Mapping[int, Array], ways: Ways, start: Array) -> Prospect:
+    """The seats of a `group` put out, the nearest next, from their `stands` [m], [2] each; it begins at `start` [m]."""
+    left, order, walked = {seat.number: stands[seat.number] for seat in group}, list[int](), list[float]()
+    here = start
+    while left:
+        frames = ways.frames(here, np.stack(list(left.values())))
+        best = int(np.argmin(frames))
+        order.append(list(left)[best])
+        walked.append(float(frames[best]))
+        here = left.pop(order[-1])
+    jet, between = sum(costs.FLAME * seat.burning for seat in group), sum(walked[1:])
+    frames = costs.FIGHT * len(group) + jet + between
+    return Prospect(OUT, tuple(order), stands[order[0]], here, 0.0, frames, jet, between=between)
 
 
 def doors(base: Home, lost: Array) -> list[Prospect]:

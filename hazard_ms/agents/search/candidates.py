@@ -26,8 +26,12 @@ from hazard_ms.spec.extinguishers import EXTINGUISHERS
 
 EXTINGUISH, SHUT = "extinguish", "shut"
 HOT = 100.0  # level from which a thing can be named to the skill: boiling water [C]
-AROUND = 0.9  # distance from a thing within which the skill finds flames, less the error of where they are [m] [ours]
-JET, PINNED = 40.0, 90.0  # frames of the jet that a flame takes, and of a fire until the jet is open [ours]
+AROUND = 1.8  # distance from a thing within which the skill finds flames, less the error of where they are [m] [ours]
+JET, FACED = (
+    30.0,
+    40.0,
+)  # frames of the jet that a flame takes, and of a fire until the jet is open [measured: 20 to 35]
+PIN = 60.0  # frames of pulling the pin, once [hazard_ms.skills.mitigations.extinguish: 2 s]
 DOUBLING = 280.0  # frames in which flames become twice as many: 41 after 1,500 frames [measured]
 SHUTTING = 230.0  # frames of shutting a door from before it [ours]
 TRIES = 2  # failures of one measure, after which it is given up [ours]
@@ -97,7 +101,7 @@ def _fires(
             what = f"put out the fire at {name}"
             soon = decision.frame + UNSEEN_AFTER
             guards = f"fire {k}", UNSEEN_SHARE, min(soon, decision.max_frames - 1.0)
-            frames = PINNED + 1.5 * uses
+            frames = FACED + 1.5 * uses
             made.append(Candidate(what, action, seat.place, JET_WAY, frames, spares, *guards, fetch.name, uses))
     return [*fetches, *made]
 
@@ -113,7 +117,7 @@ def _fetch(brief: Brief, decision: Decision, tool: Tool, ahead: Outlook) -> Cand
     place = decision.agent_position if seen is None or tool.held else seen.position[:2].tolist()
     charge = EXTINGUISHERS[tool.kind].seconds * tool.left / brief.frame_seconds
     near = ARRIVED + (0.0 if seen is None else seen.radius)
-    frames = skill_frames(brief.robot).pick
+    frames = skill_frames(brief.robot).pick + (PIN if tool.left >= 1.0 else 0.0)
     nothing = [0.0] * len(ahead.targets)
     action = Action(PICK_UP, tool.name)
     return Candidate(tool.name, action, (place[0], place[1]), near, frames, nothing, charge=charge)

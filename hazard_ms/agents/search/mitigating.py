@@ -1,8 +1,8 @@
 """Chooses what an agent does about the hazards of a home before it rescues, by what is averted, and says why.
 
 An extinguisher is fetched where a fire that is known threatens more than the way there costs; a door is shut where what
-is behind it would be wet before it is saved (`hazard_ms.planning.beginning`). What is shut is opened only where nothing
-else is left to do.
+is behind it would be wet before it is saved (`hazard_ms.planning.beginning`). What was begun is gone on with as long as
+it averts anything, whatever else would avert more. What is shut is opened only where nothing else is left to do.
 """
 
 from __future__ import annotations
@@ -18,17 +18,19 @@ from hazard_ms.agents.search.forecast import WATER
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.search.walks import frames_between
-from hazard_ms.planning.beginning import best_course
+from hazard_ms.planning.beginning import Course, best_course
 from hazard_ms.planning.measures import Measure, Measures
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, WALK_TO, Action, Decision, Tool
+from hazard_ms.skills.failures import NOT_BURNING
 from hazard_ms.skills.motor.walking import ARRIVED
 
 OPEN = "open"
 MOST_LABELS, BEAM = 400, 20  # of the search for the rescues after measures [ours]: a tenth of a second
-PUT_DOWN = 40.0  # frames of putting down a tool [ours]
+PUT_DOWN = 80.0  # frames of putting down a tool [measured: 66 to 112]
+SAME_PLACE = 1.5  # distance within which a fire, or a door, is the one that was there [m] [ours]
 
 
 class Mitigator:
@@ -41,18 +43,21 @@ class Mitigator:
         self._opened: set[str] = set()
         self._look_around = False
         self._aim: tuple[float, float] | None = None  # of the jet [m]
+        self._begun: Candidate | None = None  # what it fetches a tool for, or goes to, and has not yet done
         self.why = ""
 
     def note(self, decision: Decision) -> None:
         """Enter what the last action came to."""
         last, result = decision.last_action, decision.last_result
-        if last is None or result is None or last.verb != EXTINGUISH or not result.ok or last.target is None:
+        if last is None or result is None or last.verb != EXTINGUISH or last.target is None:
+            return
+        if not result.ok and result.reason != NOT_BURNING:
             return
         seen = decision.map.objects.get(decision.index(last.target))
         for place in (self._aim, None if seen is None else seen.position[:2].tolist()):
             if place is not None:
                 self._memory.house.put_out((place[0], place[1]), decision.frame)
-        self._look_around = result.frames > 0
+        self._look_around, self._begun = result.frames > 0, None
 
     def action(self, decision: Decision, ahead: Outlook) -> Action | None:
         """The measure to begin with, or the end of one; None where a rescue or a search comes first."""
@@ -77,18 +82,44 @@ class Mitigator:
     def _first(
         self, decision: Decision, ahead: Outlook, found: Sequence[Candidate], held: Tool | None
     ) -> Candidate | None:
-        useful = [one for one in found if one.charge == 0.0]
-        if not useful:
+        course = None
+        for tried in (self._begun_among(found), found):
+            if any(one.charge == 0.0 for one in tried):
+                course = self._course(decision, ahead, tried, held)
+            if course is not None:
+                found = tried
+                break
+        if course is None:
+            self._begun = None
             return None
-        unseen = {one.guards: (ahead.unseen * one.unseen, one.unseen_at) for one in useful if one.unseen > 0.0}
-        problem = _with_unseen(ahead.plain, ahead.frames, list(unseen.values()))
-        measures = _measures(decision, ahead, found, list(unseen), held, self._brief.radius)
-        course = best_course(problem, measures, most_labels=MOST_LABELS, beam=BEAM)
-        if not course.steps or course.before is not None:
-            return None
+        self._begun = next(found[step.measure] for step in course.steps if found[step.measure].charge == 0.0)
         steps = ", ".join(f"{found[step.measure].name} by {step.done:.0f}" for step in course.steps)
         self.why = f"{steps}: averts {course.value:.1f} with rescues after it, {course.plain:.1f} by rescues alone"
         return found[course.steps[0].measure]
+
+    def _begun_among(self, found: Sequence[Candidate]) -> list[Candidate]:
+        """What it has begun, as it is among those `found` now, and the tools; none where it has begun nothing."""
+        begun = self._begun
+        if begun is None:
+            return []
+        same = [
+            one
+            for one in found
+            if (one.action.verb, one.tool) == (begun.action.verb, begun.tool)
+            and one.charge == 0.0
+            and np.hypot(*np.subtract(one.place, begun.place)) <= SAME_PLACE
+        ]
+        return [*(one for one in found if one.charge > 0.0), *same[:1]]
+
+    def _course(
+        self, decision: Decision, ahead: Outlook, found: Sequence[Candidate], held: Tool | None
+    ) -> Course | None:
+        """The best course of those `found`, if it begins with one of them."""
+        unseen = {one.guards: (ahead.unseen * one.unseen, one.unseen_at) for one in found if one.unseen > 0.0}
+        problem = _with_unseen(ahead.plain, ahead.frames, list(unseen.values()))
+        measures = _measures(decision, ahead, found, list(unseen), held, self._brief.radius)
+        course = best_course(problem, measures, most_labels=MOST_LABELS, beam=BEAM)
+        return course if course.steps and course.before is None else None
 
     def opening(self, decision: Decision) -> Action | None:
         """A door to open where nothing else is left to do, each once; None where there is none."""

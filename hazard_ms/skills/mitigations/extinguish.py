@@ -1,9 +1,10 @@
-"""The skill `extinguish`: the jet of the extinguisher in the hand, aimed at the flames of a thing and around it.
+"""The skill `extinguish`: the jet of the extinguisher in the hand, aimed at what burns of a thing and around it.
 
-The robot stops as far away as the jet carries well, with the flames in a straight line that no wall is in, and aims at
-the flame nearest to it until none is left within AROUND of the thing. What the jet does there is for the fire to say
-(hazard_ms.hazards.fire.dousing, .realistic.extinguishing). Limits: it starts to discharge at once when it aims; the
-hand stays where it carries; things do not shade each other.
+The robot walks to the nearest place from which the jet gets to the flames past all walls (views.py), and aims at the
+flame nearest to it until none is left within AROUND of the thing, on its side of walls. What the jet does there is for
+the fire to say (hazard_ms.hazards.fire.dousing, .realistic.extinguishing). The pin is pulled once, before the first
+discharge. Limits: it starts to discharge at once when it aims; the hand stays where it carries; things do not shade
+each other.
 """
 
 from __future__ import annotations
@@ -16,20 +17,21 @@ from numpy.typing import NDArray
 
 from hazard_ms.episode.episode import Episode
 from hazard_ms.simulation.jet import KINDS
-from hazard_ms.simulation.walls import blocked
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.mitigations.approach import approach
-from hazard_ms.skills.motor.motion import wrap
+from hazard_ms.skills.mitigations.views import CLOSE, ENOUGH, Place, facing, in_view, nearest_view, sees
+from hazard_ms.skills.motor.motion import turn_to, turned, wrap
 from hazard_ms.skills.motor.walking import known
 from hazard_ms.spec.extinguishers import EXTINGUISHERS
 
-AROUND = 1.0  # of the thing, within which flames on the floor are put out with it [m] [ours]
-SHARES = (0.75, 0.5, 0.3)  # of the jet's reach: distances from which it is tried, in turn [ours]
+AROUND = 2.0  # of the thing, within which flames on the floor are put out with it [m] [ours]
+SHARES = (0.75, 0.5, 0.3)  # of the jet's reach: distances from which it is tried [ours]
 WITHIN = 0.95  # share of the reach from which the jet is opened [ours]
 HOT = 100.0  # level at which a thing on the map counts as hot: boiling water [C]
 PIN_TIME = 2.0  # to pull the pin and aim before the first discharge [s] [ours]
+SAME = 0.05  # distance up to which a flame is still the one that is aimed at [m] [ours]
 ONE_FLAME = 150  # frames after which a flame under the jet is given up [ours]
 FRAMES = 450  # budget of one action [frames] [ours]
 
@@ -57,6 +59,12 @@ def charge(stage: Stage) -> float:
     return 0.0 if tools is None or held < 0 else float(tools.state.charge[0, held])
 
 
+def _pinned(stage: Stage) -> bool:
+    """Whether the pin is still in the extinguisher in the hand: nothing was discharged from it."""
+    tools = stage.world.equipment
+    return tools is not None and charge(stage) >= float(tools.full[0, stage.held])
+
+
 def hot_things(stage: Stage) -> tuple[str, ...]:
     """Names of known things that were hot when last seen, while a charged extinguisher is in the hand."""
     names = [hazard.name for hazard in _episode(stage).hazards]
@@ -69,59 +77,66 @@ def hot_things(stage: Stage) -> tuple[str, ...]:
 
 
 def extinguish(stage: Stage, name: str) -> Skill:
-    """Put out the thing called `name`, and flames around it."""
+    """Put out the thing called `name`, and flames and burning things around it."""
     index = stage.labeller.index(name)
     if not extinguisher_in_hand(stage):
         return Result(False, failures.NO_EXTINGUISHER)
     if not known(stage, index):
         return Result(False, failures.UNKNOWN)
-    used, pinned, given_up = 0, False, 0
-    while used < FRAMES:
+    used, given_up, fought = 0, False, False
+    while True:
         aim = _nearest_flame(stage, index)
         if aim is None:
-            return Result(True, frames=used)
+            return Result(True, frames=used) if fought else Result(False, failures.NOT_BURNING, used)
+        if used >= FRAMES:
+            return Result(False, failures.MAX_FRAMES, used)
         if charge(stage) <= 0.0:
             return Result(False, failures.EMPTY, used)
         if given_up:
             return Result(False, failures.STILL_BURNING, used)
-        came = yield from _into_range(stage, aim)
+        came = yield from _into_range(stage, aim, FRAMES - used)
         used += came.frames
         if not came.ok:
             return Result(False, came.reason, used)
-        if not pinned:
+        if not fought and _pinned(stage):
             for _ in range(round(PIN_TIME / stage.env.control_timestep)):
                 yield stage.act()
                 used += 1
-            pinned = True
+        fought = True
         sprayed = yield from _spray(stage, index, aim)
         used += sprayed.frames
         given_up = not sprayed.ok and sprayed.reason == failures.STILL_BURNING
-    return Result(False, failures.MAX_FRAMES, used)
 
 
 def _nearest_flame(stage: Stage, index: int) -> NDArray[np.float64] | None:
-    """The place [m], [3], of what burns of the thing `index` or around it, nearest to the hand; None for nothing."""
+    """The place [m], [3], of what burns at the thing `index` or around it, nearest to the hand; None for nothing."""
+    burning = _flames(stage, index)
+    if not len(burning):
+        return None
+    return np.asarray(burning[int(np.linalg.norm(burning - stage.robot.hand(), axis=1).argmin())])
+
+
+def _flames(stage: Stage, index: int) -> NDArray[np.float64]:
+    """The places [m], [N, 3], of what burns at the thing `index` or around it."""
     flames, thing = _episode(stage).flames(), stage.labeller.thing(index)
     if flames is None:
-        return None
+        return np.zeros((0, 3))
     middle = stage.position(thing) if thing >= 0 else stage.seen.objects[index].position
     place = flames.place[0].cpu().numpy().astype(np.float64)
     near = flames.lit[0].cpu().numpy() & (np.hypot(*(place - middle)[:, :2].T) <= AROUND)
-    bodies = stage.world.num_bodies
-    near[:bodies] &= np.arange(bodies) == thing
-    if not near.any():
-        return None
-    burning = place[near]
-    return np.asarray(burning[int(np.linalg.norm(burning - stage.robot.hand(), axis=1).argmin())])
+    return place[near][in_view(stage, place[near], middle)]
 
 
 def _in_sight(stage: Stage, aim: NDArray[np.float64]) -> bool:
     """Whether the jet would get from the hand to `aim`, [3] [m]."""
-    reach = EXTINGUISHERS[extinguisher_in_hand(stage)].reach
-    hand, there = (torch.as_tensor(p[None, None], dtype=torch.float32) for p in (stage.robot.hand(), aim))
-    device = stage.world.device
-    wall = bool(blocked(stage.world.walls, hand.to(device), there.to(device)).any())
-    return not wall and float((there - hand).norm()) <= WITHIN * reach
+    reach, hand = WITHIN * EXTINGUISHERS[extinguisher_in_hand(stage)].reach, stage.robot.hand()
+    return bool(in_view(stage, hand[None], aim)[0]) and float(np.linalg.norm(aim - hand)) <= reach
+
+
+def _carried(stage: Stage) -> NDArray[np.float64]:
+    """Where the hand is [m], [3]: ahead of the middle of the base, to its left, and over the floor."""
+    x, y, heading = stage.robot.base()
+    return turned(stage.robot.hand() - (x, y, 0.0), (0.0, 0.0), -heading)
 
 
 def _too_hot(stage: Stage) -> bool:
@@ -129,38 +144,46 @@ def _too_hot(stage: Stage) -> bool:
     return bool(_episode(stage).forbidden(place)[0, 0])
 
 
-def _into_range(stage: Stage, aim: NDArray[np.float64]) -> Skill:
-    """Walk to where the jet gets to `aim`, [3] [m]."""
-    used, reason = 0, ""
+def _into_range(stage: Stage, aim: NDArray[np.float64], frames: int) -> Skill:
+    """Walk to the nearest place from which the jet gets to `aim`, [3] [m], and turn to it, in at most `frames`."""
+    used, tried = 0, set[Place]()
     reach = EXTINGUISHERS[extinguisher_in_hand(stage)].reach
-    for share in SHARES:
-        if _in_sight(stage, aim):
-            return Result(True, frames=used)
+
+    def stop() -> bool:
+        """Whether the jet gets there once the robot has turned."""
+        here, carried = np.array([stage.robot.base()[:2]]), _carried(stage)
+        near = float(np.linalg.norm(facing(here, aim, carried)[0] - aim)) <= WITHIN * reach
+        return near and bool(sees(stage, here, aim, carried)[0]) or _too_hot(stage)
+
+    while not _in_sight(stage, aim):
         if _too_hot(stage):
             return Result(False, failures.TOO_HOT, used)
-
-        def stop() -> bool:
-            return _in_sight(stage, aim) or _too_hot(stage)
-
-        walked = yield from approach(stage, aim, share * reach, WITHIN * reach, stop)
-        used, reason = used + walked.frames, walked.reason
-        if reason == failures.MAX_FRAMES:
-            return Result(False, reason, used)
-    if _in_sight(stage, aim):
-        return Result(True, frames=used)
-    return Result(False, failures.TOO_HOT if _too_hot(stage) else reason or failures.NO_LINE_OF_SIGHT, used)
+        if tried or not stop():
+            stand = nearest_view(stage, aim, [share * reach for share in SHARES], _carried(stage), tried)
+            if stand is None:
+                return Result(False, failures.NO_LINE_OF_SIGHT, used)
+            tried.add(stand)
+            walked = yield from approach(stage, np.array(stand), CLOSE, ENOUGH, stop, frames - used)
+            used += walked.frames
+            if walked.reason == failures.MAX_FRAMES:
+                return Result(False, walked.reason, used)
+        facing_it = yield from turn_to(stage, aim, max(0, frames - used))
+        used += facing_it.frames
+        if not facing_it.ok:
+            return Result(False, facing_it.reason, used)
+        tried.add(stage.robot.base()[:2])
+    return Result(True, frames=used)
 
 
 def _spray(stage: Stage, index: int, aim: NDArray[np.float64]) -> Skill:
-    """Discharge at `aim`, [3] [m], and what burns next to it, until something else is nearest, or it is given up."""
+    """Discharge at `aim`, [3] [m], and what burns next to it, until that is out, or it is given up."""
     jet, used = stage.world.jet, 0
     assert jet is not None
     rows = torch.zeros(1, dtype=torch.int64, device=stage.world.device)
     kind = extinguisher_in_hand(stage)
     try:
         while used < ONE_FLAME:
-            now = _nearest_flame(stage, index)
-            if now is None or not np.allclose(now, aim, atol=0.05):
+            if not (np.abs(_flames(stage, index) - aim).max(1, initial=0.0) < SAME).any():
                 return Result(True, frames=used)
             if charge(stage) <= 0.0 or not _in_sight(stage, aim):
                 return Result(False, failures.NO_LINE_OF_SIGHT, used)

@@ -29,7 +29,7 @@ COLOURS = {
     MEMORY: "#5cadff",
     BY_FORMAT: "#ff9ecb",
     LATENCY: "#ffcd56",
-    MITIGATION: "#4ed0c8",
+    MITIGATION: "#b9855a",
     PLANNING: "#ef5f54",
     UNSEEN: "#56cc82",
     SMALL: "#6d7686",
@@ -93,12 +93,17 @@ def named(part: str) -> str:
 
 
 def table(agents: Mapping[str, dict[str, Any]]) -> list[str]:
-    """Lines of text with the parts of each agent's loss in per cent; none where nothing was judged."""
+    """Lines of text with the parts of each agent's loss in per cent; none where nothing was judged.
+
+    `mitigation` is among them where any was lost by it: in homes alone.
+    """
     judged = {agent: row["lost"] for agent, row in agents.items() if "lost" in row}
     if not judged:
         return []
-    lines = [f"{'lost, % of value':16s} " + " ".join(f"{part:>10s}" for part in PARTS) + "  episodes"]
+    mitigates = any(lost["shares"][MITIGATION] for lost in judged.values())
+    parts = [part for part in PARTS if mitigates or part != MITIGATION]
+    lines = [f"{'lost, % of value':16s} " + " ".join(f"{part:>10s}" for part in parts) + "  episodes"]
     for agent, lost in judged.items():
-        row = " ".join(f"{100 * lost['shares'][part]:10.1f}" for part in PARTS)
+        row = " ".join(f"{100 * lost['shares'][part]:10.1f}" for part in parts)
         lines.append(f"{agent:16s} {row}  {lost['episodes']:8d}")
     return lines

@@ -45,9 +45,11 @@ class Appraiser(Watcher):
     averts       whether shares are of what is not lost when time is up, as in homes, and plans have measures
     """
 
-    def __init__(self, count: int | None = None, mind: Callable[[SkillEnv], Hindsight] = Hindsight) -> None:
-        """`count`: see above; `mind` makes the judge."""
-        self._count, self._made, self.averts = count, mind, False
+    def __init__(
+        self, count: int | None = None, mind: Callable[[SkillEnv], Hindsight] = Hindsight, told: bool = False
+    ) -> None:
+        """`count`: see above; `mind` makes the judge; `told`: whether the agent knows of all fires and tools."""
+        self._count, self._made, self._told_all, self.averts = count, mind, told, False
         self.appraisals: list[Appraisal] = []
         self.bests: list[float] = []
         self.value = 0.0
@@ -138,8 +140,8 @@ class Appraiser(Watcher):
             what = f"{self._action} was done about the hazard, where something else averts more"
             return regret, regret, {MITIGATION: Without(0.0, what)}
         extra = max(0.0, regret - plain)
-        known = worth.gain(judged.seen, best, decision) / self._total
-        extra = min(extra, known)  # what nobody could know of is unseen
+        if not self._told_all:  # what nobody could know of is unseen
+            extra = min(extra, worth.gain(judged.seen, best, decision) / self._total)
         made = {cause: Without(one.regret + extra, one.what) for cause, one in without.items()}
         made[MITIGATION] = Without(seen, f"nothing was done about the hazard, where it helps to {self._helps}")
         return regret, min(regret, seen + extra), made

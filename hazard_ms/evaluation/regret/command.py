@@ -8,6 +8,7 @@ from pathlib import Path
 
 import torch
 
+from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.evaluation.attempts import Recorded, Teller
 from hazard_ms.evaluation.regret.appraiser import Appraiser
 from hazard_ms.evaluation.regret.causes import EpisodeRegret, beside, decisions_of, digest, lost_by, place_of
@@ -17,6 +18,7 @@ from hazard_ms.evaluation.result import FAILED, DamagedResultError, EpisodeResul
 from hazard_ms.evaluation.runner import play
 from hazard_ms.evaluation.workers import Crew, Job, Outcome, Say, ending
 from hazard_ms.machine.cores import cores
+from hazard_ms.registry import AGENTS, load
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,8 @@ def attempt(job: Job, say: Say) -> Outcome:
     torch.set_num_threads(1)
     try:
         known, record = digest(job.path), EpisodeResult.read(job.path)
-        appraiser, player = Appraiser(len(job.actions)), Recorded(job.actions, job.options.agent, job.waits)
+        appraiser = Appraiser(len(job.actions), told=sees_all(record.agent))
+        player = Recorded(job.actions, job.options.agent, job.waits)
         played = play(job.options, [Teller(job.options, say), appraiser], player)
         verdict, why = compare(record, played)
         if verdict == DIFFERENT:
@@ -99,6 +102,13 @@ def attempt(job: Job, say: Say) -> Outcome:
         return Outcome(played)
     except Exception as error:
         return Outcome(None, f"{type(error).__name__}: {error}")
+
+
+def sees_all(name: str) -> bool:
+    """Whether an agent is a registered one that sees what is hidden, and plans with all of it."""
+    entry = AGENTS.get(name.partition(":")[0])
+    known = "known=true" in name.lower()
+    return entry is not None and issubclass(load(entry.agent), PrivilegedAgent) and not known
 
 
 def _job(path: Path, result: EpisodeResult, load: tuple[str, ...]) -> RegretJob:

@@ -23,14 +23,12 @@ from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, fire_of
 from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.mitigations.extinguish import AROUND
 
 EFFORT = (400, 20)  # labels of a search, and of a layer beyond [ours]
 EXTINGUISH, SHUT_DOOR = "extinguish", "shut"
-FIRE, HOT, AROUND = (
-    "fire",
-    100.0,
-    1.5,
-)  # of a map, and distance from a fire within which its warm floor was seen [m] [ours]
+FIRE = "fire"
+HOT, SEEN_NEAR = 100.0, 1.5  # of floor [C], and how near the middle of a fire it makes that known [m] [ours]
 NOTHING = 1e-3  # value of the targets up to which nothing is lost [ours]
 
 
@@ -104,6 +102,8 @@ class MeasureWorth:
         if action.verb in self._base.task.mitigations:
             if self._begins(action, state.tool):
                 return None
+            if action.verb == EXTINGUISH and state.tool is None:
+                return state  # it cannot work, and takes no time
             later = costs.FIGHT if action.verb == EXTINGUISH else costs.DOOR
         elif self.is_measure(action) and action.verb == PICK_UP:
             made = self._mind.after(state, Action(WALK_TO, action.target))
@@ -133,7 +133,7 @@ class MeasureWorth:
         hot = seen.origin + (np.stack([x, y], -1) + 0.5) * seen.cell
         places = {seat.number: seat.place for seat in seats_of(self._base)}
         gaps = [np.hypot(*(hot - places[n]).T).min(initial=np.inf) if n in places else np.inf for n in what.numbers]
-        return all(gap <= AROUND for gap in gaps)
+        return all(gap <= SEEN_NEAR for gap in gaps)
 
     def _numbers(self, action: Action, in_hand: int | None) -> list[int]:
         """The measures that `action` begins."""
@@ -146,11 +146,12 @@ class MeasureWorth:
         fire = fire_of(self._base.episode)
         if fire is None or index < 0:
             return []
-        seat = int(seats.things(fire, self._base.world)[0, index])
-        if seat < 0:
-            place = self._mind.place(index)
-            near = [(float(np.hypot(*(s.place - place))), s.number) for s in seats_of(self._base)]
-            seat = min(near)[1] if near and min(near)[0] <= seats.NEAR else -1
+        burning = seats.flames(fire, self._base.world.frame)[0].cpu().numpy()
+        places = fire.flame_place[0, :, :2].cpu().numpy().astype(np.float64)
+        gaps = np.where(burning >= 0, np.hypot(*(places - self._mind.place(index)).T), np.inf)
+        if not gaps.min(initial=np.inf) <= AROUND:
+            return []
+        seat = int(burning[gaps.argmin()])
         return [
             k
             for k, (p, one) in enumerate(zip(self._offers.made, self._offers.needs(), strict=True))

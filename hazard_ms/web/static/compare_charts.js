@@ -6,7 +6,7 @@ import { drawn, legend, look, percent, verbClass, words } from "./compare_words.
 const LEFT = 44, RIGHT = 14, TOP = 10, BOTTOM = 26, TICKS = 5 // margins [pixels]; steps of the axis of frames
 const OUTCOMES = ["done", "unfinished", "failed"]
 const FATES = ["rescued whole", "rescued damaged", "whole", "damaged"]
-const PARTS = ["perception", "memory", "format", "latency", "planning", "unseen", "small", "execution", "ended"]
+const PARTS = ["perception", "memory", "format", "latency", "mitigation", "planning", "unseen", "small", "execution", "ended"]
 const PART_WORDS = { unseen: "targets not seen yet", small: "small regrets", execution: "execution of skills", ended: "the agent failed" }
 
 export const partWords = part => PART_WORDS[part] ?? part

@@ -14,6 +14,7 @@ from hazard_ms.evaluation.regret.causes import (
     EXECUTION,
     LATENCY,
     MEMORY,
+    MITIGATION,
     PARTS,
     PERCEPTION,
     PLANNING,
@@ -50,6 +51,9 @@ def having(seen: float = 0.2, **left: float) -> Appraisal:
         (having(perception=0.11, memory=0.11, latency=0.0), True, BY_FORMAT),
         (having(perception=0.11, memory=0.11, latency=0.1), False, LATENCY),
         (having(perception=0.11, memory=0.11, latency=0.11), False, PLANNING),
+        (having(latency=0.1, mitigation=0.0), False, LATENCY),
+        (having(latency=0.11, mitigation=0.1), False, MITIGATION),
+        (having(mitigation=0.11), False, PLANNING),
         (having(seen=0.1, perception=0.06), False, PLANNING),
         (having(), False, PLANNING),
     ],
@@ -59,7 +63,7 @@ def test_the_first_cause_that_explains_half_of_a_regret_is_to_blame(
 ) -> None:
     found, evidence = cause_of(appraisal, fallback)
     assert found == cause and bool(evidence) == bool(cause)
-    if cause in (PERCEPTION, MEMORY, LATENCY):
+    if cause in (PERCEPTION, MEMORY, LATENCY, MITIGATION):
         assert f"{cause} went wrong; without that the choice loses 10.0 instead of 20.0 % of the value" in evidence
     if cause == PLANNING:
         assert "to rescue book_1 was worth" in evidence
@@ -117,6 +121,9 @@ def test_an_agents_loss_is_the_mean_over_its_episodes(tmp_path: Path) -> None:
     assert (row[PLANNING], row[EXECUTION]) == pytest.approx((0.2, 0.3))
     lines = table(found).splitlines()
     assert [line.split()[0] for line in lines[1:]] == ["greedy", "planner"] and lines[1].split()[-1] == "2"
+    assert MITIGATION not in lines[0]
+    there = table([*found, dataclasses.replace(found[0], averts=True)]).splitlines()[0].split()
+    assert there.index(MITIGATION) + 1 == there.index(PLANNING)
     with pytest.raises(ValueError, match="episodes must be at least one, got none"):
         shares([])
 

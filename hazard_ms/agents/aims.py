@@ -40,7 +40,7 @@ class Aim:
         scene: RescueScene,
         held: int | None,
     ) -> NDArray[np.float64]:
-        """What `targets`, indices [T] along B, worth `values` [T], count if nobody rescues them, [T].
+        """The value that `targets`, indices [T] along B, worth `values` [T], count if nobody rescues them, [T].
 
         `held`: index along B of what is in the hand, which nothing carries off.
         """

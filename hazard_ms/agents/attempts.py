@@ -73,7 +73,7 @@ class Enclosure:
 
 
 class Repeats:
-    """Tells what to do instead of an action that has failed again and again from where the robot stands.
+    """Chooses another action in place of one that has failed again and again from where the robot stands.
 
     It steps towards the nearest thing that is not at hand, another one each time, or, with what is for a cart, goes to
     the nearest other cart; where it knows nothing of that kind, it looks around. `note` says why.

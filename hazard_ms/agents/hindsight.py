@@ -53,12 +53,12 @@ class Hindsight:
         left = [b for b in self.targets if held[b] or not (safe[b] or gone[b] or self._failures[b] >= OUT_OF_REACH)]
         holding = next((b for b in left if held[b]), None)
         x, y, heading = base.agent.base()
-        tools = () if world.equipment is None else (world.equipment.tool & world.held)[0].nonzero()[:, 0].tolist()
-        tool = tools[0] if len(tools) else None
+        tools = [] if world.equipment is None else (world.equipment.tool & world.held)[0].nonzero()[:, 0].tolist()
+        tool = int(tools[0]) if tools else None
         return State((float(x), float(y)), float(heading), self._env.frame, holding, tuple(left), float(saved), tool)
 
     def _kept(self, targets: list[int]) -> float:
-        """What `targets`, indices along B, count by the aim if nobody rescues them."""
+        """The value that `targets`, indices along B, count by the aim if nobody rescues them."""
         if not self.aim.averts:
             return 0.0
         held = (self._env.base.world.held[0].nonzero()[:, 0].tolist() or [None])[0]

@@ -16,7 +16,7 @@ from hazard_ms.planning.travel import StaticTravel
 
 
 def begun(problem: Problem, measures: Measures, number: int) -> tuple[Problem, Measures] | None:
-    """What is left of a problem and its measures after the measure `number`, for which its tool is fetched before.
+    """The rest of a problem and of its measures after the measure `number`, whose tool is fetched before it.
 
     None where it comes too late, or its tool would be used up. `problem` has the targets' own values and a
     StaticTravel. A measure that was done spares nothing again. Raises ValueError for another travel.

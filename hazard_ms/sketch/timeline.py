@@ -89,7 +89,7 @@ class Timeline:
         return np.where(self.damaged_at < 0, np.inf, self.damaged_at - 1.0)
 
     def displaced(self, places: Mapping[int, tuple[float, float]], frame: float) -> Timeline:
-        """The same with things, by index along B, at `places` [m] at a frame: they move as they would from there."""
+        """A timeline with things, by index along B, at `places` [m] at a frame: they go on from there."""
         if not places:
             return self
         start, now = self.start.copy(), self.position_at(frame)

@@ -80,7 +80,7 @@ class MeasureWorth:
         return max(0.0, course.value - course.plain)
 
     def begun(self, state: State, action: Action) -> float | None:
-        """The same of the best course that begins with the measure of `action`, below 0 where it costs more.
+        """The gain of the best course that begins with the measure of `action`, below 0 where it costs more.
 
         None where `action` begins no measure that is weighed.
         """

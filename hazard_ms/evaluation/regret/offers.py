@@ -1,4 +1,4 @@
-"""The measures about the hazard of a home that there are in a running episode, and what each leads to.
+"""The measures about the hazard of a home that there are in a running episode, and the outcome of each.
 
 Futures are foreseen in copies of the episode (`hazard_ms.sketch.futures`), and kept for KEPT frames. The measures are
 those that the oracle weighs (`hazard_ms.agents.mitigating.prospects`), with the frames that it plans with.
@@ -36,7 +36,7 @@ KEPT = 600  # frames for which futures are kept [ours]
 
 
 class Offers:
-    """What can be done about the hazard in one episode."""
+    """Finds the measures about the hazard in one episode, and foresees the outcome of each."""
 
     def __init__(self, env: SkillEnv, mind: Hindsight) -> None:
         """Take an environment in which an episode has just begun, and its judge."""
@@ -55,7 +55,7 @@ class Offers:
         return [next(turn) % tools if p.kind == OUT else None for p in self.made]
 
     def words(self, what: Prospect) -> str:
-        """What is done, for people."""
+        """A measure in words."""
         names = self._base.world.names[0]
         if what.kind == FETCH:
             return f"fetch {names[what.numbers[0]]}"

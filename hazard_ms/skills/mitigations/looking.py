@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
@@ -45,5 +47,5 @@ def look_at(stage: Stage, name: str) -> Skill:
     seen = stage.seen.objects[index]
     near = sight_of(seen, stage.labeller.half_width(index))
     away = math.dist(stage.robot.base()[:2], seen.position[:2].tolist())
-    result: Result = yield from approach(stage, seen.position, near, away)
+    result: Result = yield from approach(stage, seen.position.astype(np.float64), near, away)
     return result

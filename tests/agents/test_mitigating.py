@@ -91,7 +91,8 @@ def test_after_a_fight_it_plans_with_the_future_without_that_fire(
     env: SkillEnv, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whenever it weighs measures, books are to burn when they will if nobody acts from then on."""
-    weighed, course = [], Chooser.course
+    weighed: list[tuple[int, bool]] = []
+    course = Chooser.course
 
     def spied(self: Chooser, problem: Problem, targets: Sequence[int], *rest: Any) -> Any:
         if env.decision().last_action == Action("drop") or not weighed:
@@ -114,15 +115,15 @@ def test_a_fire_is_fought_from_where_the_jet_gets_to_it_and_the_nearest_first() 
     start = np.array([1.0, 2.0])
     behind = prospects.Seat(0, np.array([3.4, 0.5]), 1)  # beside the wall: within 3 m of the start, and hidden
     ahead_of = prospects.Seat(1, np.array([1.0, 3.5]), 1)
-    stands = [prospects.view_of(world, ways, seat, start) for seat in (behind, ahead_of)]
-    assert stands[0] is not None and stands[1] is not None
-    x, y = stands[0]
+    far, near = (prospects.view_of(world, ways, seat, start) for seat in (behind, ahead_of))
+    assert far is not None and near is not None
+    x, y = far
     crosses = y + (0.5 - y) * (3.0 - x) / (3.4 - x)  # where the straight line to it meets the wall
     assert x > 3.0 or 1.55 < crosses < 2.45
-    assert np.hypot(*(stands[1] - start)) <= 0.5  # it is in view at once, and walks end half a metre before a place
-    fight = prospects.fight([behind, ahead_of], dict(enumerate(stands)), ways, start)
+    assert np.hypot(*(near - start)) <= 0.5  # it is in view at once, and walks end half a metre before a place
+    fight = prospects.fight([behind, ahead_of], {0: far, 1: near}, ways, start)
     assert fight.numbers == (1, 0)
-    np.testing.assert_allclose(fight.between, ways.frames(stands[1], stands[0]))
+    np.testing.assert_allclose(fight.between, ways.frames(near, far))
 
 
 def test_what_is_behind_a_door_is_closed_off_by_it() -> None:

@@ -100,9 +100,9 @@ def view_of(world: World, ways: Ways, seat: Seat, start: Array) -> Array | None:
     """The place [m], [2], with the shortest way from `start` [m] from which the jet gets to a seat; None for none."""
     places = ways.places[np.hypot(*(ways.places - seat.place).T) <= JET]
     aim = np.array([*seat.place, LOW])
-    seen = [~hidden(world, facing(places, aim, np.array([0.0, side, EYES])), aim) for side in (-ASIDE, ASIDE)]
-    places = places[np.logical_and(*seen)]
-    return places[int(np.argmin(ways.frames(places, start)))] if len(places) else None
+    for side in (-ASIDE, ASIDE):
+        places = places[~hidden(world, facing(places, aim, np.array([0.0, side, EYES])), aim)]
+    return np.asarray(places[int(np.argmin(ways.frames(places, start)))]) if len(places) else None
 
 
 def fight(group: Sequence[Seat], stands: Mapping[int, Array], ways: Ways, start: Array) -> Prospect:

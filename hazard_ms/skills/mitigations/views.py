@@ -44,8 +44,8 @@ def sees(stage: Stage, places: Array, aim: Array, held: Array) -> NDArray[np.boo
 
     Arguments as for `facing`.
     """
-    sides = [facing(places, aim, held + (0.0, side, 0.0)) for side in (-MARGIN, MARGIN)]
-    return np.logical_and(*(in_view(stage, side, aim) for side in sides))
+    right, left = (in_view(stage, facing(places, aim, held + (0.0, side, 0.0)), aim) for side in (-MARGIN, MARGIN))
+    return right & left
 
 
 def nearest_view(

@@ -1,4 +1,4 @@
-"""What a judge of decisions counts: the score Value or, in homes, what is not lost when time is up.
+"""The aims of a judge of decisions: the score Value or, in homes, what is not lost when time is up.
 
 By the aim `averted` a target that is safe counts as by Value, and every other one what it keeps by itself: all of its
 value, half where it is damaged, and nothing where it is carried off. A rescue then adds what would be lost without it

@@ -78,7 +78,9 @@ def main(arguments: Sequence[str]) -> None:
     probe.decision = env.decision()
     probe.do(min(prospects.tools_of(env.base, probe.scene), key=probe.way))
     here = np.array(probe.decision.agent_position)
-    for fight in prospects.fights(env.base, np.array([s.place for s in prospects.seats_of(env.base)]), here)[:2]:
+    for fight in prospects.fights(
+        env.base, probe.scene, np.array([s.place for s in prospects.seats_of(env.base)]), here
+    )[:2]:
         probe.do(fight)
     if env.stage.held >= 0 and env.frame < env.max_frames:
         probe.step(Action("drop"))

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.mitigating import costs
-from hazard_ms.simulation.world import World
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, fire_of
 from hazard_ms.sketch.futures.surroundings import Home, charge_of, hidden, inner_doors
@@ -86,9 +85,7 @@ def fights(base: Home, scene: RescueScene, lost: Array, start: Array) -> list[Pr
     next.
     """
     near = [seat for seat in seats_of(base) if _gap(seat.place, lost) <= THREAT]
-    stands = {
-        seat.number: stand for seat in near if (stand := view_of(base.world, scene.ways, seat, start)) is not None
-    }
+    stands = {seat.number: stand for seat in near if (stand := view_of(base, scene.ways, seat, start)) is not None}
     near = [seat for seat in near if seat.number in stands]
     sets: list[Sequence[Seat]] = [[seat] for seat in near]
     sets += [near] if len(near) > 2 else []
@@ -96,12 +93,12 @@ def fights(base: Home, scene: RescueScene, lost: Array, start: Array) -> list[Pr
     return [fight(group, stands, scene.ways, start) for group in sets]
 
 
-def view_of(world: World, ways: Ways, seat: Seat, start: Array) -> Array | None:
+def view_of(base: Home, ways: Ways, seat: Seat, start: Array) -> Array | None:
     """The place [m], [2], with the shortest way from `start` [m] from which the jet gets to a seat; None for none."""
     places = ways.places[np.hypot(*(ways.places - seat.place).T) <= JET]
     aim = np.array([*seat.place, LOW])
     for side in (-ASIDE, ASIDE):
-        places = places[~hidden(world, facing(places, aim, np.array([0.0, side, EYES])), aim)]
+        places = places[~hidden(base.world, facing(places, aim, np.array([0.0, side, EYES])), aim)]
     return np.asarray(places[int(np.argmin(ways.frames(places, start)))]) if len(places) else None
 
 
@@ -110,10 +107,10 @@ def fight(group: Sequence[Seat], stands: Mapping[int, Array], ways: Ways, start:
     left, order, walked = {seat.number: stands[seat.number] for seat in group}, list[int](), list[float]()
     here = start
     while left:
-        frames = ways.frames(here, np.stack(list(left.values())))
-        best = int(np.argmin(frames))
+        away = ways.frames(here, np.stack(list(left.values())))
+        best = int(np.argmin(away))
         order.append(list(left)[best])
-        walked.append(float(frames[best]))
+        walked.append(float(away[best]))
         here = left.pop(order[-1])
     jet, between = sum(costs.FLAME * seat.burning for seat in group), sum(walked[1:])
     frames = costs.FIGHT * len(group) + jet + between

@@ -29,7 +29,7 @@ class Judged:
         return Notion({index: self._mind.truth.values[index] for index in targets})
 
     def regret(self, notion: Notion) -> float:
-        """How much less the choice reaches than the best plan when the agent was asked, as a share of all value."""
+        """The share of all value by which the choice reaches less than the best plan when the agent was asked."""
         best = self._mind.best(self.seen, self._limits, notion)
         later = self._mind.best(self._now, self._limits, notion) if self.waited else best
         choice = self._choice(self._now, later, notion)
@@ -49,7 +49,7 @@ class Judged:
         return found
 
     def instead(self) -> str:
-        """What the best plan began with, at the pace at which the choice loses most, in words."""
+        """The beginning of the best plan in words, at the pace at which the choice loses most."""
         best = self._mind.best(self.seen, self._limits)
         choice = self._choice(self._now, best)
         lost = [b - c for b, c in zip(best, choice, strict=True)]

@@ -88,7 +88,7 @@ class Offers:
         lost = lost or (targets if self._mind.aim.carried_off else [])
         places = base.world.position[0, lost, :2].cpu().numpy().astype(np.float64).reshape(-1, 2)
         tools = tools_of(base, scene)
-        ends = [p for p in (*fights(base, places, here), *doors(base, places)) if tools or p.kind != OUT]
+        ends = [p for p in (*fights(base, scene, places, here), *doors(base, places)) if tools or p.kind != OUT]
         ends = ends[:MOST_FUTURES] if lost else []
         now = int(base.world.frame[0])
         each = [(p, row, k) for row, p in enumerate(ends, 1) for k in range(len(tools) if p.kind == OUT else 1)]

@@ -121,7 +121,7 @@ def _flames(stage: Stage, index: int) -> NDArray[np.float64]:
     flames, thing = _episode(stage).flames(), stage.labeller.thing(index)
     if flames is None:
         return np.zeros((0, 3))
-    middle = stage.position(thing) if thing >= 0 else stage.seen.objects[index].position
+    middle = np.asarray(stage.position(thing) if thing >= 0 else stage.seen.objects[index].position, np.float64)
     place = flames.place[0].cpu().numpy().astype(np.float64)
     near = flames.lit[0].cpu().numpy() & (np.hypot(*(place - middle)[:, :2].T) <= AROUND)
     return place[near][in_view(stage, place[near], middle)]

@@ -29,7 +29,7 @@ def in_view(stage: Stage, places: Array, aim: Array) -> NDArray[np.bool_]:
 
 
 def facing(places: Array, aim: Array, held: Array) -> Array:
-    """Where what is held is once the robot at each of `places` [m], [P, 2], faces `aim` [m], [3]: [P, 3].
+    """Places of what is held once the robot at each of `places` [m], [P, 2], faces `aim` [m], [3]: [P, 3].
 
     `held` [m], [3]: ahead of the middle of the base, to its left, and over the floor.
     """

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hazard_ms.agents.attempts import Attempts, Enclosure
+from hazard_ms.agents.attempts import Attempts, Enclosure, Repeats
 from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.agents.gale.truth import GaleTruth, hazard_of
 from hazard_ms.agents.mitigating.doing import Mitigator
@@ -74,7 +74,7 @@ class Oracle(PrivilegedAgent):
         self._truth.furniture = gale is not None
         fights = self._mitigates and brief.mitigations and not pushes(base.task.hazards)
         self._mitigator = Mitigator(self._truth, brief) if fights else None
-        self._enclosure = Enclosure()
+        self._enclosure, self._repeats = Enclosure(), Repeats(bool(brief.mitigations))
 
     def act(self, decision: Decision) -> Action:
         """The next action: the first step of the best plan from here on."""
@@ -87,6 +87,8 @@ class Oracle(PrivilegedAgent):
             self._judge(decision, self._truth)
         self._attempts.in_vain = self._in_vain(decision, self._truth)
         action = self._get_out(decision) if self._enclosure.noticed(decision) else self._choose(decision, self._truth)
+        if (other := self._repeats.instead(decision, action)) is not None:
+            action = self._say(self._repeats.note, other)
         self._before = (action, decision.agent_position)
         self._truth.reveal()
         return action
@@ -109,8 +111,7 @@ class Oracle(PrivilegedAgent):
                 return self._say(self._mitigator.note, action)
         if tool:
             return self._say("it is of no use any more", Action(DROP))
-        step = None if problem is None else self._next_rescue(decision, truth, targets, problem)
-        if step is None:
+        if problem is None or (step := self._next_rescue(decision, truth, targets, problem)) is None:
             return self._otherwise(decision, truth)
         self._search.leave()
         holding = decision.held is not None

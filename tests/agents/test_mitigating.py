@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator, Sequence
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -115,7 +116,8 @@ def test_a_fire_is_fought_from_where_the_jet_gets_to_it_and_the_nearest_first() 
     start = np.array([1.0, 2.0])
     behind = prospects.Seat(0, np.array([3.4, 0.5]), 1)  # beside the wall: within 3 m of the start, and hidden
     ahead_of = prospects.Seat(1, np.array([1.0, 3.5]), 1)
-    far, near = (prospects.view_of(world, ways, seat, start) for seat in (behind, ahead_of))
+    home: Any = SimpleNamespace(world=world)
+    far, near = (prospects.view_of(home, ways, seat, start) for seat in (behind, ahead_of))
     assert far is not None and near is not None
     x, y = far
     crosses = y + (0.5 - y) * (3.0 - x) / (3.4 - x)  # where the straight line to it meets the wall

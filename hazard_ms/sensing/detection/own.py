@@ -33,6 +33,7 @@ WIDEST = 0.3  # half the width of what can be carried: a mask that is wider show
 CART_WIDEST = 0.55  # the same for carts, which are 0.56 m by 0.94 m [m] [ours]
 MOST_THINGS = 512  # that are given names; scenes have up to 200 things [ours]
 LEAST, FORGET = 0.1, 0.03  # beliefs from which an agent is told of a track, and below which no more [ours]
+CART_LEAST, CART_FORGET = 0.4, 0.15  # the same of a cart, to which a way may be in vain with something in hand [ours]
 UNSURE = MOST_THINGS  # label of pixels that may be of something that can move
 
 
@@ -115,7 +116,7 @@ class OwnLabeller(DetectingLabeller):
 
     def _introduce(self, track: Track) -> None:
         """Give a track that was seen often enough its index: one of what was told if that is free, else a new one."""
-        if track.index >= 0 or track.frames < ENOUGH or track.refuted or track.belief < LEAST:
+        if track.index >= 0 or track.frames < ENOUGH or track.refuted or track.belief < self._limits(track)[0]:
             return
         free = [i for i, kind in enumerate(self._kinds) if kind == track.category and i not in self._by_index]
         if free:
@@ -141,7 +142,7 @@ class OwnLabeller(DetectingLabeller):
         sure = [*gone, *(t for t in self._tracker.tracks if t.rescued and t not in gone)]
         for track, category, belief in believed(self._tracker.tracks, sure, self._expected):
             track.belief = belief
-            if category != track.category or track.belief < FORGET:
+            if category != track.category or track.belief < self._limits(track)[1]:
                 self._drop(track)
             track.category = category
 
@@ -151,6 +152,11 @@ class OwnLabeller(DetectingLabeller):
             del self._by_index[track.index]
             self._lost.append(track.index)
         track.index = -1
+
+    def _limits(self, track: Track) -> tuple[float, float]:
+        """The beliefs from which an agent is told of a track, and below which no more."""
+        cart = self._carts and track.category == self._categories[self._carts[0]]
+        return (CART_LEAST, CART_FORGET) if cart else (LEAST, FORGET)
 
     def _is_cart(self, index: int) -> bool:
         """Whether the agent takes the thing `index` for a cart."""

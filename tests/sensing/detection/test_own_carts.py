@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hazard_ms.sensing.camera import STRUCTURE
 from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
 from hazard_ms.sensing.detection.own import OwnLabeller
+from hazard_ms.sensing.detection.tracks import Track
 from hazard_ms.sensing.view import View
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec
@@ -108,3 +109,15 @@ def test_there_are_as_many_names_as_carts_even_if_none_is_believed(labeller: Own
     for name in labeller.containers:
         labeller.missed(labeller.index(name))
     assert labeller.containers == ("cart#1", "cart#2")
+
+
+def test_nothing_is_brought_to_what_is_hardly_believed_to_be_a_cart(labeller: OwnLabeller) -> None:
+    """An agent that is told of every chance of a cart carries things past true ones to fences."""
+    look(labeller, 0, {10: 0.9})
+    (track,) = labeller._tracker.tracks
+    told = []
+    for category, belief in (("cart", 0.3), ("cart", 0.5), ("mug", 0.3)):
+        made = Track(category, track.sighting, frames=9, belief=belief)
+        labeller._introduce(made)
+        told.append(made.index >= 0)
+    assert told == [False, True, True]

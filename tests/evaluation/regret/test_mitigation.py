@@ -64,12 +64,12 @@ RESCUES = (Action(WALK_TO, "book_4"), Action(PICK_UP, "book_4"), Action(DROP), A
 def test_who_leaves_a_fire_that_could_be_put_out_loses_by_mitigation(ring: SkillEnv) -> None:
     """All eight books could be kept; two are, and six keep a half each: 5/8 is not lost.
 
-    By frame 160 it is too late for the fire, and with rescues alone four books burn: a quarter of the value is gone.
+    By frame 240 it is too late for the fire, and with rescues alone four books burn: a quarter of the value is gone.
     """
     found = judged(ring, Action(EXPLORE), *RESCUES)
     assert found.start == pytest.approx(1.0, abs=1e-5) and found.value == 5 / 8
     blamed = [row for row in found.decisions if row.cause == MITIGATION]
-    assert [(row.verb, row.target, row.unseen) for row in blamed] == [(PICK_UP, "book_4", 0.0)]
+    assert [(row.verb, row.target, row.unseen) for row in blamed] == [(PICK_UP, "book_3", 0.0)]
     assert blamed[0].regret == pytest.approx(4 * 0.5 / 8, abs=1e-5)
     assert f"nothing was done about the hazard, where it helps to fetch {TOOL}, put out fire 0" in blamed[0].evidence
     assert found.lost[MITIGATION] == pytest.approx(blamed[0].regret) and found.decisions[-1].cause == PLANNING

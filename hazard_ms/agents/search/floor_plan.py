@@ -122,7 +122,7 @@ class FloorPlan:
         return np.asarray(found, np.float64)
 
     def seen_at(self, point: Array) -> bool:
-        """Whether the cell of a `point` [m], [2], was seen and is no wall."""
+        """Whether the cell of a `point` [m], [2], was seen and is not a wall."""
         return bool(self._at(self._seen & ~self.wall, np.asarray(point)[None])[0])
 
     def ways_from(self, place: tuple[float, float]) -> Array:

@@ -159,7 +159,7 @@ class MeasureWorth:
         ]
 
     def _index(self, action: Action) -> int:
-        """Index along B of the target of an action; -1 where that is no thing."""
+        """Index along B of the target of an action; -1 where that is not a thing."""
         names = self._base.world.names[0]
         return names.index(action.target) if action.target in names else -1
 

@@ -26,7 +26,7 @@ from hazard_ms.perception.detectors.small import NETWORK, Small
 from hazard_ms.perception.detectors.small_network import SmallNetwork, features
 from hazard_ms.perception.detectors.weights import read_recipe, read_weights
 from hazard_ms.perception.training.pictures import Picture
-from hazard_ms.perception.training.student import Student, averaged, device, relit
+from hazard_ms.perception.training.student import AveragedStudent, device, relit
 
 # [ours], all of them
 RATE, WARM, DECAY, AVERAGE_DECAY = 3e-3, 200, 2e-2, 0.998  # rate, steps until it is reached, decay; as in small.py
@@ -43,8 +43,11 @@ LIGHT, TINT, CONTRAST = 0.3, 0.12, 0.25
 UNSURE = 0.06  # of the sizes that are told
 
 
-class SecondStageStudent(Student):
+class SecondStageStudent(AveragedStudent):
     """The network of the second stage, and the things that it learns from; the first stage stays as it is."""
+
+    average: SecondNetwork
+    decay = AVERAGE_DECAY
 
     def __init__(
         self,
@@ -82,8 +85,7 @@ class SecondStageStudent(Student):
         chances = np.sqrt((pixels / FULLY).clip(max=1.0)) / np.sqrt(count[self._kinds.numpy()])
         self._chances = np.cumsum(chances / chances.sum())
         self.network = SecondNetwork(len(self.classes) + 1).to(self._device)
-        self._average = copy.deepcopy(self.network).eval()
-        self._steps = 0
+        self.average = copy.deepcopy(self.network).eval()
         self.optimiser = torch.optim.AdamW(self.network.parameters(), RATE, weight_decay=DECAY)
 
     def losses(self, chance: np.random.Generator) -> Mapping[str, Tensor]:
@@ -98,29 +100,16 @@ class SecondStageStudent(Student):
     def pace(self, step: int, share: float) -> float:
         return RATE * min(1.0, (step + 1) / WARM) * 0.5 * (1.0 + math.cos(math.pi * min(share, 0.99)))
 
-    @torch.no_grad()
-    def learned(self) -> None:
-        self._steps += 1
-        averaged(self._average, self.network, min(AVERAGE_DECAY, (1 + self._steps) / (10 + self._steps)))
-
     def detector(self) -> Small:
-        return Small.of(copy.deepcopy(self._network), self.classes, copy.deepcopy(self._average))
+        return Small.of(copy.deepcopy(self._network), self.classes, copy.deepcopy(self.average))
 
     def weights(self) -> dict[str, Tensor]:
-        found = {f"{PREFIX}{name}": value for name, value in self._average.state_dict().items()}
+        found = {f"{PREFIX}{name}": value for name, value in self.average.state_dict().items()}
         found = {name: value.half() if value.ndim == 4 else value for name, value in found.items()}
         return {name: value.cpu().contiguous() for name, value in {**self._first, **found}.items()}
 
     def recipe(self) -> dict[str, Any]:
         return {"network": NETWORK, "classes": self.classes}
-
-    def state(self) -> dict[str, Any]:
-        return {**super().state(), "average": self._average.state_dict(), "steps": self._steps}
-
-    def resume(self, state: Mapping[str, Any]) -> None:
-        super().resume(state)
-        self._average.load_state_dict(state["average"])
-        self._steps = int(state["steps"])
 
 
 def gathered(

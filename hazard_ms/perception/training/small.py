@@ -18,7 +18,7 @@ from hazard_ms.perception.detectors.small_network import REACH, SCALE, SmallNetw
 from hazard_ms.perception.detectors.weights import read_recipe, read_weights
 from hazard_ms.perception.training.drawing import Drawing
 from hazard_ms.perception.training.pictures import Picture, classes_of, names_of
-from hazard_ms.perception.training.student import Student, averaged, device, half_precision, relit
+from hazard_ms.perception.training.student import AveragedStudent, device, half_precision, relit
 from hazard_ms.spec.catalogue import CATEGORIES
 
 # [ours], all of them
@@ -32,8 +32,11 @@ LIGHT, CONTRAST, TINT = 0.35, 0.3, 0.15  # by which crops are made brighter, sta
 CARTS = ("cart",)  # furniture that agents bring things to
 
 
-class SmallStudent(Student):
+class SmallStudent(AveragedStudent):
     """The small network, an average of its weights over the last steps, and the pictures that it learns from."""
+
+    average: SmallNetwork
+    decay = AVERAGE_DECAY
 
     def __init__(
         self,
@@ -63,8 +66,7 @@ class SmallStudent(Student):
         if weights is not None and recipe is None:
             begin(made, self.classes, weights)
         self.network = made.to(self._device).to(memory_format=torch.channels_last)
-        self._average = copy.deepcopy(made).eval()
-        self._steps = 0
+        self.average = copy.deepcopy(made).eval()
         self.optimiser = torch.optim.AdamW(made.parameters(), self._rate, weight_decay=DECAY)
 
     def losses(self, chance: np.random.Generator) -> Mapping[str, Tensor]:
@@ -94,28 +96,15 @@ class SmallStudent(Student):
     def pace(self, step: int, share: float) -> float:
         return self._rate * min(1.0, (step + 1) / WARM) * 0.5 * (1.0 + math.cos(math.pi * min(share, 0.99)))
 
-    @torch.no_grad()
-    def learned(self) -> None:
-        self._steps += 1
-        averaged(self._average, self.network, min(AVERAGE_DECAY, (1 + self._steps) / (10 + self._steps)))
-
     def detector(self) -> Small:
-        return Small.of(copy.deepcopy(self._average), self.classes)
+        return Small.of(copy.deepcopy(self.average), self.classes)
 
     def weights(self) -> dict[str, Tensor]:
-        found = self._average.state_dict()
+        found = self.average.state_dict()
         return {k: (v.half() if v.ndim == 4 else v).cpu().contiguous() for k, v in found.items()}
 
     def recipe(self) -> dict[str, Any]:
         return {"network": NETWORK, "classes": self.classes}
-
-    def state(self) -> dict[str, Any]:
-        return {**super().state(), "average": self._average.state_dict(), "steps": self._steps}
-
-    def resume(self, state: Mapping[str, Any]) -> None:
-        super().resume(state)
-        self._average.load_state_dict(state["average"])
-        self._steps = int(state["steps"])
 
 
 def of_things(right: Tensor, thing: Tensor) -> Tensor:

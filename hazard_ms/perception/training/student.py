@@ -56,6 +56,30 @@ class Student(abc.ABC):
         self.optimiser.load_state_dict(state["optimiser"])
 
 
+class AveragedStudent(Student):
+    """A student that tells what the average of its weights over the last steps would."""
+
+    average: torch.nn.Module  # of the network
+    decay: float  # share of the averaged weights that a step leaves
+    steps = 0
+
+    @torch.no_grad()
+    def learned(self) -> None:
+        """Move the average to the weights of now, the faster the fewer steps there were."""
+        self.steps += 1
+        kept = min(self.decay, (1 + self.steps) / (10 + self.steps))
+        for mean, now in zip(self.average.state_dict().values(), self.network.state_dict().values(), strict=True):
+            mean.copy_(torch.lerp(now, mean, kept) if mean.is_floating_point() else now)
+
+    def state(self) -> dict[str, Any]:
+        return {**super().state(), "average": self.average.state_dict(), "steps": self.steps}
+
+    def resume(self, state: Mapping[str, Any]) -> None:
+        super().resume(state)
+        self.average.load_state_dict(state["average"])
+        self.steps = int(state["steps"])
+
+
 def device() -> torch.device:
     """The processor on which networks learn: a GPU of NVIDIA's if there is one."""
     return torch.device("cuda" if torch.cuda.is_available() else "cpu")
@@ -70,13 +94,6 @@ def half_precision(where: torch.device) -> bool:
         return torch.cuda.is_bf16_supported(including_emulation=False)
     told: dict[str, bool] = getattr(torch.cpu, "get_capabilities", dict)()  # not in older versions of torch
     return any(told.get(name, False) for name in ("amx_bf16", "avx512_bf16"))
-
-
-@torch.no_grad()
-def averaged(mean: torch.nn.Module, now: torch.nn.Module, kept: float) -> None:
-    """Move the weights of `mean` to those of `now`, of which they keep the share `kept`; counts become those of now."""
-    for old, new in zip(mean.state_dict().values(), now.state_dict().values(), strict=True):
-        old.copy_(torch.lerp(new, old, kept) if old.is_floating_point() else new)
 
 
 def relit(colours: Tensor, chance: np.random.Generator, light: float, tint: float, contrast: float) -> Tensor:

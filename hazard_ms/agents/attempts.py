@@ -16,12 +16,8 @@ from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_ONE_STEP, WAL
 from hazard_ms.skills.failures import NO_PATH, UNFINISHED
 
 ENCLOSED = 2  # things to which there is no path, from which it is the robot that cannot get away [ours]
-COUNTED = (
-    WALK_TO,
-    WALK_ONE_STEP,
-    PICK_UP,
-    EXPLORE,
-)  # verbs whose failures agents count by themselves, or that have none
+# verbs whose failures agents count by themselves, or that have none
+COUNTED = (WALK_TO, WALK_ONE_STEP, PICK_UP, EXPLORE)
 FEW = 2  # failures of one action from one place, after which something else is done [ours]
 MANY = 4  # the same in tasks without mitigations, whose agents then have given up what they count [ours]
 HERE = 0.5  # distance up to which it is the same place [m] [ours]

@@ -150,7 +150,7 @@ def shown(picture: Picture, first: Small) -> Iterator[tuple[NDArray[np.bool_], i
     numbers = {name: k for k, name in enumerate(first.classes)}
     kinds = {number: numbers.get(name, len(numbers)) for number, name in names.items()}
     area = np.bincount(ids.ravel())
-    for number in np.flatnonzero(area)[1 if area[0] else 0 :].tolist():
+    for number in (1 + np.flatnonzero(area[1:])).tolist():
         yield ids == number, kinds.get(number, len(numbers))
     first.aim(picture.intrinsic(), picture.cam2world())
     for one in first.detect(picture.rgb(), picture.depth()):

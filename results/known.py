@@ -42,10 +42,10 @@ PARTS = {
 HEAD = """# What agents know
 
 Made by `./run python results/known.py`: tracks of the things that are to be rescued, and carts, after the ten pictures
-of each of {scenes} rooms and streets that the detector was not trained in; {things} such things were in sight of 512/120.
-A track is right if it is of a thing of its category, and no surer track is of the same. Average precision ranks the
-tracks by belief; without belief all count as sure. The errors that fusion goes by are counted in the other half of the
-scenes. `eyes`: 512/120 in place of 256/120; `detector`: its second stage. Written at
+of each of {scenes} rooms and streets that the detector was not trained in; {things} such things were in sight of
+512/120. A track is right if it is of a thing of its category, and no surer track is of the same. Average precision
+ranks the tracks by belief; without belief all count as sure. The errors that fusion goes by are counted in the other
+half of the scenes. `eyes`: 512/120 in place of 256/120; `detector`: its second stage. Written at
 {machine}.
 
 | parts | right | wrong | share of the things that are known | average precision | ECE |

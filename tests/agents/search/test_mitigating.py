@@ -20,6 +20,7 @@ from tests.worlds.playground import brief
 FLAME = (4.0, 1.0)  # [m]
 NAMES = ("box_1", "fire_extinguisher_1", "book_1", "book_2", "book_3")
 PLACES = ((4.2, 1.0), (0.5, 0.0), (5.0, 1.0), (4.0, 2.2), (5.0, -1.0))  # books around the box that burns
+WESTERN = ((-3.0, -2.0), (-3.6, -2.0), (-2.4, -2.0), (-3.0, -2.5), (-3.0, -1.2), (-3.6, -1.4), (-2.4, -1.4))
 SHUT = Action("shut", DOOR.name)
 LOOK = (Action(EXPLORE), Result(True, frames=60))
 
@@ -51,18 +52,37 @@ def decision(last: tuple[Action, Result] = LOOK, held: str | None = None, frame:
     )
 
 
-def on_fire(given: Decision) -> Decision:
-    """The same with a flame at FLAME, which heats the eastern room."""
+def on_fire(given: Decision, flames: Sequence[tuple[float, float]] = (FLAME,)) -> Decision:
+    """The same with flames, each of which heats its own room."""
     seen = given.map
+
+    def level(points: np.ndarray) -> np.ndarray:
+        away = np.stack([np.maximum(np.hypot(*(points - flame).T), 0.5) for flame in flames])
+        same = np.stack([(points[:, 0] > 2.0) == (flame[0] > 2.0) for flame in flames])
+        weight = np.where(same, (0.5 / away) ** 2, 0.0).max(axis=0)
+        return (20.0 + 600.0 * weight) / (1.0 + weight)
+
     y, x = np.nonzero(seen.explored)
-    points = seen.centre_of(y, x)
-    weight = (0.5 / np.maximum(np.hypot(*(points - FLAME).T), 0.5)) ** 2 * (points[:, 0] > 2.0)
-    seen.levels[0, y, x] = (20.0 + 600.0 * weight) / (1.0 + weight)
+    seen.levels[0, y, x] = level(seen.centre_of(y, x))
     for index, sighting in seen.objects.items():
-        away = max(float(np.hypot(*(sighting.position[:2] - FLAME))), 0.5)
-        level = (20.0 + 600.0 * (0.5 / away) ** 2) / (1.0 + (0.5 / away) ** 2) if sighting.position[0] > 2.0 else 20.0
-        seen.objects = {**seen.objects, index: replace(sighting, levels=(level,))}
+        told = (float(level(sighting.position[None, :2])[0]),)
+        seen.objects = {**seen.objects, index: replace(sighting, levels=told)}
     return given
+
+
+def with_more_in_the_west(given: Decision) -> Decision:
+    """The same with a box in the western room, and six dearer books around it."""
+    first = len(given.names)
+    names = (*given.names, "box_2", *(f"book_{k}" for k in range(4, 10)))
+    rows = {
+        first + k: Sighting(np.array([*place, 0.05], np.float32), 0.1, 0.1, given.frame, 50, (20.0,))
+        for k, place in enumerate(WESTERN)
+    }
+    given.map.loose = np.ones(len(names), bool)
+    given.map.objects = {**given.map.objects, **rows}
+    dear = tuple(Target(k, names[k], "book", 20.0, True, False, 200.0) for k in sorted(rows)[1:])
+    there = tuple(Action(WALK_TO, names[k]) for k in rows)
+    return replace(given, names=names, targets=(*given.targets, *dear), available=(*given.available, *there))
 
 
 def begun(who: str, told: Brief) -> Agent:
@@ -86,6 +106,19 @@ def test_it_fetches_an_extinguisher_and_puts_out_what_threatens_most(who: str) -
     out = decision((jet, Result(True, frames=150)), NAMES[1], 280)
     assert player.act(out) == Action(EXPLORE) and "still burns" in str(player.note)
     assert player.act(decision(LOOK, NAMES[1], 340)) == Action(DROP) and "of no use" in str(player.note)
+
+
+@pytest.mark.parametrize("who", ["planner", "mcts:simulations=200"])
+def test_what_was_begun_is_gone_on_with(who: str) -> None:
+    """It fetches an extinguisher for a fire, and puts that one out though another is found that it would begin with."""
+    player, fetch, take = begun(who, home()), Action(WALK_TO, NAMES[1]), Action(PICK_UP, NAMES[1])
+    assert player.act(on_fire(decision())) == fetch
+    assert player.act(on_fire(decision((fetch, Result(True, frames=20)), frame=80))) == take
+    jets = Action("extinguish", "box_1"), Action("extinguish", "box_2")
+    fresh = begun(who, home())
+    for each, last, jet in ((fresh, LOOK, jets[1]), (player, (take, Result(True, frames=50)), jets[0])):
+        held = on_fire(with_more_in_the_west(decision(last, NAMES[1], 130)), (FLAME, (-3.0, -1.8)))
+        assert each.act(replace(held, available=(*held.available, *jets))) == jet
 
 
 def test_without_mitigations_it_only_rescues() -> None:

@@ -3,8 +3,8 @@
 Every agent plays the first scenes, 25 by default, of each task's split `test` and sees through our small detector.
 Writes perceived.md beside this file, with the same agents' scores of scores.csv and the paper's; rows of what was
 played elsewhere stay.
-With `tables` alone it plays nothing. `parts [SCENES]` plays the first scenes, 5 by default, with each part of the track
-alone, with all and with none, and writes perceived_parts.md.
+With `tables` alone it plays nothing. `parts [TASK-AGENT...] [SCENES]` plays the first scenes, 5 by default, with each
+part of the track alone, with all and with none, and writes perceived_parts.md.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from results.tables import HERE, TASKS, evaluate, machine, results_in, value_of,
 
 RAW = HERE.parent / "build" / "perceived"
 AGENTS = ("random", "rule", "greedy", "mcts", "planner")
-DETECTOR, SCENES = "small", 25
+DETECTOR, SCENES, SCENES_OF_PARTS = "small", 25, 5
 # Value with perception in fire, flood and wind: Zhou et al. 2024, docs/benchmark.md section 4.1
 PAPER = {
     "greedy": (35.5, 21.5, 0.2),
@@ -120,35 +120,38 @@ def rows() -> str:
     return made
 
 
-def parts(scenes: int) -> None:
-    """Play the first `scenes` of each task with the parts of the track, and write their table."""
+def parts(names: list[str], scenes: int) -> None:
+    """Play the first `scenes` of the agents of tasks called `names` with the parts of the track; write their table."""
     text = PARTS_HEAD.format(scenes=scenes, machine=machine())
-    for task in TASKS:
-        for agent, without in DOUBTING.items():
-            none: dict[Episode, float] = {}
-            for number, (name, (perception, doubts)) in enumerate(PARTS.items()):
-                folder = RAW.parent / "perceived_parts" / str(number) / agent / task
-                who = agent if doubts else without
-                told = ("--split", "test", "--episodes", str(scenes), "--perception", perception, "--agents", who)
-                evaluate(task, folder, *told)
-                played = results_in(folder)
-                own = {(r.seed, r.scene): r.tally.value for r in played}
-                none = none or own
-                seconds = sum(r.wall_seconds for r in played) / len(played)
-                more = "-" if own == none and number == 0 else words(difference(own, none))
-                text += f"| {task} | {agent} | {name} | {words(value_of(played))} | {more} | {seconds:.0f} |\n"
-    (HERE / "perceived_parts.md").write_text(text, encoding="utf-8")
+    for task, _, agent in (name.partition("-") for name in names):
+        none: dict[Episode, float] = {}
+        for number, (name, (perception, doubts)) in enumerate(PARTS.items()):
+            folder = RAW.parent / "perceived_parts" / str(number) / agent / task
+            who = agent if doubts else DOUBTING[agent]
+            told = ("--split", "test", "--episodes", str(scenes), "--perception", perception, "--agents", who)
+            evaluate(task, folder, *told)
+            played = results_in(folder)
+            own = {(r.seed, r.scene): r.tally.value for r in played}
+            none = none or own
+            seconds = sum(r.wall_seconds for r in played) / len(played)
+            more = "-" if own == none and number == 0 else words(difference(own, none))
+            text += f"| {task} | {agent} | {name} | {words(value_of(played))} | {more} | {seconds:.0f} |\n"
+            (HERE / "perceived_parts.md").write_text(text, encoding="utf-8")
     print(text)
 
 
 def main(wanted: list[str]) -> None:
     """Play the agents called `wanted`, or all, and write the table. Raises ValueError for unknown names."""
-    if wanted[:1] == ["parts"]:
-        parts(int(wanted[1]) if len(wanted) > 1 else 5)
+    alone = wanted[:1] == ["parts"]
+    wanted = wanted[1:] if alone else wanted
+    agents = tuple(DOUBTING) if alone else AGENTS
+    names = [f"{task}-{agent}" for task in TASKS for agent in agents]
+    scenes = int(wanted.pop()) if wanted and wanted[-1].isdecimal() else SCENES_OF_PARTS if alone else SCENES
+    chosen = [] if wanted == ["tables"] else [one_of(each, names, "an agent of a task") for each in wanted] or names
+    if alone:
+        parts(chosen, scenes)
         return
-    names = [f"{task}-{agent}" for task in TASKS for agent in AGENTS]
-    scenes = int(wanted.pop()) if wanted and wanted[-1].isdecimal() else SCENES
-    for name in [] if wanted == ["tables"] else [one_of(each, names, "an agent of a task") for each in wanted] or names:
+    for name in chosen:
         task, _, agent = name.partition("-")
         play(task, agent, scenes)
     text = HEAD.format(machine=machine()) + rows() + OTHERS

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.perception.calibration.observing import Observed
-from hazard_ms.perception.calibration.telling import worth
+from hazard_ms.perception.calibration.telling import near, worth
 from hazard_ms.sensing.detection.confusion import Confusion
 from hazard_ms.sensing.detection.tracks import BEHIND
 from hazard_ms.sensing.view import View
@@ -47,13 +47,10 @@ def confusion_of(looks: Sequence[Observed], classes: Sequence[str], eyes: str, c
                 right[bucket, int(told != category)] += 1
             if told not in (NONE, category):
                 taken[category][told] += 1
-    again, steady, clutter = np.ones(2), np.ones(2), Counter[str]()
-    for place in _clutter(looks):
-        clutter[place.told[0]] += 1
-        for told in place.told[1:]:
-            again[int(told == NONE)] += 1
-            if told != NONE:
-                steady[int(told != place.told[0])] += 1
+    places = _clutter(looks)
+    clutter = Counter(place.told[0] for place in places)
+    again, steady = _repeats(places)
+    by_first = {name: _repeats([place for place in places if place.told[0] == name]) for name in sorted(clutter)}
     scenes = len({look.scene for look in looks})
     return Confusion(
         classes=tuple(classes),
@@ -64,11 +61,24 @@ def confusion_of(looks: Sequence[Observed], classes: Sequence[str], eyes: str, c
         clutter={k: round(n / scenes, DIGITS) for k, n in sorted(clutter.items())},
         again=_share(again),
         steady=_share(steady),
+        again_of={name: _share(near(own, again)) for name, (own, _) in by_first.items()},
+        steady_of={name: _share(near(own, steady)) for name, (_, own) in by_first.items()},
         seen=_share(ever),
         eyes=eyes,
         command=command,
         **worth(looks, classes),
     )
+
+
+def _repeats(places: Sequence[Clutter]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """How many later looks at `places` tell something, and not; and how many of the first tell the same, and not."""
+    again, steady = np.ones(2), np.ones(2)
+    for place in places:
+        for told in place.told[1:]:
+            again[int(told == NONE)] += 1
+            if told != NONE:
+                steady[int(told != place.told[0])] += 1
+    return again, steady
 
 
 def _share(counts: NDArray[np.float64]) -> float:

@@ -56,8 +56,10 @@ def observed(detector: Detector, pictures: Sequence[Thinned], classes: Sequence[
         for number, one in enumerate(found):
             labels[one.mask] = number
         seen = sightings(replace(view, labels=labels), frame, len(found), frozenset(), None)
-        told = []
+        told: list[Told] = []
+        of_told = np.full(ids.shape, STRUCTURE, np.int64)
         for number, sighting in seen.items():
+            of_told[labels == number] = len(told)
             under = ids[labels == number]
             thing, pixels = Counter(under.tolist()).most_common(1)[0]
             real = 2 * pixels > len(under) and thing in kinds
@@ -65,5 +67,6 @@ def observed(detector: Detector, pictures: Sequence[Thinned], classes: Sequence[
         numbers, counts = np.unique(ids, return_counts=True)
         shown = zip(numbers.tolist(), counts.tolist(), strict=True)
         visible = {number: pixels for number, pixels in shown if number in kinds and pixels >= SEEN_PIXELS}
-        made.append(Observed(f"{picture.picture.dataset.name}/{picture.scene}", view, tuple(told), visible, kinds))
+        scene, view = f"{picture.picture.dataset.name}/{picture.scene}", replace(view, labels=of_told)
+        made.append(Observed(scene, view, tuple(told), visible, kinds))
     return made

@@ -20,6 +20,7 @@ SHARPNESS = (0.3, 0.5, 0.7, 0.85, 1.0, 1.25, 1.5, 2.0, 3.0)  # that are tried [o
 EVEN = (0.01, 0.02, 0.05, 0.1, 0.2, 0.3)  # that are tried [ours]
 SURER = (0.0, 0.35, 0.5, 0.65, 0.8)  # least of each bucket of the largest chance [ours]
 DIGITS = 4  # of a share
+ALIKE = 10.0  # looks as which the shares of all categories count in that of one [ours]
 
 
 def worth(looks: Sequence[Observed], classes: Sequence[str]) -> dict[str, Any]:
@@ -33,13 +34,16 @@ def worth(looks: Sequence[Observed], classes: Sequence[str]) -> dict[str, Any]:
         return {}
     chances = np.array([each.chances for each, _ in real])
     true = np.array([classes.index(category) for _, category in real])
+    none = [each for each, category in told if category is None]
+    false, names = _counts(none), sorted({each.category for each in none})
     sharpness, even = max(product(SHARPNESS, EVEN), key=lambda pair: _likelihood(chances, true, *pair))
     return {
         "sharpness": sharpness,
         "even": even,
         "surer": SURER,
-        "real": _shares([each for each, _ in real]),
-        "false": _shares([each for each, category in told if category is None]),
+        "real": _rounded(_counts([each for each, _ in real])),
+        "false": _rounded(false),
+        "false_of": {name: _rounded(near(_counts([e for e in none if e.category == name]), false)) for name in names},
     }
 
 
@@ -48,8 +52,17 @@ def _likelihood(chances: NDArray[np.float64], true: NDArray[np.int64], sharpness
     return float(np.log(softened(chances, sharpness, even)[np.arange(len(true)), true]).mean())
 
 
-def _shares(told: Sequence[Told]) -> tuple[float, ...]:
-    """The share of the detections in each bucket of SURER."""
+def near(own: NDArray[np.float64], every: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The counts of a category beside ALIKE more that are shared out as those of `every` category."""
+    return own + ALIKE * every / every.sum()
+
+
+def _counts(told: Sequence[Told]) -> NDArray[np.float64]:
+    """One more than the number of detections in each bucket of SURER."""
     surest = [max(each.chances or (0.0,)) for each in told]
-    count = 1.0 + np.histogram(surest, (*SURER, np.inf))[0]
+    return 1.0 + np.histogram(surest, (*SURER, np.inf))[0]
+
+
+def _rounded(count: NDArray[np.float64]) -> tuple[float, ...]:
+    """The share of each bucket."""
     return tuple(round(float(share), DIGITS) for share in count / count.sum())

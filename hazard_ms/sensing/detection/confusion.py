@@ -19,7 +19,7 @@ from __future__ import annotations
 import functools
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
@@ -64,6 +64,9 @@ class Confusion:
     surer: Annotated[tuple[Share, ...], Within(0, 20)] = ()  # least of each bucket of the largest of them, the first 0
     real: Annotated[tuple[Share, ...], Within(0, 20)] = ()  # shares of the looks at things that are in these buckets
     false: Annotated[tuple[Share, ...], Within(0, 20)] = ()  # the same of looks at clutter
+    again_of: dict[Name, Share] = field(default_factory=dict)  # `again` of clutter that was first told as a category
+    steady_of: dict[Name, Share] = field(default_factory=dict)  # the same of `steady`
+    false_of: dict[Name, Annotated[tuple[Share, ...], Within(0, 20)]] = field(default_factory=dict)  # of `false`
     eyes: Name = "256/120"  # of the looks
     command: Annotated[str, Within(0, 1000)] = ""  # that measured it
 
@@ -76,6 +79,11 @@ class Confusion:
         if len(set(self.classes)) < len(self.classes):
             raise ValueError("classes must be different categories")
         named = {*self.taken, *(told for row in self.taken.values() for told in row), *self.clutter}
+        named |= {*self.again_of, *self.steady_of, *self.false_of}
+        if odd := [row for row in (self.real, self.false, *self.false_of.values()) if len(row) != len(self.surer)]:
+            raise ValueError(
+                f"real, false and false_of must have {len(self.surer)} buckets, as surer has, got {odd[0]}"
+            )
         if bad := sorted(named - set(self.classes)):
             raise ValueError(f"a category of the table must be one of its classes, got {bad[0]!r:.100}")
 
@@ -113,19 +121,21 @@ class Confusion:
 
     def likelihood(self, look: Look, first: str) -> NDArray[np.float64]:
         """The chance of a look for each category, and last for clutter that was `first` told so: [L + 1]."""
-        found, again, steady = _inside(self.found[self.bucket(look.pixels)]), _inside(self.again), _inside(self.steady)
+        found = _inside(self.found[self.bucket(look.pixels)])
+        again = _inside(self.again_of.get(first, self.again))
+        steady = _inside(self.steady_of.get(first, self.steady))
         if look.told is None:
             return np.append(np.full(len(self.classes), 1.0 - found), 1.0 - again)
         clutter = again * (steady if look.told == first else (1.0 - steady) / (len(self.classes) - 1))
-        real, false = self.sure(look)
+        real, false = self.sure(look, first)
         return np.append(found * real * self.told(look), false * clutter)
 
-    def sure(self, look: Look) -> tuple[float, float]:
-        """The chances that a look at a thing, and one at clutter, are as sure as this one, which tells something."""
+    def sure(self, look: Look, first: str) -> tuple[float, float]:
+        """The chances that a look at a thing, and one at clutter that was `first` told so, are as sure as this one."""
         if look.chances is None or not self.surer:
             return 1.0, 1.0
         number = bisect_right(self.surer, max(look.chances)) - 1
-        return _inside(self.real[number]), _inside(self.false[number])
+        return _inside(self.real[number]), _inside(self.false_of.get(first, self.false)[number])
 
     def posterior(self, looks: Sequence[Look], expected: Mapping[str, float], usual: float) -> NDArray[np.float64]:
         """The chance of each category, and last that it is none of them, [L + 1], after `looks` at one place.
@@ -135,7 +145,7 @@ class Confusion:
         first = looks[0].told
         assert first is not None
         there = np.array([expected.get(name, usual) for name in self.classes])
-        real, false = self.sure(looks[0])
+        real, false = self.sure(looks[0], first)
         weight = np.append(
             self.seen * there * real * self.told(looks[0]), false * max(self.clutter.get(first, 0.0), LEAST)
         )

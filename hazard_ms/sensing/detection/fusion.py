@@ -39,6 +39,15 @@ class Evidence:
         ):  # the first tells something
             self._looks[near] = look
 
+    def join(self, other: Evidence) -> None:
+        """Add the looks of `other` at the same thing: of those from about one place the one that tells most counts."""
+        every = zip(self._looks + other._looks, self._eyes + other._eyes, strict=True)
+        self._looks, self._eyes = [], []
+        for look, eye in sorted(every, key=lambda each: (each[0].told is None, -each[0].pixels)):
+            if not self._eyes or np.linalg.norm(np.array(self._eyes) - eye, axis=-1).min() >= APART:
+                self._looks.append(look)
+                self._eyes.append(eye)
+
     @property
     def looks(self) -> tuple[Look, ...]:
         """The looks that count, in their order."""

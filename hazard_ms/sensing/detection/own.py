@@ -19,7 +19,7 @@ from hazard_ms.sensing.camera import STRUCTURE
 from hazard_ms.sensing.detection.beliefs import believed
 from hazard_ms.sensing.detection.detector import Detector
 from hazard_ms.sensing.detection.labeller import DetectingLabeller, blank
-from hazard_ms.sensing.detection.tracks import ENOUGH, Found, Track, Tracker, surroundings
+from hazard_ms.sensing.detection.tracks import CART_WIDEST, ENOUGH, WIDEST, Found, Track, Tracker, surroundings
 from hazard_ms.sensing.observations import SLOTS
 from hazard_ms.sensing.sighting import sightings
 from hazard_ms.sensing.target_table import Target
@@ -29,8 +29,6 @@ from hazard_ms.spec.checks import one_of
 
 WITHIN = 0.35  # distance from where a thing is believed to be within which a hand finds what is there [m] [ours]
 CART_WITHIN = 1.0  # the same for carts, by their middles [m] [ours]
-WIDEST = 0.3  # half the width of what can be carried: a mask that is wider shows more than the thing [m] [ours]
-CART_WIDEST = 0.55  # the same for carts, which are 0.56 m by 0.94 m [m] [ours]
 MOST_THINGS = 512  # that are given names; scenes have up to 200 things [ours]
 LEAST, FORGET = 0.1, 0.03  # beliefs from which an agent is told of a track, and below which no more [ours]
 CART_LEAST, CART_FORGET = 0.4, 0.15  # the same of a cart, to which a way may be in vain with something in hand [ours]
@@ -110,7 +108,7 @@ class OwnLabeller(DetectingLabeller):
         labels = np.where(view.labels >= 0, index[np.maximum(view.labels, 0)], view.labels)
         for track in self._tracker.tracks:
             if track.loose and track not in out_of_sight and track.sighting.frame < self._frame:
-                window, near = surroundings(view, track.sighting)
+                window, near = surroundings(view, track)
                 labels[window] = np.where(near & (labels[window] == STRUCTURE), UNSURE, labels[window])
         return labels
 

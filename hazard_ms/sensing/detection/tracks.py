@@ -4,9 +4,9 @@ A detection goes on with a track of its category within GATE of where that was s
 is out of sight. Where that place is in view and empty, the thing has moved, and may be as far as it can drift. Of all
 ways to pair detections with tracks the one of the least summed distance is taken (Hungarian method).
 
-With the errors of the detector known, tracks are fused: a detection of another category within CLOSE goes on with a
-track, too, if none of its own does, and each track keeps the evidence of all looks at it, those that missed it among
-them.
+With the errors of the detector known, tracks are fused: a detection of another category within CLOSE, or whose mask
+covers where a thing was seen, goes on with a track, too, if none of its own does, and each track keeps the evidence of
+all looks at it, those that missed it among them. Two tracks of one category that one detection covers are one thing.
 """
 
 from __future__ import annotations
@@ -33,6 +33,8 @@ AROUND = 0.05  # by which a thing may reach beyond what was seen of it [m] [ours
 ENOUGH = 2  # frames in which a thing must be seen before it is believed [ours]
 GONE = 2  # frames in which its place must be seen empty before it is forgotten [ours]
 CLOSE = 0.2  # distance within which a thing of another category is the same one, told otherwise [m] [ours]
+WIDEST = 0.3  # half the width of what can be carried: a mask that is wider shows more than the thing [m] [ours]
+CART, CART_WIDEST = "cart", 0.55  # the same for carts, which are 0.56 m by 0.94 m [m] [ours]
 UNPAIRED = 1e6  # cost of a pair that cannot be: more than all distances of a scene together [m]
 
 
@@ -65,11 +67,17 @@ class Track:
         """Whether it can move."""
         return CATEGORIES[self.category].kind == "object"
 
+    @property
+    def radius(self) -> float:
+        """How far it reaches from its middle [m], by what was seen of it and what it can be."""
+        most = WIDEST if self.loose else CART_WIDEST if self.category == CART else float("inf")
+        return min(self.sighting.radius, most)
+
     def reach(self, frame: int) -> float:
         """Distance from where it was seen last within which it may be at `frame` [m]."""
         age = frame - self.sighting.frame
         if not self.loose:
-            return GATE + self.sighting.radius
+            return GATE + self.radius
         return GATE + (DRIFT * age if self.empty else min(UNSEEN_DRIFT * age, UNSEEN_MOST))
 
 
@@ -82,22 +90,29 @@ def seen_through(view: View, place: NDArray[np.floating]) -> bool:
     return bool(view.depth[row, column] == 0.0 or view.depth[row, column] > far + BEHIND)
 
 
-def surroundings(view: View, sighting: Sighting) -> tuple[tuple[slice, slice], NDArray[np.bool_]]:
+def surroundings(view: View, track: Track) -> tuple[tuple[slice, slice], NDArray[np.bool_]]:
     """The part of `view` around a thing where it was seen last, and which of its pixels, [R, C], may be of it."""
-    pixel = view.pixel_of(sighting.position)
+    pixel = view.pixel_of(track.sighting.position)
     if pixel is None:
         return (slice(0), slice(0)), np.zeros((0, 0), bool)
     row, column, far = pixel
-    reach = sighting.radius + AROUND
+    reach = track.radius + AROUND
     pixels = int(np.ceil(reach * max(view.intrinsic[0, 0], view.intrinsic[1, 1]) / far))
     window = slice(max(row - pixels, 0), row + pixels + 1), slice(max(column - pixels, 0), column + pixels + 1)
     return window, np.abs(view.depth[window] - far) < reach
 
 
-def pairs(tracks: Sequence[Track], found: Sequence[Found], frame: int, fused: bool = False) -> list[tuple[int, int]]:
+def pairs(
+    tracks: Sequence[Track],
+    found: Sequence[Found],
+    frame: int,
+    fused: bool = False,
+    covers: NDArray[np.bool_] | None = None,
+) -> list[tuple[int, int]]:
     """The pairs (track, detection) of the least summed distance, as indices.
 
-    A pair of two categories, where these are `fused`, counts as if it were farther apart than all of one.
+    A pair of two categories, where these are `fused`, counts as if it were farther apart than all of one. `covers`,
+    [T, D]: whether the mask of a detection covers where the thing of a track was seen, which then may be it from afar.
     """
     if not tracks or not found:
         return []
@@ -106,9 +121,10 @@ def pairs(tracks: Sequence[Track], found: Sequence[Found], frame: int, fused: bo
     cost = np.linalg.norm(old[:, None] - new[None], axis=-1)
     same = np.array([[track.category == each.category for each in found] for track in tracks])
     reach = np.array([track.reach(frame) for track in tracks])
-    close = ~same & (cost < CLOSE) & fused
-    far = ~same | (cost >= reach[:, None])
-    cost[close] += reach.max()
+    covered = np.zeros_like(same) if covers is None else covers
+    close = ~same & ((cost < CLOSE) | covered) & fused
+    far = ~same | ((cost >= reach[:, None]) & ~covered)
+    cost[close] += max(reach.max(), cost[~far].max(initial=0.0))
     cost[far & ~close] = UNPAIRED
     rows, columns = linear_sum_assignment(cost)
     return [(int(r), int(c)) for r, c in zip(rows, columns, strict=True) if cost[r, c] < UNPAIRED]
@@ -137,7 +153,10 @@ class Tracker:
                 track.empty += 1
         numbers = list(found)
         matched: dict[int, Track] = {}
-        for row, column in pairs(known, [found[n] for n in numbers], frame, self._confusion is not None):
+        fused = self._confusion is not None
+        over = covering(view, known) if fused else {}
+        covers = np.array([[over.get(track) == n for n in numbers] for track in known], bool)
+        for row, column in pairs(known, [found[n] for n in numbers], frame, fused, covers):
             track, seen = known[row], found[numbers[column]].sighting
             track.frames += track.sighting.frame < frame
             track.sighting, track.empty = merged(track.sighting, seen), 0
@@ -146,16 +165,17 @@ class Tracker:
             if number not in matched:
                 matched[number] = Track(found[number].category, found[number].sighting)
                 self.tracks.append(matched[number])
-        if self._confusion is not None:
-            self._look(view, frame, known, {n: (found[n], track) for n, track in matched.items()})
-        lost = [track for track in known if track.empty >= GONE and track.loose]
+        twice: list[Track] = []
+        if fused:
+            self._look(view, known, {n: (found[n], track) for n, track in matched.items()})
+            twice = self._join(over, matched)
+        lost = [track for track in self.tracks if track in twice or (track.empty >= GONE and track.loose)]
         self.tracks = [track for track in self.tracks if track not in lost]
         return matched, lost
 
     def _look(
         self,
         view: View,
-        frame: int,
         known: Sequence[Track],
         told: Mapping[int, tuple[Found, Track]],
     ) -> None:
@@ -173,15 +193,48 @@ class Tracker:
                 track.evidence.look(look, eye)
         found = [track for _, track in told.values()]
         for track in known:
-            if track.evidence is not None and track not in found and shows(view, track.sighting):
+            if track.evidence is not None and track not in found and shows(view, track):
                 pixels = track.size / float(np.sum((track.sighting.position - eye) ** 2))
                 track.evidence.look(Look(None, pixels), eye)
 
+    def _join(self, over: Mapping[Track, int], matched: dict[int, Track]) -> list[Track]:
+        """Make one of each two tracks of one category that a detection covers; returns those that are given up.
 
-def shows(view: View, sighting: Sighting) -> bool:
+        `over`: the detection that covers each track; `matched`: the track of each, which is changed to the one kept.
+        """
+        gone = []
+        found = set(matched.values())
+        for track, number in over.items():
+            other = matched.get(number)
+            if other is None or track in found or other.category != track.category:
+                continue
+            if any(each.evidence is None or each.refuted or each.rescued for each in (track, other)):
+                continue
+            kept, left = (other, track) if other.index >= 0 or track.index < 0 else (track, other)
+            assert kept.evidence is not None and left.evidence is not None
+            kept.evidence.join(left.evidence)
+            kept.sighting, kept.size, kept.empty = other.sighting, other.size, 0
+            kept.frames, kept.score = max(track.frames, other.frames), max(track.score, other.score)
+            matched[number] = kept
+            gone.append(left)
+        return gone
+
+
+def covering(view: View, tracks: Sequence[Track]) -> dict[Track, int]:
+    """The detection that covers where the thing of each of `tracks` was seen; a `view` has their numbers as labels."""
+    made: dict[Track, int] = {}
+    for track in tracks if view.labels is not None else ():
+        assert view.labels is not None
+        pixel = view.pixel_of(track.sighting.position)
+        if pixel is not None and view.labels[pixel[:2]] >= 0 and shows(view, track):
+            made[track] = int(view.labels[pixel[:2]])
+    return made
+
+
+def shows(view: View, track: Track) -> bool:
     """Whether `view` shows what is where a thing was seen last: nothing is before it, and something is there."""
-    pixel = view.pixel_of(sighting.position)
+    pixel = view.pixel_of(track.sighting.position)
     if pixel is None:
         return False
     row, column, far = pixel
-    return bool(abs(float(view.depth[row, column]) - far) < sighting.radius + BEHIND)
+    return bool(abs(float(view.depth[row, column]) - far) < track.radius + BEHIND)

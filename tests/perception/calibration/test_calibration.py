@@ -54,6 +54,19 @@ def test_the_errors_are_those_by_hand() -> None:
     assert (made.eyes, made.command) == ("100/90", "by hand")
 
 
+def test_clutter_of_each_category_counts_beside_ten_looks_of_all() -> None:
+    """The book that is none is told three times more, the last time a mug; the bowl that is none is missed by all."""
+    other = (2.0, 1.5, 1.0)
+    looks = [picture(told("book", NOTHING), told("bowl", other))]
+    looks += [picture(told(category, NOTHING)) for category in ("book", "book", "mug")]
+    made = confusion_of(looks, CLASSES, "", "")
+    assert (made.again, made.steady) == (0.5, 0.6)  # 1 + 3 of 2 + 6; 1 + 2 of 2 + 3
+    # 1 + 3 of 2 + 3 looks and 5 of 10; 1 + 0 of 2 + 3 and 5 of 10
+    assert made.again_of == {"book": pytest.approx(9 / 15, abs=1e-4), "bowl": pytest.approx(6 / 15, abs=1e-4)}
+    # 1 + 2 of 2 + 3 and 6 of 10; none but the 1 of 2
+    assert made.steady_of == {"book": pytest.approx(9 / 15, abs=1e-4), "bowl": pytest.approx(7 / 12, abs=1e-4)}
+
+
 def test_clutter_is_counted_by_scene() -> None:
     looks = [picture(told("book", NOTHING)), picture(told("book", NOTHING), scene="two"), picture(scene="three")]
     assert confusion_of(looks, CLASSES, "", "").clutter == {"book": pytest.approx(2 / 3, abs=1e-4)}

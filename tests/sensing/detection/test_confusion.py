@@ -72,6 +72,20 @@ def test_a_surer_look_tells_more_against_clutter() -> None:
         assert table.posterior(looks, ONE_MUG, 0.0)[0] == pytest.approx(mug / (mug + clutter))
 
 
+def test_clutter_that_looks_like_one_category_again_and_again_has_shares_of_its_own() -> None:
+    """Fences are taken for carts by every look; what is first told another category keeps the shares of all."""
+    table = replace(TABLE, surer=(0.0, 0.5), real=(0.3, 0.7), false=(0.9, 0.1))
+    own = replace(table, again_of={"mug": 0.9}, steady_of={"mug": 0.95}, false_of={"mug": (0.4, 0.6)})
+    looks = [Look("mug", 50, (0.5, 0.0, 0.0)), Look("mug", 200, (0.5, 0.0, 0.0))]
+    mug, clutter = 0.3 * 0.7 * 0.8 * 0.9 * 0.7, 0.6 * 0.9 * 0.95 * 0.6
+    assert own.posterior(looks, ONE_MUG, 0.0)[0] == pytest.approx(mug / (mug + clutter))
+    missed = [looks[0], Look(None, 200)]
+    mug, clutter = 0.3 * 0.7 * 0.2, 0.6 * 0.1
+    assert own.posterior(missed, ONE_MUG, 0.0)[0] == pytest.approx(mug / (mug + clutter))
+    other = replace(own, again_of={"bowl": 0.9}, steady_of={"bowl": 0.95}, false_of={"bowl": (0.4, 0.6)})
+    assert other.posterior(looks, ONE_MUG, 0.0).tolist() == table.posterior(looks, ONE_MUG, 0.0).tolist()
+
+
 def test_what_is_often_taken_for_another_is_believed_to_be_it() -> None:
     """Two of two errors at a bowl told a mug; smoothed by half a look each: 2.5 of 3. No clutter but the least."""
     table = replace(TABLE, clutter={})
@@ -134,6 +148,9 @@ def test_beliefs_by_a_known_detector_are_so() -> None:
         ({"pixels": (1, 2)}, "pixels must increase from 0"),
         ({"clutter": {"cup": 1.0}}, "a category of the table must be one of its classes, got 'cup'"),
         ({"taken": {"mug": {"cup": 1.0}}}, "must be one of its classes, got 'cup'"),
+        ({"again_of": {"cup": 1.0}}, "must be one of its classes, got 'cup'"),
+        ({"surer": (0.0, 0.5), "real": (0.3, 0.7), "false": (1.0,)}, "real, false and false_of must have 2 buckets"),
+        ({"false_of": {"mug": (1.0,)}}, "real, false and false_of must have 0 buckets"),
         ({"classes": ("mug", "bowl", "book", "mug")}, "classes must be different"),
         ({"again": 1.5}, "confusion.again must be a number from 0 to 1, got 1.5"),
         ({"found": (0.5, "much")}, r"confusion.found\[1\] must be a number"),

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hazard_ms.sensing.camera import STRUCTURE
 from hazard_ms.sensing.detection.beliefs import believed, shared
 from hazard_ms.sensing.detection.confusion import Look
 from hazard_ms.sensing.detection.fusion import Evidence, category_of
@@ -76,6 +77,69 @@ def test_what_a_detector_gives_itself_goes_into_the_evidence() -> None:
     tracker = Tracker(TABLE)
     ((_, track),) = tracker.update(view(2.1), 0, {0: Found("mug", seen(2.0, 0.0, 0), (0.5, 0.3, 0.1))})[0].items()
     assert track.evidence is not None and track.evidence.looks == (Look("mug", 50, (0.5, 0.3, 0.1)),)
+
+
+def covered(columns: slice = slice(40, 55)) -> View:
+    """A wall close behind things that were 2 m away, seen from 0.6 m farther ahead; some pixels are of detection 0."""
+    made = moved(1.5)
+    labels = np.full(made.depth.shape, STRUCTURE, np.int64)
+    labels[45:55, columns] = 0
+    return replace(made, labels=labels)
+
+
+def test_two_tracks_of_a_category_that_one_detection_covers_are_one_thing() -> None:
+    """Two mugs at 2 m, 0.2 m apart, are 7 pixels apart at 1.4 m: both are in the mask of the one mug that is there."""
+    tracker = Tracker(TABLE)
+    far = {n: Found("mug", seen(2.0, y, 0)) for n, y in enumerate((0.0, 0.2))}
+    first, second = tracker.update(view(2.1), 0, far)[0].values()
+    second.index = 5
+    near = Found("mug", replace(seen(2.0, 0.01, 1), pixels=150))
+    matched, lost = tracker.update(covered(), 1, {0: near})
+    assert matched == {0: second} and tracker.tracks == [second] and lost == [first], "the one that the agent knows"
+    assert second.evidence is not None and second.evidence.looks == (Look("mug", 150), Look("mug", 50))
+    assert second.sighting.position[1] == pytest.approx(0.01)
+
+
+def test_what_is_beside_a_detection_or_refuted_or_of_another_category_is_another_thing() -> None:
+    for category, columns, refuted in (
+        ("mug", slice(48, 55), False),
+        ("mug", slice(40, 55), True),
+        ("bowl", slice(40, 55), False),
+    ):
+        tracker = Tracker(TABLE)
+        far = {0: Found("mug", seen(2.0, 0.0, 0)), 1: Found(category, seen(2.0, 0.2, 0))}
+        first, second = tracker.update(view(2.1), 0, far)[0].values()
+        second.refuted = refuted
+        matched, lost = tracker.update(covered(columns=columns), 1, {0: Found("mug", seen(2.0, 0.01, 1))})
+        assert matched == {0: first} and tracker.tracks == [first, second] and lost == []
+        assert second.evidence is not None and second.evidence.looks[-1].told is None, "it was missed"
+
+
+def test_a_detection_whose_mask_covers_a_place_goes_on_with_its_track_from_farther_away() -> None:
+    tracks = [Track("mug", seen(2.0, 0.0, 0)), Track("bowl", seen(2.0, 0.0, 0))]
+    one = [Found("mug", seen(2.0, GATE + 0.1, 1))]
+    covers = np.ones((2, 1), bool)
+    assert pairs(tracks, one, 1, fused=True) == []
+    assert pairs(tracks, one, 1, fused=True, covers=covers) == [(0, 0)], "rather with that of its category"
+    assert pairs(tracks[1:], one, 1, fused=True, covers=covers[1:]) == [(0, 0)]
+
+
+def test_of_joined_looks_from_one_place_those_that_tell_count_and_of_these_the_one_with_the_most_pixels() -> None:
+    mine, other = (Evidence(TABLE, Look("mug", pixels), HERE) for pixels in (20, 30))
+    mine.look(Look(None, 90), ELSEWHERE)
+    other.look(Look("bowl", 10), ELSEWHERE)
+    other.look(Look(None, 5), 2.0 * ELSEWHERE + HERE)
+    mine.join(other)
+    assert mine.looks == (Look("mug", 30), Look("bowl", 10), Look(None, 5))
+
+
+def test_a_mask_that_is_wider_than_a_thing_can_be_does_not_make_it_reach_farther() -> None:
+    """A cart reaches 0.55 m from its middle, what can be carried 0.3 m; furniture as far as was seen of it."""
+    for category, reach in (("cart", 0.55), ("mug", 0.3), ("table", 5.0)):
+        assert Track(category, seen(2.0, 0.0, 0, radius=5.0)).radius == reach
+    cart = [Track("cart", seen(2.0, 0.0, 0, radius=5.0))]
+    assert pairs(cart, [Found("cart", seen(2.0, GATE + 0.56, 1))], 1) == []
+    assert pairs(cart, [Found("cart", seen(2.0, GATE + 0.54, 1))], 1) == [(0, 0)]
 
 
 def test_without_errors_that_are_known_nothing_is_weighed() -> None:

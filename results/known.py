@@ -16,7 +16,7 @@ from typing import Any
 
 from hazard_ms.perception.calibration.measuring import confusion_of
 from hazard_ms.perception.calibration.observing import Observed, observed
-from hazard_ms.perception.calibration.reliability import ece
+from hazard_ms.perception.calibration.reliability import ece, weight_of_repeats
 from hazard_ms.perception.calibration.thinned import Thinned
 from hazard_ms.perception.detectors.small import Small
 from hazard_ms.perception.training.pictures import read
@@ -101,7 +101,7 @@ def crossed(looks: Sequence[Observed], classes: list[str], fuses: bool, weighs: 
     made, things = [], 0
     for half in (0, 1):
         others = [look for number, mine in enumerate(scenes) for look in mine if number % 2 != half]
-        errors = confusion_of(others, classes, "", "") if fuses else None
+        errors = confusion_of(others, classes, "", "", weight_of_repeats(others, classes)) if fuses else None
         for mine in scenes[half::2]:
             told, seen = outcomes(mine, errors, weighs)
             made, things = made + told, things + seen

@@ -13,7 +13,7 @@ from hazard_ms.machine.files import write
 from hazard_ms.perception import layout
 from hazard_ms.perception.calibration.measuring import confusion_of
 from hazard_ms.perception.calibration.observing import observed
-from hazard_ms.perception.calibration.reliability import crossed, table
+from hazard_ms.perception.calibration.reliability import crossed, table, weight_of_repeats
 from hazard_ms.perception.calibration.thinned import Thinned
 from hazard_ms.perception.training.pictures import read
 from hazard_ms.sensing.detection.perception import perception as perception_of
@@ -40,10 +40,11 @@ def calibrate(datasets: Sequence[Path], text: str, splits: Sequence[str], every:
     looks = observed(detector, pictures, detector.classes)
     command = f"hazard-ms perception calibrate {' '.join(home.name for home in datasets)} --perception {text}"
     command += f" --split {' '.join(splits)} --every {every}"
-    made = confusion_of(looks, detector.classes, eyes_of(pictures[0]), command)
+    repeated = weight_of_repeats(looks, detector.classes)
+    made = confusion_of(looks, detector.classes, eyes_of(pictures[0]), command, repeated)
     if output is not None:
         write(output, json.dumps(asdict(made), indent=1) + "\n")
-    return table(crossed(looks, detector.classes))
+    return table(crossed(looks, detector.classes, repeated))
 
 
 def eyes_of(picture: Thinned) -> str:

@@ -32,8 +32,13 @@ class Clutter:
     told: list[str] = field(default_factory=list)  # NONE for a look that missed it
 
 
-def confusion_of(looks: Sequence[Observed], classes: Sequence[str], eyes: str, command: str) -> Confusion:
-    """The table of what was told; each share is as after two more looks, of which one went well."""
+def confusion_of(
+    looks: Sequence[Observed], classes: Sequence[str], eyes: str, command: str, repeated: float = 1.0
+) -> Confusion:
+    """The table of what was told; each share is as after two more looks, of which one went well.
+
+    `repeated`: the exponent of what looks after the first tell.
+    """
     found, right, ever = np.ones((len(BUCKETS), 2)), np.ones((len(BUCKETS), 2)), np.ones(2)  # well, not well
     taken: dict[str, Counter[str]] = defaultdict(Counter)
     for seen in _things(looks).values():
@@ -64,6 +69,7 @@ def confusion_of(looks: Sequence[Observed], classes: Sequence[str], eyes: str, c
         again_of={name: _share(near(own, again)) for name, (own, _) in by_first.items()},
         steady_of={name: _share(near(own, steady)) for name, (_, own) in by_first.items()},
         seen=_share(ever),
+        repeated=repeated,
         eyes=eyes,
         command=command,
         **worth(looks, classes),

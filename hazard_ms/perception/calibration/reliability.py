@@ -15,6 +15,8 @@ from hazard_ms.sensing.detection.confusion import Confusion
 from hazard_ms.sensing.detection.tracks import Found, Track, Tracker
 
 BINS = 10  # of beliefs, from 0 to 1 [ours]
+REPEATED = (0.3, 0.5, 0.7, 1.0)  # exponents of looks after the first that are tried [ours]
+TINY = 1e-3  # no chance counts as smaller where beliefs are compared [ours]
 Outcome = tuple[float, bool]  # the belief in a track, and whether it was right
 
 
@@ -41,16 +43,30 @@ def outcomes(looks: Sequence[Observed], confusion: Confusion) -> list[Outcome]:
     return made
 
 
-def crossed(looks: Sequence[Observed], classes: Sequence[str]) -> list[Outcome]:
-    """The outcomes of each half of the scenes by the errors that were counted in the other half."""
+def crossed(looks: Sequence[Observed], classes: Sequence[str], repeated: float = 1.0) -> list[Outcome]:
+    """The outcomes of each half of the scenes by the errors that were counted in the other half.
+
+    `repeated`: the exponent of what looks after the first tell.
+    """
     numbers: dict[str, int] = defaultdict(lambda: len(numbers))
     half = [numbers[look.scene] % 2 for look in looks]
     made: list[Outcome] = []
     for own in (0, 1):
         mine = [look for look, each in zip(looks, half, strict=True) if each == own]
         others = [look for look, each in zip(looks, half, strict=True) if each != own]
-        made += outcomes(mine, confusion_of(others, classes, "", ""))
+        made += outcomes(mine, confusion_of(others, classes, "", "", repeated))
     return made
+
+
+def weight_of_repeats(looks: Sequence[Observed], classes: Sequence[str]) -> float:
+    """The exponent of REPEATED by which what was found right and wrong in `looks` is likeliest."""
+    return max(REPEATED, key=lambda repeated: _likelihood(crossed(looks, classes, repeated)))
+
+
+def _likelihood(found: Sequence[Outcome]) -> float:
+    """The mean logarithm of the chance that was given to what is so."""
+    chances = [belief if right else 1.0 - belief for belief, right in found]
+    return float(np.log(np.maximum(chances, TINY)).mean()) if chances else 0.0
 
 
 def table(found: Sequence[Outcome]) -> str:

@@ -67,6 +67,7 @@ class Confusion:
     again_of: dict[Name, Share] = field(default_factory=dict)  # `again` of clutter that was first told as a category
     steady_of: dict[Name, Share] = field(default_factory=dict)  # the same of `steady`
     false_of: dict[Name, Annotated[tuple[Share, ...], Within(0, 20)]] = field(default_factory=dict)  # of `false`
+    repeated: Share = 1.0  # exponent of what each look after the first tells: looks at one thing err alike
     eyes: Name = "256/120"  # of the looks
     command: Annotated[str, Within(0, 1000)] = ""  # that measured it
 
@@ -150,7 +151,7 @@ class Confusion:
             self.seen * there * real * self.told(looks[0]), false * max(self.clutter.get(first, 0.0), LEAST)
         )
         for look in looks[1:]:
-            weight = weight * self.likelihood(look, first)
+            weight = weight * self.likelihood(look, first) ** self.repeated
         chances: NDArray[np.float64] = weight / weight.sum()
         return chances
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import pytest
 
 from hazard_ms.perception.calibration.measuring import confusion_of
 from hazard_ms.perception.calibration.observing import Observed, Told
-from hazard_ms.perception.calibration.reliability import crossed, ece, outcomes, table
+from hazard_ms.perception.calibration.reliability import crossed, ece, outcomes, table, weight_of_repeats
 from hazard_ms.perception.calibration.thinned import Thinned
 from hazard_ms.perception.detectors.small import CONFUSION, SHIPPED, Small
 from hazard_ms.perception.training.pictures import Picture
@@ -65,6 +66,26 @@ def test_clutter_of_each_category_counts_beside_ten_looks_of_all() -> None:
     assert made.again_of == {"book": pytest.approx(9 / 15, abs=1e-4), "bowl": pytest.approx(6 / 15, abs=1e-4)}
     # 1 + 2 of 2 + 3 and 6 of 10; none but the 1 of 2
     assert made.steady_of == {"book": pytest.approx(9 / 15, abs=1e-4), "bowl": pytest.approx(7 / 12, abs=1e-4)}
+
+
+def places(lies: Sequence[int], truths: Sequence[int]) -> list[Observed]:
+    """Pictures from four places of each of eight scenes: in so many of them nothing is told a mug, and the mug is."""
+    made = []
+    for scene in range(8):
+        for place in range(4):
+            found = [told("mug", MUG, 1)] if place < truths[scene % len(truths)] else []
+            found += [told("mug", NOTHING)] if place < lies[scene % len(lies)] else []
+            pose = view().cam2world.copy()
+            pose[0, 3] = -0.6 * place  # farther apart than looks that count as one
+            seen = replace(view(2.0 + 0.6 * place), cam2world=pose)
+            made.append(Observed(str(scene), seen, tuple(found), {1: 50, 2: 200}, KINDS))
+    return made
+
+
+def test_looks_that_err_alike_count_less() -> None:
+    """In some scenes nothing is told a mug in every look, and in the others hardly; else looks err each in its way."""
+    assert weight_of_repeats(places(lies=(4, 4, 1, 1), truths=(2, 1)), CLASSES) == 0.3
+    assert weight_of_repeats(places(lies=(1,), truths=(4,)), CLASSES) == 1.0
 
 
 def test_clutter_is_counted_by_scene() -> None:

@@ -86,6 +86,14 @@ def test_clutter_that_looks_like_one_category_again_and_again_has_shares_of_its_
     assert other.posterior(looks, ONE_MUG, 0.0).tolist() == table.posterior(looks, ONE_MUG, 0.0).tolist()
 
 
+def test_looks_after_the_first_count_as_much_as_is_measured() -> None:
+    table = replace(TABLE, repeated=0.5)
+    mug, clutter = 0.3 * (0.8 * 0.9) ** 0.5, (0.25 * 0.8) ** 0.5
+    looks = [Look("mug", 50), Look("mug", 200)]
+    assert table.posterior(looks, ONE_MUG, 0.0)[0] == pytest.approx(mug / (mug + clutter))
+    assert table.posterior(looks[:1], ONE_MUG, 0.0)[0] == pytest.approx(0.3 / 1.3)
+
+
 def test_what_is_often_taken_for_another_is_believed_to_be_it() -> None:
     """Two of two errors at a bowl told a mug; smoothed by half a look each: 2.5 of 3. No clutter but the least."""
     table = replace(TABLE, clutter={})

@@ -2,7 +2,7 @@
 
 Every agent plays the first scenes, 25 by default, of each task's split `test` and sees through our small detector.
 Writes perceived.md beside this file, with the same agents' scores of scores.csv and the paper's; rows of what was
-played elsewhere stay.
+played elsewhere stay, but for those of an earlier track, which are to be deleted there.
 With `tables` alone it plays nothing. `parts [TASK-AGENT...] [SCENES]` plays the first scenes, 5 by default, with each
 part of the track alone, with all and with none, and writes perceived_parts.md.
 """
@@ -61,11 +61,12 @@ HEAD = """# With perception
 Made by `./run python results/perceived.py`. Agents see through `--perception small`: segmentation is withheld, things
 are found by the package's detector and followed by tracks of our own. First scenes of `test`, Fetch, presets `paper`.
 Values are in percent, with 95 % bootstrap intervals over scenes; "less the truth" is the difference from the same
-agent that is told what its camera sees, paired by episode (results/README.md). A dash: not played. Written at
+agent that is told what its camera sees, paired by episode (results/README.md). A dash: not played. Episodes take the
+time of one core of two that are busy. Written at
 {machine}.
 
-| task | agent | Value | less the truth | Step | Damage | episodes |
-|---|---|---|---|---|---|---|
+| task | agent | Value | less the truth | Step | Damage | s an episode | episodes |
+|---|---|---|---|---|---|---|---|
 """
 OTHERS = """
 The paper's agents with its own detector (Mask R-CNN, tuned on pictures of its training scenes), in the original's
@@ -99,7 +100,8 @@ def row(task: str, agent: str, results: list[EpisodeResult]) -> str:
     step, damage = (every[name].mean for name in ("step", "damage"))
     less = words(difference(own, truth)) if set(own) & set(truth) else "-"
     cells = [words(value_of(results)), less, "-" if step is None else f"{step:.0f}"]
-    cells += ["-" if damage is None else f"{100 * damage:.1f}", str(len(results))]
+    seconds = sum(result.wall_seconds for result in results) / len(results)
+    cells += ["-" if damage is None else f"{100 * damage:.1f}", f"{seconds:.0f}", str(len(results))]
     return f"| {task} | {agent} | {' | '.join(cells)} |\n"
 
 

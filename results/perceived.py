@@ -61,8 +61,8 @@ HEAD = """# With perception
 Made by `./run python results/perceived.py`. Agents see through `--perception small`: segmentation is withheld, things
 are found by the package's detector and followed by tracks of our own. First scenes of `test`, Fetch, presets `paper`.
 Values are in percent, with 95 % bootstrap intervals over scenes; "less the truth" is the difference from the same
-agent that is told what its camera sees, paired by episode (results/README.md). A dash: not played. Episodes take the
-time of one core of two that are busy. Written at
+agent that is told what its camera sees, paired by episode (results/README.md). A dash: not played. An episode has one
+of two busy cores. Written at
 {machine}.
 
 | task | agent | Value | less the truth | Step | Damage | s an episode | episodes |

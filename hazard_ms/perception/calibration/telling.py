@@ -53,7 +53,7 @@ def _likelihood(chances: NDArray[np.float64], true: NDArray[np.int64], sharpness
 
 
 def near(own: NDArray[np.float64], every: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The counts of a category beside ALIKE more that are shared out as those of `every` category."""
+    """The counts of its `own`, [M], beside ALIKE more that are shared out as those of `every` category, [M]."""
     return own + ALIKE * every / every.sum()
 
 

@@ -69,7 +69,7 @@ class Track:
 
     @property
     def radius(self) -> float:
-        """How far it reaches from its middle [m], by what was seen of it and what it can be."""
+        """The distance from its middle within which the thing lies [m], by what was seen of it and what it can be."""
         most = WIDEST if self.loose else CART_WIDEST if self.category == CART else float("inf")
         return min(self.sighting.radius, most)
 

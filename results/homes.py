@@ -38,8 +38,8 @@ HEAD = """# Homes and gales
 
 Made by `./run python results/homes.py`. First scenes of the split `test`, Fetch, presets `paper`, one episode a scene.
 `averted` is the share of the targets' value that would be lost if nobody acted and is not lost at the end, in percent,
-with 95 % bootstrap intervals over scenes; differences are paired by scene. `{plain}` is the oracle that takes no
-measures. homes.csv has every episode. Written at
+with 95 % bootstrap intervals over scenes; differences are paired by scene. `{plain}` is the oracle that
+takes no measures. homes.csv has every episode. Written at
 {machine}.
 
 | task | agent | averted | Value | s an episode | episodes |

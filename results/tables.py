@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hazard_ms.evaluation.metrics import Score, scores
-from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.evaluation.result import ALONE, REGRET, EpisodeResult
 
 HERE = Path(__file__).parent
 TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
@@ -23,8 +23,9 @@ def evaluate(task: str, folder: Path, *words: str, check: bool = True) -> None:
 
 
 def results_in(folder: Path) -> list[EpisodeResult]:
-    """The results in a folder, in the order of their files' names."""
-    return [EpisodeResult.read(path) for path in sorted(folder.glob("Hazard*.json"))]
+    """The results in a folder, in the order of their files' names; what lies beside them is left out."""
+    paths = [path for path in sorted(folder.glob("Hazard*.json")) if not path.name.endswith((ALONE, REGRET))]
+    return [EpisodeResult.read(path) for path in paths]
 
 
 def value_of(results: Sequence[EpisodeResult]) -> Score:

@@ -31,7 +31,7 @@ class Observed:
     """One picture: what was told, the surest last, and the things that are visible in it."""
 
     scene: str  # with its dataset
-    view: View
+    view: View  # its labels are numbers of `told`, or below 0
     told: tuple[Told, ...]
     visible: dict[int, int]  # pixels by number
     kinds: dict[int, str]  # categories of all things of the scene by number

@@ -15,7 +15,7 @@ from hazard_ms.sensing.detection.fusion import category_of
 from hazard_ms.sensing.detection.tracks import CART, GATE, Track
 
 CROWD = 1.5  # distance within which carts hardly stand beside each other, but parts of a fence do [m] [ours]
-CROWDED = 0.3  # by which each other one there changes the odds that one is a cart [-] [measured: 0.3 to 0.5 know most]
+CROWDED = 0.3  # by which each other one there changes the odds that one is a cart [-] [ours]
 FEW = 3  # others that count at most [ours]
 
 

@@ -1,6 +1,6 @@
-"""Lists what can be done about the hazards of a home: extinguishers to fetch, fires to put out, doors to shut.
+"""Lists what can be done about the hazards of a home: fires to put out, or to look for with an extinguisher, and doors.
 
-Limits: fires that were never seen are not counted; doors are shut on water alone, since in fires of the paper there is
+Limits: doors are shut on water alone, since in fires of the paper there is
 a fire in most rooms, and what burns behind a shut door burns on.
 """
 
@@ -20,7 +20,7 @@ from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook, skill_frames
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import PICK_UP, Action, Decision, Tool
+from hazard_ms.skills.decision import PICK_UP, WALK_TO, Action, Decision, Tool
 from hazard_ms.skills.motor.walking import ARRIVED
 from hazard_ms.spec.extinguishers import EXTINGUISHERS
 
@@ -38,7 +38,9 @@ TRIES = 2  # failures of one measure, after which it is given up [ours]
 STANDS = 0.7  # distance from a door at which it is shut [m] [ours]
 JET_WAY = 2.5  # distance from flames at which a jet is opened [m] [ours]
 LARGE = 2.0  # charges that a fire may take and still be fought with one [ours]
+FIRES = 4  # that a home begins with [hazard_ms.scenes.generate.house.homes]
 UNSEEN_SHARE = 0.07  # of the value of unseen targets that a fire burns: four burn 0.3 of all [measured: 0.21 to 0.3]
+NOWHERE = 0.3  # share of the fires that are somewhere else than at the places to search [ours]
 UNSEEN_AFTER = 600.0  # frames after which it does [ours]
 # share of the value of unseen targets that water spoils in a room that it reaches: half of what is in one of seven
 ROOM_SHARE = 0.07  # [ours]
@@ -61,7 +63,7 @@ class Candidate:
     frames: float
     spares: Sequence[float]  # frame until which each known target of the outlook is whole then
     guards: str = ""  # what keeps from harm what was never seen: the fire that is put out, or the door; empty: nothing
-    unseen: float = 0.0  # share of the value of unseen targets that is lost without that
+    unseen: float = 0.0  # value that is expected to be lost without that beside the known targets that it spares
     unseen_at: float = 0.0  # frame at which it is
     tool: str = ""  # name of the tool that it needs
     uses: float = 0.0  # frames of the tool's charge
@@ -100,10 +102,31 @@ def _fires(
                 continue  # far more than it can put out
             what = f"put out the fire at {name}"
             soon = decision.frame + UNSEEN_AFTER
-            guards = f"fire {k}", UNSEEN_SHARE, min(soon, decision.max_frames - 1.0)
+            guards = f"fire {k}", UNSEEN_SHARE * ahead.unseen, min(soon, decision.max_frames - 1.0)
             frames = FACED + 1.5 * uses
             made.append(Candidate(what, action, seat.place, JET_WAY, frames, spares, *guards, fetch.name, uses))
-    return [*fetches, *made]
+    return [*fetches, *made, *(one for fetch in fetches for one in _patrols(brief, decision, memory, ahead, fetch))]
+
+
+def _patrols(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, fetch: Candidate) -> list[Candidate]:
+    """The places to search as places at which to look for the fires that were never seen, with a tool in hand."""
+    left = FIRES - len(memory.house.seats) - memory.house.count_out
+    flames = 2.0 ** (decision.frame / DOUBLING)
+    if left <= 0 or JET * flames > LARGE * fetch.charge:
+        return []
+    worth = UNSEEN_SHARE * sum(target.value for target in decision.targets if not target.rescued)
+    total = NOWHERE + sum(mark.share for mark in ahead.lookouts)
+    soon = min(decision.frame + UNSEEN_AFTER, decision.max_frames - 1.0)
+    made = []
+    for mark in ahead.lookouts:
+        expected = left * mark.share / total
+        uses = min(JET * flames, fetch.charge)
+        frames = skill_frames(brief.robot).explore + min(expected, 1.0) * (FACED + 1.5 * uses)
+        what, guards = f"look for fires at {mark.name}", (f"fires at {mark.name}", worth * expected, soon)
+        nothing = [0.0] * len(ahead.targets)
+        action = Action(WALK_TO, mark.name)
+        made.append(Candidate(what, action, mark.place, ARRIVED, frames, nothing, *guards, fetch.name, uses * expected))
+    return made
 
 
 def _usable(decision: Decision, tool: Tool, put_down: dict[str, int]) -> bool:
@@ -161,7 +184,7 @@ def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, num
         if closes or share:
             spares = _whole(brief, decision, memory.house, ahead, shut=(door,))
             x, y, _ = door.position
-            guards = door.name, share, float(frames[wet])
+            guards = door.name, share * ahead.unseen, float(frames[wet])
             what = f"shut {door.name}"
             made.append(Candidate(what, action, (x, y), STANDS, SHUTTING, spares, *guards, closes=tuple(closes)))
     return sorted(made, key=lambda one: -one.unseen - len(one.closes))[:MOST_DOORS]

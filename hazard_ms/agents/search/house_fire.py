@@ -24,16 +24,18 @@ FUTURES = 6  # that are drawn for each fire that may be put out [ours]
 FARTHEST = 20  # cells that a fire creeps in 3,000 frames (docs/physics.md 1.1) [ours]
 LIKELY, WHOLE = 0.05, 0.4  # chance from which a cell is part of a fire, and of all its cells that make one [ours]
 APART = 3  # cells between two fires [ours]
+FIRES_APART = 2.0  # distance between places that were put out from which they are of two fires [m] [ours]
 PUT_OUT = 1.2  # distance from where a thing was put out within which older warmth tells nothing [m] [ours]
 
 Array = NDArray[np.float64]
 
 
 class Out(NamedTuple):
-    """A place at which a fire was put out [m], and when."""
+    """A place at which a fire was put out [m], and when; `burned`: whether it was there, not gone before."""
 
     place: tuple[float, float]
     frame: int
+    burned: bool
 
 
 @dataclass(frozen=True)
@@ -59,9 +61,18 @@ class HouseFire:
         self._flames: Flames | None = None
         self.seats: tuple[Seat, ...] = ()
 
-    def put_out(self, place: tuple[float, float], frame: int) -> None:
-        """Remember that what burned around a `place` [m] is out since `frame`."""
-        self._out, self._seen = (*self._out, Out(place, frame)), ()
+    def put_out(self, place: tuple[float, float], frame: int, burned: bool = True) -> None:
+        """Remember that what burned around a `place` [m] is out since `frame`; `burned`: whether a fire was there."""
+        self._out, self._seen = (*self._out, Out(place, frame, burned)), ()
+
+    @property
+    def count_out(self) -> int:
+        """The number of fires that were put out; places close to each other are of one."""
+        apart: list[tuple[float, float]] = []
+        for out in self._out:
+            if out.burned and all(np.hypot(*np.subtract(out.place, place)) >= FIRES_APART for place in apart):
+                apart.append(out.place)
+        return len(apart)
 
     def look(self, decision: Decision, number: int) -> None:
         """Find the fires behind the warmth of the hazard `number` on the map."""

@@ -41,7 +41,6 @@ class Mitigator:
         self._brief, self._memory = brief, memory
         self._put_down: dict[str, int] = {}  # how often each tool was put down
         self._opened: set[str] = set()
-        self._look_around = False
         self._aim: tuple[float, float] | None = None  # of the jet [m]
         self._begun: Candidate | None = None  # what it fetches a tool for, or goes to, and has not yet done
         self.why = ""
@@ -56,16 +55,12 @@ class Mitigator:
         seen = decision.map.objects.get(decision.index(last.target))
         for place in (self._aim, None if seen is None else seen.position[:2].tolist()):
             if place is not None:
-                self._memory.house.put_out((place[0], place[1]), decision.frame)
-        self._look_around, self._begun = result.frames > 0, None
+                self._memory.house.put_out((place[0], place[1]), decision.frame, result.ok and place is self._aim)
+        self._begun = None
 
     def action(self, decision: Decision, ahead: Outlook) -> Action | None:
         """The measure to begin with, or the end of one; None where a rescue or a search comes first."""
         held = next((tool for tool in decision.tools if tool.held), None)
-        if self._look_around and held is not None:
-            self._look_around = False
-            self.why = "look whether it still burns"
-            return Action(EXPLORE)
         found = candidates(self._brief, decision, self._memory, ahead, self._put_down)
         first = self._first(decision, ahead, found, held)
         if first is None and held is not None:
@@ -75,8 +70,13 @@ class Mitigator:
         if first is None:
             return None
         self._aim = first.place if first.action.verb == EXTINGUISH else None
-        if first.charge > 0.0 and decision.walked_up_to != first.action.target:
-            return Action(WALK_TO, first.action.target)
+        name = first.action.target
+        if first.action.verb == WALK_TO and name is not None and decision.walked_up_to == name:
+            self._begun = None
+            self._memory.visits[name] = self._memory.visits.get(name, 0) + 1
+            return Action(EXPLORE)
+        if first.charge > 0.0 and decision.walked_up_to != name:
+            return Action(WALK_TO, name)
         return first.action
 
     def _first(
@@ -100,7 +100,8 @@ class Mitigator:
     def _begun_among(self, found: Sequence[Candidate]) -> list[Candidate]:
         """What it has begun, as it is among those `found` now, and the tools; none where it has begun nothing."""
         begun = self._begun
-        if begun is None:
+        seen = any(one.action.verb == EXTINGUISH for one in found)
+        if begun is None or (begun.action.verb == WALK_TO and seen):  # what burns comes before what may burn
             return []
         same = [
             one
@@ -115,7 +116,7 @@ class Mitigator:
         self, decision: Decision, ahead: Outlook, found: Sequence[Candidate], held: Tool | None
     ) -> Course | None:
         """The best course of those `found`, if it begins with one of them."""
-        unseen = {one.guards: (ahead.unseen * one.unseen, one.unseen_at) for one in found if one.unseen > 0.0}
+        unseen = {one.guards: (one.unseen, one.unseen_at) for one in found if one.unseen > 0.0}
         problem = _with_unseen(ahead.plain, ahead.frames, list(unseen.values()))
         measures = _measures(decision, ahead, found, list(unseen), held, self._brief.radius)
         course = best_course(problem, measures, most_labels=MOST_LABELS, beam=BEAM)

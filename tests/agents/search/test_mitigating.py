@@ -13,6 +13,7 @@ from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision, Result, Tool
+from hazard_ms.skills.failures import MAX_FRAMES
 from tests.agents.search.test_floor_plan import DOOR, two_rooms
 from tests.agents.search.test_house_water import SLOPE, WEST
 from tests.worlds.playground import brief
@@ -104,8 +105,38 @@ def test_it_fetches_an_extinguisher_and_puts_out_what_threatens_most(who: str) -
     jet = Action("extinguish", "box_1")
     assert player.act(replace(held, available=(*held.available, jet))) == jet
     out = decision((jet, Result(True, frames=150)), NAMES[1], 280)
-    assert player.act(out) == Action(EXPLORE) and "still burns" in str(player.note)
-    assert player.act(decision(LOOK, NAMES[1], 340)) == Action(DROP) and "of no use" in str(player.note)
+    assert player.act(out) == Action(DROP) and "of no use" in str(player.note)
+
+
+def in_part(given: Decision) -> Decision:
+    """The same with two dear books that were not seen, and half of the eastern room out of sight."""
+    seen = given.map
+    y, x = np.nonzero(seen.explored)
+    seen.explored[y, x] &= seen.centre_of(y, x)[:, 1] > -0.5
+    more = tuple(Target(index, f"book_{index}", "book", 100.0, True, False, 200.0) for index in (5, 6))
+    return replace(given, names=(*NAMES, "book_5", "book_6"), targets=(*given.targets, *more))
+
+
+def test_it_looks_for_the_fires_that_it_has_not_seen() -> None:
+    """Homes begin with four fires: with an extinguisher it goes and looks for them, until there are none left."""
+    player, take = begun("planner", home()), (Action(PICK_UP, NAMES[1]), Result(True, frames=50))
+    went = player.act(in_part(decision(take, NAMES[1], 130)))
+    assert went.verb == WALK_TO and went.target != NAMES[1] and "look for fires at" in str(player.note)
+    there = in_part(decision((went, Result(True, frames=50)), NAMES[1], 180))
+    assert player.act(there) == Action(EXPLORE)
+    done = begun("planner", home())
+    for frame, place in enumerate(((4.2, 1.0), (-3.0, 0.0), (0.0, 3.0), (0.0, -3.0))):
+        done._memory.house.put_out(place, frame)  # type: ignore[attr-defined]
+    assert done.act(in_part(decision(take, NAMES[1], 130))) == Action(DROP)
+
+
+def test_a_fire_that_is_seen_comes_before_those_that_may_be_elsewhere() -> None:
+    player, take = begun("planner", home()), (Action(PICK_UP, NAMES[1]), Result(True, frames=50))
+    went = player.act(in_part(decision(take, NAMES[1], 130)))
+    assert "look for fires at" in str(player.note)
+    jet = Action("extinguish", "box_1")
+    held = on_fire(in_part(decision((went, Result(False, MAX_FRAMES, 100)), NAMES[1], 230)))
+    assert player.act(replace(held, available=(*held.available, jet))) == jet
 
 
 @pytest.mark.parametrize("who", ["planner", "mcts:simulations=200"])

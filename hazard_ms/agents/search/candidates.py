@@ -6,7 +6,7 @@ a fire in most rooms, and what burns behind a shut door burns on.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,8 @@ from hazard_ms.agents.search.house_water import HouseWater
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook, skill_frames
 from hazard_ms.sensing.door_memory import KnownOpening
+from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import PICK_UP, WALK_TO, Action, Decision, Tool
 from hazard_ms.skills.motor.walking import ARRIVED
@@ -68,6 +70,7 @@ class Candidate:
     tool: str = ""  # name of the tool that it needs
     uses: float = 0.0  # frames of the tool's charge
     charge: float = 0.0  # frames that the tool lasts that it fetches
+    stays: Sequence[float] | None = None  # frame until which each known target stays where it is then; None: as it is
     closes: tuple[int, ...] = ()  # known targets that cannot be fetched any more
 
 
@@ -183,10 +186,13 @@ def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, num
         share = ROOM_SHARE * (LOOKED if inside else 1.0) if keeps else 0.0
         if closes or share:
             spares = _whole(brief, decision, memory.house, ahead, shut=(door,))
+            stays = _stays(brief, decision, memory.house, ahead, door)
             x, y, _ = door.position
             guards = door.name, share * ahead.unseen, float(frames[wet])
             what = f"shut {door.name}"
-            made.append(Candidate(what, action, (x, y), STANDS, SHUTTING, spares, *guards, closes=tuple(closes)))
+            made.append(
+                Candidate(what, action, (x, y), STANDS, SHUTTING, spares, *guards, stays=stays, closes=tuple(closes))
+            )
     return sorted(made, key=lambda one: -one.unseen - len(one.closes))[:MOST_DOORS]
 
 
@@ -200,8 +206,18 @@ def _keeps_dry(water: HouseWater, plan: FloorPlan, away: Array, door: KnownOpeni
 def _whole(brief: Brief, decision: Decision, fire: HouseFire, ahead: Outlook, **done: Sequence) -> list[float]:
     """The frame until which each target of the outlook is whole if that is done: see `Forecast`."""
     forecast = Forecast(brief, decision, fire, **done)
+    return _of_each(decision, ahead, forecast.whole_until)
+
+
+def _stays(brief: Brief, decision: Decision, fire: HouseFire, ahead: Outlook, door: KnownOpening) -> list[float]:
+    """The same until which each stays where it is if a `door` is shut."""
+    forecast = Forecast(brief, decision, fire, shut=(door,))
+    return _of_each(decision, ahead, forecast.stays_until)
+
+
+def _of_each(decision: Decision, ahead: Outlook, until: Callable[[Target, Sighting], float]) -> list[float]:
     made = []
     for name in ahead.targets:
         seen = decision.map.objects.get(decision.index(name))
-        made.append(float("inf") if seen is None else forecast.whole_until(decision.target(name), seen))
+        made.append(float("inf") if seen is None else until(decision.target(name), seen))
     return made

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hazard_ms.agents.search.fire_watch import FireWatch
 from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
 from hazard_ms.agents.search.house_fire import HouseFire
-from hazard_ms.agents.search.house_water import HouseWater, lost_at
+from hazard_ms.agents.search.house_water import HouseWater, floats_at, soaked_at
 from hazard_ms.planning.belief import WaterPlane, extended, last_whole
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
@@ -66,13 +66,19 @@ class Forecast:
             default=float("inf"),
         )
 
+    def stays_until(self, target: Target, sighting: Sighting) -> float:
+        """The frame until which water in a home leaves a target where it was seen; inf for all along."""
+        water = [number for number, plane in self._water.items() if isinstance(plane, HouseWater)]
+        carries = partial(_reaches, floats_at(target, sighting))
+        return min((last_whole(carries, self._frames, self._levels(n, sighting)) for n in water), default=float("inf"))
+
     def _until(self, number: int, target: Target, sighting: Sighting) -> float:
         burning = self._fire.get(number, {}).get(target.index)
         if burning is not None:
             return burning
         harms = partial(_harms, self._hazards[number], target, float(sighting.position[2]))
         if isinstance(self._water.get(number), HouseWater):
-            harms = partial(_reaches, lost_at(target, sighting))
+            harms = partial(_reaches, soaked_at(target, sighting))
         return last_whole(harms, self._frames, self._levels(number, sighting))
 
     def _levels(self, number: int, sighting: Sighting) -> Array:

@@ -56,14 +56,17 @@ class HouseWater:
         return np.maximum(rising[:, None] - drop, 0.0)
 
 
-def lost_at(target: Target, sighting: Sighting) -> float:
-    """The level [m] at which water damages a thing where it was seen, or carries it away; inf for never.
+def soaked_at(target: Target, sighting: Sighting) -> float:
+    """The level [m] at which water damages a thing where it was seen; inf for never."""
+    return np.inf if target.waterproof else float(sighting.position[2])
 
-    What floats is carried away once it does, and then counts as lost (docs/benchmark.md 4.3).
+
+def floats_at(target: Target, sighting: Sighting) -> float:
+    """The level [m] at which water carries a thing away from where it was seen; inf for never.
+
+    It is then lost unless it is rescued, but whole (docs/benchmark.md 4.3).
     """
-    height = float(sighting.position[2])
-    low, kind = max(2.0 * height - sighting.top, 0.0), CATEGORIES.get(target.category)
-    soaked = np.inf if target.waterproof else height
-    density = WATER_DENSITY if kind is None else kind.density
-    floats = low + density / WATER_DENSITY * (sighting.top - low) if density < WATER_DENSITY else np.inf
-    return float(min(soaked, max(floats, LEAST)))
+    low, kind = max(2.0 * float(sighting.position[2]) - sighting.top, 0.0), CATEGORIES.get(target.category)
+    if kind is None or kind.density >= WATER_DENSITY:
+        return np.inf
+    return max(low + kind.density / WATER_DENSITY * (sighting.top - low), LEAST)

@@ -152,6 +152,7 @@ def _with_unseen(problem: Problem, frames: NDArray[np.float64], unseen: Sequence
         travel=StaticTravel(table),
         values=[*problem.values, *(value for value, _ in unseen)],
         damaged_at=[*problem.damaged_at, *(at for _, at in unseen)],
+        gone_at=None if problem.gone_at is None else [*problem.gone_at, *[np.inf] * more],
         pick=[*problem.pick, *[1.0] * more],
         drop=[*problem.drop, *[1.0] * more],
     )
@@ -188,7 +189,8 @@ def _measures(
             *(np.inf if one.guards == name else 0.0 for name in unseen),
         ]
         needs = fetched[one.tool] if one.tool else None
-        made.append(Measure(one.name, one.frames, spares, needs, one.uses, one.charge, closes=one.closes))
+        stays = None if one.stays is None else [*one.stays, *[0.0] * (len(spares) - len(one.stays))]
+        made.append(Measure(one.name, one.frames, spares, needs, one.uses, one.charge, stays, one.closes))
     unreachable = np.full((len(unseen), len(found)), np.inf)
     return Measures(
         made,

@@ -10,10 +10,13 @@ import pytest
 
 from hazard_ms.agents.search.fire_watch import FireWatch
 from hazard_ms.agents.search.forecast import STRIDE, Forecast
+from hazard_ms.agents.search.house_fire import HouseFire
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.brief import HazardBrief
 from hazard_ms.skills.decision import Decision
+from tests.agents.search.test_house_water import RISE, SLOPE, WEST, flooded, thing
+from tests.agents.search.test_mitigating import decision, home
 from tests.worlds.playground import Playground, brief
 
 FLAME = (2.0, 0.0)  # [m]
@@ -115,3 +118,15 @@ def test_other_hazards_go_on_as_they_did() -> None:
     decision = replace(ground.decision(), frame=300)
     ahead = Forecast(replace(brief(), hazards=(quake,)), decision, FireWatch(0))
     assert ahead.whole_until(target("a", 0), shaken) == pytest.approx(500, abs=STRIDE)
+
+
+def test_what_floats_stays_whole_but_not_where_it_is() -> None:
+    """Water rises by 0.25 mm a frame at its wall: 2 m of way from there it is 0.095 m deep at frame 799."""
+    given = replace(decision(), map=flooded(600), frame=600)
+    forecast = Forecast(home("HazardHouseFlood-v1"), given, HouseFire(0))
+    target, sighting = thing("banana")
+    there = replace(sighting, position=np.array([WEST + 2.0, 0.0, 0.05], np.float32), levels=(0.05,))
+    assert forecast.whole_until(target, there) == np.inf
+    assert forecast.stays_until(target, there) == pytest.approx((0.095 + SLOPE * 2.0) / RISE, abs=60)
+    sinks, lying = thing("key")
+    assert forecast.stays_until(sinks, replace(lying, position=there.position, levels=(0.05,))) == np.inf

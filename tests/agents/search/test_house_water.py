@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hazard_ms.agents.search.floor_plan import FloorPlan
-from hazard_ms.agents.search.house_water import HouseWater, lost_at
+from hazard_ms.agents.search.house_water import HouseWater, floats_at, soaked_at
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
@@ -59,9 +59,14 @@ def thing(kind: str, height: float = 0.1) -> tuple[Target, Sighting]:
     return made, Sighting(np.array([0.0, 0.0, height / 2], np.float32), 0.1, height, 0, 50)
 
 
-def test_a_thing_is_lost_when_it_is_half_under_water_or_floats() -> None:
-    """A phone is soaked at half its height; a banana, waterproof, floats at 0.95 of it; a key does neither."""
-    assert lost_at(*thing("phone")) == pytest.approx(0.05)
-    assert lost_at(*thing("banana")) == pytest.approx(0.095)
-    assert lost_at(*thing("throw_pillow")) == pytest.approx(0.01)
-    assert lost_at(*thing("key")) == math.inf
+def test_a_thing_is_soaked_when_it_is_half_under_water() -> None:
+    """A phone is soaked at half its height; a banana and a key are waterproof."""
+    assert soaked_at(*thing("phone")) == pytest.approx(0.05)
+    assert soaked_at(*thing("banana")) == soaked_at(*thing("key")) == math.inf
+
+
+def test_a_thing_is_carried_away_when_it_floats() -> None:
+    """A banana floats at 0.95 of its height, a pillow at once, a phone and a key never."""
+    assert floats_at(*thing("banana")) == pytest.approx(0.095)
+    assert floats_at(*thing("throw_pillow")) == pytest.approx(0.01)
+    assert floats_at(*thing("phone")) == floats_at(*thing("key")) == math.inf

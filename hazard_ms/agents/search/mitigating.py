@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.agents.search.candidates import EXTINGUISH, Candidate, candidates
+from hazard_ms.agents.search.candidates import EXTINGUISH, TRIES, Candidate, candidates
 from hazard_ms.agents.search.forecast import WATER
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook
@@ -23,8 +23,8 @@ from hazard_ms.planning.measures import Measure, Measures
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import DROP, EXPLORE, WALK_TO, Action, Decision, Tool
-from hazard_ms.skills.failures import NOT_BURNING
+from hazard_ms.skills.decision import DROP, EXPLORE, WALK_ONE_STEP, WALK_TO, Action, Decision, Tool
+from hazard_ms.skills.failures import NO_PATH, NOT_BURNING, UNFINISHED
 from hazard_ms.skills.motor.walking import ARRIVED
 
 OPEN = "open"
@@ -122,19 +122,38 @@ class Mitigator:
         course = best_course(problem, measures, most_labels=MOST_LABELS, beam=BEAM)
         return course if course.steps and course.before is None else None
 
+    def way_out(self, decision: Decision) -> Action | None:
+        """A door to open where the last walk found no way, or to open on; None where there is none."""
+        last, result = decision.last_action, decision.last_result
+        if last is None or result is None:
+            return None
+        if last.verb == OPEN and result.reason in UNFINISHED and self._memory.failures.get(str(last), 0) < TRIES:
+            return last if last in decision.available else None
+        barred = last.verb in (WALK_TO, WALK_ONE_STEP) and result.reason == NO_PATH
+        return self._door(decision, "there was no way") if barred else None
+
     def opening(self, decision: Decision) -> Action | None:
         """A door to open where nothing else is left to do, each once; None where there is none."""
         if any(hazard.name == WATER for hazard in self._brief.hazards):
             return None  # it would let water in
+        return self._door(decision, "there may be more behind it")
+
+    def _door(self, decision: Decision, why: str) -> Action | None:
+        """The nearest of the doors that can be opened farther, those that are ajar first, each once."""
         names = [a for a in decision.available if a.verb == OPEN and a.target not in self._opened]
         where = {o.name: o for o in decision.openings if o.kind == "door" and o.open < 0.9}
         doors = [a for a in names if a.target in where]
         if not doors:
             return None
         here = np.array(decision.agent_position)
-        best = min(doors, key=lambda a: float(np.hypot(*(np.array(where[str(a.target)].position[:2]) - here))))
+
+        def order(action: Action) -> tuple[bool, float]:
+            door = where[str(action.target)]
+            return door.open == 0.0, float(np.hypot(*(np.array(door.position[:2]) - here)))
+
+        best = min(doors, key=order)
         self._opened.add(str(best.target))
-        self.why = "there may be more behind it"
+        self.why = why
         return best
 
 

@@ -93,6 +93,9 @@ class Searcher(Agent):
             return self._say("over the cart", Action(DROP, arrived))
         if not result.ok and result.reason == TOO_FAR and self._memory.failures.get(last.target or "") == 1:
             return self._say("it is perhaps elsewhere by now", Action(EXPLORE))
+        if self._mitigator is not None and (door := self._mitigator.way_out(decision)) is not None:
+            self._goal = None
+            return self._say(self._mitigator.why, door)
         searching = self._still_searching(decision, arrived)
         if searching is not None:
             return searching

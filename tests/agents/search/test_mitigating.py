@@ -13,7 +13,7 @@ from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision, Result, Tool
-from hazard_ms.skills.failures import MAX_FRAMES
+from hazard_ms.skills.failures import MAX_FRAMES, NO_PATH
 from tests.agents.search.test_floor_plan import DOOR, two_rooms
 from tests.agents.search.test_house_water import SLOPE, WEST
 from tests.worlds.playground import brief
@@ -150,6 +150,20 @@ def test_what_was_begun_is_gone_on_with(who: str) -> None:
     for each, last, jet in ((fresh, LOOK, jets[1]), (player, (take, Result(True, frames=50)), jets[0])):
         held = on_fire(with_more_in_the_west(decision(last, NAMES[1], 130)), (FLAME, (-3.0, -1.8)))
         assert each.act(replace(held, available=(*held.available, *jets))) == jet
+
+
+@pytest.mark.parametrize("task", ["HazardHouseFire-v1", "HazardHouseFlood-v1"])
+def test_where_there_is_no_way_it_opens_a_door(task: str) -> None:
+    """Once a walk found no path it opens the door that is ajar, on and on until that is done, but none that is open."""
+    walk, open_it = (Action(WALK_TO, "book_1"), Result(False, NO_PATH)), Action("open", DOOR.name)
+    player = begun("planner", home(task))
+    for last in (walk, (open_it, Result(False, MAX_FRAMES, 100))):
+        given = decision(last)
+        ajar = replace(given, openings=(replace(DOOR, open=0.3),), available=(*given.available, open_it))
+        assert player.act(ajar) == open_it
+    given = decision(walk)
+    wide = replace(given, openings=(replace(DOOR, open=1.0),), available=(*given.available, open_it))
+    assert begun("planner", home(task)).act(wide) != open_it
 
 
 def test_without_mitigations_it_only_rescues() -> None:

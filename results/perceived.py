@@ -1,8 +1,8 @@
 """The track with perception: `./run python results/perceived.py [TASK-AGENT...] [SCENES]`; resumes where it stopped.
 
 Every agent plays the first scenes, 25 by default, of each task's split `test` and sees through our small detector.
-Writes perceived.md beside this file, with the same agents' scores of scores.csv and the paper's; rows of what was
-played elsewhere stay, but for those of an earlier track, which are to be deleted there.
+Writes perceived.md and perceived.csv beside this file, with the same agents' scores of scores.csv and the paper's.
+Episodes in perceived.csv are not played again: those of an earlier track are to be deleted there.
 With `tables` alone it plays nothing. `parts [TASK-AGENT...] [SCENES]` plays the first scenes, 5 by default, with each
 part of the track alone, with all and with none, and writes perceived_parts.md.
 """
@@ -12,16 +12,19 @@ from __future__ import annotations
 import csv
 import os
 import sys
+from dataclasses import asdict
 
 from hazard_ms.evaluation.comparison.pairing import Episode, difference
-from hazard_ms.evaluation.metrics import scores
-from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.evaluation.metrics import Tally, scores
 from hazard_ms.spec.checks import one_of
 from results.tables import HERE, TASKS, evaluate, machine, results_in, value_of, words
 
-RAW = HERE.parent / "build" / "perceived"
+RAW, FILE = HERE.parent / "build" / "perceived", HERE / "perceived.csv"
 AGENTS = ("random", "rule", "greedy", "mcts", "planner")
 DETECTOR, SCENES, SCENES_OF_PARTS = "small", 25, 5
+KEYS = ("task", "agent", "seed", "scene")
+COLUMNS = (*KEYS, "value_rescued", "value_total", "rescued", "rescued_damaged", "last_rescue", "wall_seconds")
+Row = dict[str, str]
 # Value with perception in fire, flood and wind: Zhou et al. 2024, docs/benchmark.md section 4.1
 PAPER = {
     "greedy": (35.5, 21.5, 0.2),
@@ -62,7 +65,7 @@ Made by `./run python results/perceived.py`. Agents see through `--perception sm
 are found by the package's detector and followed by tracks of our own. First scenes of `test`, Fetch, presets `paper`.
 Values are in percent, with 95 % bootstrap intervals over scenes; "less the truth" is the difference from the same
 agent that is told what its camera sees, paired by episode (results/README.md). A dash: not played. An episode has one
-of two busy cores. Written at
+of two busy cores, or less. perceived.csv has every episode. Written at
 {machine}.
 
 | task | agent | Value | less the truth | Step | Damage | s an episode | episodes |
@@ -79,8 +82,31 @@ simulator, Value:
 
 def play(task: str, agent: str, scenes: int = SCENES) -> None:
     """Play what is missing of an agent in the first `scenes` of a task."""
-    options = ("--split", "test", "--episodes", str(scenes), "--perception", DETECTOR, "--agents", agent)
-    evaluate(task, RAW / task, *options)
+    there = {int(row["seed"]) for row in episodes() if (row["task"], row["agent"]) == (task, agent)}
+    for seed in set(range(scenes)) - there:
+        options = ("--split", "test", "--perception", DETECTOR, "--agents", agent, "-s", str(seed), "--episodes", "1")
+        evaluate(task, RAW / task, *options)
+
+
+def episodes() -> list[Row]:
+    """All episodes: those of perceived.csv, and those of the raw results here, which take the place of the same."""
+    made: dict[tuple[str, ...], Row] = {}
+    if FILE.exists():
+        with FILE.open(newline="", encoding="utf-8") as file:
+            made = {tuple(row[name] for name in KEYS): row for row in csv.DictReader(file)}
+    for task in TASKS:
+        for result in results_in(RAW / task) if (RAW / task).is_dir() else []:
+            keys = dict(zip(KEYS, (task, result.agent, str(result.seed), result.scene), strict=True))
+            told = {**asdict(result.tally), "wall_seconds": round(result.wall_seconds, 1)}
+            made[tuple(keys.values())] = {**keys, **{name: str(value) for name, value in told.items()}}
+    tasks = list(TASKS)
+    return sorted(made.values(), key=lambda r: (tasks.index(r["task"]), AGENTS.index(r["agent"]), int(r["seed"])))
+
+
+def tally_of(row: Row) -> Tally:
+    """The tally of an episode of perceived.csv."""
+    rescued, value, total = int(row["rescued"]), float(row["value_rescued"]), float(row["value_total"])
+    return Tally(value, total, rescued, int(row["rescued_damaged"]), int(row["last_rescue"]))
 
 
 def told(task: str, agent: str) -> dict[Episode, float]:
@@ -92,34 +118,27 @@ def told(task: str, agent: str) -> dict[Episode, float]:
     return {(int(row["seed"]), row["scene"]): float(row["value"]) for row in mine}
 
 
-def row(task: str, agent: str, results: list[EpisodeResult]) -> str:
-    """The row of an agent in a task."""
-    own = {(r.seed, r.scene): r.tally.value for r in results}
-    truth = told(task, agent)
-    every = scores([r.tally for r in results], [r.scene for r in results])
+def line(task: str, agent: str, mine: list[Row]) -> str:
+    """The line of an agent in a task."""
+    tallies, scenes = [tally_of(row) for row in mine], [row["scene"] for row in mine]
+    own = {(int(row["seed"]), row["scene"]): tally.value for row, tally in zip(mine, tallies, strict=True)}
+    truth, every = told(task, agent), scores(tallies, scenes)
     step, damage = (every[name].mean for name in ("step", "damage"))
     less = words(difference(own, truth)) if set(own) & set(truth) else "-"
-    cells = [words(value_of(results)), less, "-" if step is None else f"{step:.0f}"]
-    seconds = sum(result.wall_seconds for result in results) / len(results)
-    cells += ["-" if damage is None else f"{100 * damage:.1f}", f"{seconds:.0f}", str(len(results))]
+    cells = [words(every["value"]), less, "-" if step is None else f"{step:.0f}"]
+    seconds = sum(float(row["wall_seconds"]) for row in mine) / len(mine)
+    cells += ["-" if damage is None else f"{100 * damage:.1f}", f"{seconds:.0f}", str(len(mine))]
     return f"| {task} | {agent} | {' | '.join(cells)} |\n"
 
 
-def rows() -> str:
-    """The rows of all agents; those that were played elsewhere stay as they were written there."""
-    page = HERE / "perceived.md"
-    older = {}
-    for line in page.read_text(encoding="utf-8").splitlines() if page.exists() else ():
-        cells = [cell.strip() for cell in line.split("|")[1:3]]
-        if len(cells) == 2 and cells[0] in TASKS:
-            older[cells[0], cells[1]] = f"{line}\n"
-    made = ""
-    for task in TASKS:
-        played = results_in(RAW / task) if (RAW / task).is_dir() else []
-        for agent in AGENTS:
-            mine = [result for result in played if result.agent == agent]
-            made += row(task, agent, mine) if mine else older.get((task, agent), "")
-    return made
+def lines(every: list[Row]) -> str:
+    """The lines of all agents."""
+    groups = {
+        (task, agent): [row for row in every if (row["task"], row["agent"]) == (task, agent)]
+        for task in TASKS
+        for agent in AGENTS
+    }
+    return "".join(line(*names, mine) for names, mine in groups.items() if mine)
 
 
 def parts(names: list[str], scenes: int) -> None:
@@ -156,7 +175,12 @@ def main(wanted: list[str]) -> None:
     for name in chosen:
         task, _, agent = name.partition("-")
         play(task, agent, scenes)
-    text = HEAD.format(machine=machine()) + rows() + OTHERS
+    every = episodes()
+    with FILE.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(every)
+    text = HEAD.format(machine=machine()) + lines(every) + OTHERS
     text += "".join(f"| {name} | {' | '.join(map(str, values))} |\n" for name, values in PAPER.items())
     (HERE / "perceived.md").write_text(text, encoding="utf-8")
     print(text)

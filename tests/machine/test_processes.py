@@ -43,8 +43,9 @@ from hazard_ms.machine.processes import end_with_parent
 
 def work():
     end_with_parent()
-    if os.fork() == 0:
-        print(os.getpid(), flush=True)
+    if copy := os.fork():
+        print(copy, flush=True)  # not the copy: it may end before it gets to that
+    else:
         time.sleep(600)
 
 if __name__ == "__main__":

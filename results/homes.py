@@ -1,8 +1,8 @@
 """Homes and streets in which decisions count: `./run python results/homes.py [TASK...] [SCENES]`; resumes.
 
 Every agent plays the first scenes, 4 by default, of the split `test` of each task with measures. Writes homes.md and
-homes.csv beside this file; episodes in homes.csv that this machine has no raw results of stay. With `tables` alone it
-plays nothing.
+homes.csv beside this file; episodes in homes.csv are not played again: those that a change would touch are to be
+deleted there. With `tables` alone it plays nothing.
 """
 
 from __future__ import annotations
@@ -59,8 +59,12 @@ def play(task: str, scenes: int) -> None:
     """Play what is missing of the first `scenes` of a task, one scene after the other."""
     folder = RAW / task.replace(" ", "_")
     options = ["-e", TASKS[task], "-o", str(folder), "--split", "test", "--timeout", "1800"]
+    there = {(row["agent"], int(row["seed"])) for row in rows() if row["task"] == task}
     for seed in range(scenes):
-        one = ["-s", str(seed), "--episodes", "1", "--agents", *AGENTS]
+        agents = [agent for agent in AGENTS if (agent, seed) not in there]
+        if not agents:
+            continue
+        one = ["-s", str(seed), "--episodes", "1", "--agents", *agents]
         subprocess.run([*COMMAND, "evaluate", *options, *one], cwd=HERE.parent, check=False)
 
 

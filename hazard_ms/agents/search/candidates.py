@@ -1,7 +1,7 @@
 """Lists what can be done about the hazards of a home: fires to put out, or to look for with an extinguisher, and doors.
 
-Limits: doors are shut on water alone, since in fires of the paper there is
-a fire in most rooms, and what burns behind a shut door burns on.
+Limits: doors are shut on water alone, since in fires of the paper there is a fire in most rooms, and what burns behind
+a shut door burns on.
 """
 
 from __future__ import annotations

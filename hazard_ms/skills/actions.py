@@ -10,6 +10,7 @@ from hazard_ms.registry import load
 from hazard_ms.registry.mitigations import MITIGATIONS
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Result
+from hazard_ms.skills.mitigations.approach import walk_into
 from hazard_ms.skills.mitigations.putting import put_down
 from hazard_ms.skills.motor.grasping import pick_up
 from hazard_ms.skills.motor.motion import turn_by, wrap
@@ -47,6 +48,8 @@ def skill(stage: Stage, action: Action) -> Skill:
     """The generator that does `action`. Raises ValueError if it names a thing that the scene does not have."""
     if action.verb in MITIGATIONS:
         return cast(Skill, load(MITIGATIONS[action.verb].skill)(stage, action.target))
+    if action.verb == WALK_TO and (opening := stage.doors.find(str(action.target))) is not None:
+        return walk_into(stage, opening)
     index = None if action.target is None else stage.labeller.index(action.target)
     if action.verb == EXPLORE:
         return explore(stage)

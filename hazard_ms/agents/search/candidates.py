@@ -16,34 +16,32 @@ from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
 from hazard_ms.agents.search.forecast import FIRE, STRIDE, WATER, Forecast
 from hazard_ms.agents.search.house_fire import HouseFire, Seat
 from hazard_ms.agents.search.house_water import HouseWater
+from hazard_ms.agents.search.lookouts import HERE, fire_lookouts
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook, skill_frames
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import PICK_UP, WALK_TO, Action, Decision, Tool
+from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action, Decision, Tool
 from hazard_ms.skills.motor.walking import ARRIVED
 from hazard_ms.spec.extinguishers import EXTINGUISHERS
 
 EXTINGUISH, SHUT = "extinguish", "shut"
 HOT = 100.0  # level from which a thing can be named to the skill: boiling water [C]
 AROUND = 1.8  # distance from a thing within which the skill finds flames, less the error of where they are [m] [ours]
-JET, FACED = (
-    30.0,
-    40.0,
-)  # frames of the jet that a flame takes, and of a fire until the jet is open [measured: 20 to 35]
+JET = 15.0  # frames of the jet that a flame takes while they are few [measured: 13 to 14 for 4 and 5 flames]
+FACED, LONGER = 40.0, 1.5  # frames until the jet is open, and of a fire for each of the jet [ours]
 PIN = 60.0  # frames of pulling the pin, once [hazard_ms.skills.mitigations.extinguish: 2 s]
 DOUBLING = 280.0  # frames in which flames become twice as many: 41 after 1,500 frames [measured]
 SHUTTING = 230.0  # frames of shutting a door from before it [ours]
 TRIES = 2  # failures of one measure, after which it is given up [ours]
 STANDS = 0.7  # distance from a door at which it is shut [m] [ours]
 JET_WAY = 2.5  # distance from flames at which a jet is opened [m] [ours]
-LARGE = 2.0  # charges that a fire may take and still be fought with one [ours]
+LARGE = 1.5  # charges that a fire may take and still be fought with one [ours]
 FIRES = 4  # that a home begins with [hazard_ms.scenes.generate.house.homes]
 UNSEEN_SHARE = 0.07  # of the value of unseen targets that a fire burns: four burn 0.3 of all [measured: 0.21 to 0.3]
-NOWHERE = 0.3  # share of the fires that are somewhere else than at the places to search [ours]
-UNSEEN_AFTER = 600.0  # frames after which it does [ours]
+BURNT_BY = (700.0, 900.0, 1100.0, 1300.0, 1500.0)  # frames by which it has burned each part [measured: train homes]
 # share of the value of unseen targets that water spoils in a room that it reaches: half of what is in one of seven
 ROOM_SHARE = 0.07  # [ours]
 LOOKED = 0.3  # of this share where it has looked around in there [ours]
@@ -66,7 +64,7 @@ class Candidate:
     spares: Sequence[float]  # frame until which each known target of the outlook is whole then
     guards: str = ""  # what keeps from harm what was never seen: the fire that is put out, or the door; empty: nothing
     unseen: float = 0.0  # value that is expected to be lost without that beside the known targets that it spares
-    unseen_at: float = 0.0  # frame at which it is
+    unseen_at: tuple[float, ...] = ()  # frames at which equal parts of it are
     tool: str = ""  # name of the tool that it needs
     uses: float = 0.0  # frames of the tool's charge
     charge: float = 0.0  # frames that the tool lasts that it fetches
@@ -104,31 +102,35 @@ def _fires(
             if JET * flames > LARGE * fetch.charge:
                 continue  # far more than it can put out
             what = f"put out the fire at {name}"
-            soon = decision.frame + UNSEEN_AFTER
-            guards = f"fire {k}", UNSEEN_SHARE * ahead.unseen, min(soon, decision.max_frames - 1.0)
-            frames = FACED + 1.5 * uses
+            guards = f"fire {k}", UNSEEN_SHARE * ahead.unseen, BURNT_BY
+            frames = FACED + LONGER * uses
             made.append(Candidate(what, action, seat.place, JET_WAY, frames, spares, *guards, fetch.name, uses))
-    return [*fetches, *made, *(one for fetch in fetches for one in _patrols(brief, decision, memory, ahead, fetch))]
+    return [*fetches, *made, *_patrols(brief, decision, memory, ahead, fetches)]
 
 
-def _patrols(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, fetch: Candidate) -> list[Candidate]:
-    """The places to search as places at which to look for the fires that were never seen, with a tool in hand."""
-    left = FIRES - len(memory.house.seats) - memory.house.count_out
+def _patrols(
+    brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, fetches: Sequence[Candidate]
+) -> list[Candidate]:
+    """Looks for the fires that were never seen, with one of the tools in the hand that `fetches` fetch."""
+    left = FIRES - len(memory.house.places)
     flames = 2.0 ** (decision.frame / DOUBLING)
-    if left <= 0 or JET * flames > LARGE * fetch.charge:
+    able = [fetch for fetch in fetches if JET * flames <= LARGE * fetch.charge]
+    if left <= 0 or not able:
         return []
     worth = UNSEEN_SHARE * sum(target.value for target in decision.targets if not target.rescued)
-    total = NOWHERE + sum(mark.share for mark in ahead.lookouts)
-    soon = min(decision.frame + UNSEEN_AFTER, decision.max_frames - 1.0)
+    failed = [name for name, count in memory.failures.items() if count >= TRIES]
     made = []
-    for mark in ahead.lookouts:
-        expected = left * mark.share / total
-        uses = min(JET * flames, fetch.charge)
-        frames = skill_frames(brief.robot).explore + min(expected, 1.0) * (FACED + 1.5 * uses)
-        what, guards = f"look for fires at {mark.name}", (f"fires at {mark.name}", worth * expected, soon)
+    for mark in fire_lookouts(decision, memory.visits, memory.looks, failed, brief.radius, memory.house.places):
+        expected = left * mark.share
+        what = "look for fires from here" if mark.name == HERE else f"look for fires at {mark.name}"
+        guards = f"fires at {mark.name}", worth * expected, BURNT_BY
         nothing = [0.0] * len(ahead.targets)
-        action = Action(WALK_TO, mark.name)
-        made.append(Candidate(what, action, mark.place, ARRIVED, frames, nothing, *guards, fetch.name, uses * expected))
+        action = Action(EXPLORE) if mark.name == HERE else Action(WALK_TO, mark.name)
+        for fetch in able:
+            uses = min(JET * flames, fetch.charge)
+            frames = skill_frames(brief.robot).explore + min(expected, 1.0) * (FACED + LONGER * uses)
+            used = uses * expected
+            made.append(Candidate(what, action, mark.place, ARRIVED, frames, nothing, *guards, fetch.name, used))
     return made
 
 
@@ -150,17 +152,17 @@ def _fetch(brief: Brief, decision: Decision, tool: Tool, ahead: Outlook) -> Cand
 
 
 def _named(decision: Decision, memory: Memory, seat: Seat, number: int) -> str | None:
-    """The hot thing by which a fire can be named: the one nearest to its flames; None where none is near enough."""
-    best, name = AROUND, None
+    """The thing by which a fire can be named, nearest to its flames: one that is hot, else any; None: none is near."""
+    best, name = (True, AROUND), None
     for index, seen in decision.map.objects.items():
         thing = decision.names[index]
-        if len(seen.levels) <= number or seen.levels[number] < HOT or thing == decision.held:
+        if len(seen.levels) <= number or thing == decision.held:
             continue
         if memory.failures.get(str(Action(EXTINGUISH, thing)), 0) >= TRIES:
             continue
         away = float(np.hypot(*(seat.flames_at - seen.position[:2]).T).min())
-        if away < best:
-            best, name = away, thing
+        if away < AROUND and (seen.levels[number] < HOT, away) < best:
+            best, name = (bool(seen.levels[number] < HOT), away), thing
     return name
 
 
@@ -188,7 +190,7 @@ def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, num
             spares = _whole(brief, decision, memory.house, ahead, shut=(door,))
             stays = _stays(brief, decision, memory.house, ahead, door)
             x, y, _ = door.position
-            guards = door.name, share * ahead.unseen, float(frames[wet])
+            guards = door.name, share * ahead.unseen, (float(frames[wet]),)
             what = f"shut {door.name}"
             made.append(
                 Candidate(what, action, (x, y), STANDS, SHUTTING, spares, *guards, stays=stays, closes=tuple(closes))

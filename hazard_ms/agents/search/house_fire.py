@@ -66,13 +66,13 @@ class HouseFire:
         self._out, self._seen = (*self._out, Out(place, frame, burned)), ()
 
     @property
-    def count_out(self) -> int:
-        """The number of fires that were put out; places close to each other are of one."""
+    def places(self) -> list[tuple[float, float]]:
+        """Where fires were found [m], those that were put out first; places close to each other are of one."""
         apart: list[tuple[float, float]] = []
         for out in self._out:
             if out.burned and all(np.hypot(*np.subtract(out.place, place)) >= FIRES_APART for place in apart):
                 apart.append(out.place)
-        return len(apart)
+        return [*apart, *(seat.place for seat in self.seats)]
 
     def look(self, decision: Decision, number: int) -> None:
         """Find the fires behind the warmth of the hazard `number` on the map."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from hazard_ms.agents.search.memory import Place
-from hazard_ms.agents.search.stands import in_sight, stands
+from hazard_ms.agents.search.stands import HIDES, in_sight, stands
 from hazard_ms.sensing.detection.eyes import FAR
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.skills.decision import Decision
@@ -26,6 +26,14 @@ BARRED = 0.5  # share of the targets out of sight from a look nearby that were n
 LITTLE = 0.05  # least share of it that a place must show to be worth a search [ours]
 EVERY = 2  # cells of the map, along each side, for which one is looked at where walls count [ours]
 ANEW = 1.5  # distance between places from which things are seen from different sides [m] [ours]
+HERE = ""  # name of where the agent stands, from which a look takes no walk
+WIDE = 0.7  # share of a door that is open from which a robot gets through [ours]
+HOME = 87.0  # floor of a home [m2] [measured: mean of 12 homes of `train`]
+ROOM = 3.7  # length and width of what may burn behind a passage [m] [measured: rooms of `train` have 8 to 17 m2]
+COLD = 1.2  # distance from a young fire within which floor is warm [m] [docs/physics.md 1.1: 80 C at 1.5 m]
+WARMTH = 6.0  # distance up to which warm floor is seen [m] [ours]: longer than most rooms
+SECOND = 0.1  # of the chance of a fire in a room with another: two get in sight of each other through doors [ours]
+LEAST_NEW = 0.01  # share of the floor of a home that a place must show to be worth a look for fires [ours]
 
 
 @dataclass(frozen=True)
@@ -73,16 +81,85 @@ def lookouts(
     again = np.array([sum(np.hypot(*(place - look)) < ANEW for look in looks) for place in places])
     shows *= (AGAIN**again)[:, None]
     ease = 1.0 / (1.0 + away)
+    return _best(names, list(places), shows, ease, LITTLE) or _unvisited(things, visits)
+
+
+def fire_lookouts(
+    decision: Decision,
+    visits: Mapping[str, int],
+    looks: Sequence[Place],
+    avoided: Sequence[str],
+    radius: float,
+    fires: Sequence[Place],
+) -> tuple[Lookout, ...]:
+    """The best places of a home to look for fires that nobody saw: their share of the fires is that of unseen floor.
+
+    Arguments as for `lookouts`; `fires`: where the others were found [m], each of which is in another room. From
+    openings rooms are seen in which nothing is known. Where the agent stands is called HERE.
+    """
+    exhausted = [*avoided, *(name for name, count in visits.items() if count >= MOST_VISITS)]
+    passages = _passages(decision, exhausted)
+    things, seen = [*_things(decision, exhausted), *passages.items()], decision.map
+    ends = stands(decision, [name for name, _ in things], radius)
+    floor, weight, behind = _where_it_may_burn(seen, [passages[name] for name in passages])
+    for place in looks:
+        weight[in_sight(seen, place, floor, WARMTH)] *= BARRED
+    for place in fires:
+        weight[in_sight(seen, place, floor, WARMTH)] *= SECOND
+    kept = [(name, place) for name, place in things if name in ends]
+    names, places = [HERE, *(name for name, _ in kept)], [np.array(decision.agent_position), *(p for _, p in kept)]
+    eyes = [decision.agent_position, *(ends[name].place for name, _ in kept)]
+    shown = np.array([in_sight(seen, place, floor, WARMTH) for place in eyes]).reshape(len(names), -1)
+    for room, name in zip(behind, passages, strict=True):
+        if name in ends:
+            shown[names.index(name)] |= room
+    ease = 1.0 / (1.0 + np.array([0.0, *(ends[name].length for name, _ in kept)]))
+    return _best(names, places, shown * weight, ease, LEAST_NEW)
+
+
+def _where_it_may_burn(
+    seen: SemanticMap, passages: Sequence[NDArray[np.float64]]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], Mask]:
+    """Floor on which a fire would not have shown [m], [P, 2], its chance of a fire, [P], and if it is behind a passage.
+
+    The last is [D, P], for D `passages` at these places [m], each of which leads to a room on the side of it on which
+    least was seen. A fire shows by the warmth of floor up to COLD from it.
+    """
+    floor = seen.explored & (seen.height < WALKABLE)
+    cold = ndimage.binary_dilation(floor, iterations=round(COLD / seen.cell), mask=seen.height <= HIDES)
+    hidden = ~seen.explored & ~cold
+    y, x = np.nonzero((np.indices(hidden.shape) % EVERY == 0).all(axis=0))
+    grid = seen.centre_of(y, x)
+    behind = np.zeros((len(passages), len(grid)), bool)
+    for row, passage in enumerate(passages):
+        along, across = (grid - passage).T
+        sides = [
+            (abs(a) <= ROOM / 2) & (sign * b > 0) & (sign * b <= ROOM)
+            for a, b in ((along, across), (across, along))
+            for sign in (-1, 1)
+        ]
+        unknown = [float(hidden[y[side], x[side]].mean()) if side.any() else 0.0 for side in sides]
+        behind[row] = sides[int(np.argmax(unknown))]
+    may = hidden[y, x] & (unseen_floor(seen, DEPTH)[y, x] | behind.any(axis=0))
+    area = seen.cell**2
+    left = max(HOME - float(floor.sum()) * area, float(may.sum()) * area * EVERY**2)
+    return grid[may], np.full(int(may.sum()), area * EVERY**2 / max(left, area)), behind[:, may]
+
+
+def _best(
+    names: Sequence[str], places: Sequence[NDArray[np.float64]], shows: NDArray, ease: NDArray, least: float
+) -> tuple[Lookout, ...]:
+    """The best of N places by what they show, [N, P], and their `ease`, [N], each counting what others leave."""
     chosen: list[Lookout] = []
     for _ in range(MOST):
         share = shows.sum(axis=1)
-        best = int(np.argmax(share * ease))
-        if share[best] < LITTLE:
+        best = int(np.argmax(np.where(share >= least, share * ease, 0.0)))
+        if share[best] < least:
             break
-        place = float(places[best, 0]), float(places[best, 1])
+        place = float(places[best][0]), float(places[best][1])
         chosen.append(Lookout(names[best], place, float(share[best])))
         shows[:, shows[best] > 0] = 0.0
-    return tuple(chosen) or _unvisited(things, visits)
+    return tuple(chosen)
 
 
 def _searchable(
@@ -107,10 +184,10 @@ def _searchable(
     return points, np.where(new, BARRED**near, np.where(near > 0, HIDDEN**near, passing))
 
 
-def unseen_floor(seen: SemanticMap) -> Mask:
-    """The cells, [Y, X], that were not seen and are within DEPTH of floor that was, with no other seen cell between."""
+def unseen_floor(seen: SemanticMap, depth: float = DEPTH) -> Mask:
+    """The cells, [Y, X], not seen and within `depth` [m] of floor that was, with no other seen cell between."""
     floor = seen.explored & (seen.height < WALKABLE)
-    steps = round(DEPTH / seen.cell)
+    steps = round(depth / seen.cell)
     return ndimage.binary_dilation(floor, iterations=steps, mask=~seen.explored | floor) & ~seen.explored
 
 
@@ -123,6 +200,12 @@ def _things(decision: Decision, avoided: Sequence[str]) -> list[tuple[str, NDArr
         if decision.names[index] not in (*avoided, decision.held)
     ]
     return sorted(things, key=lambda thing: float(np.hypot(*(thing[1] - here))))
+
+
+def _passages(decision: Decision, avoided: Sequence[str]) -> dict[str, NDArray[np.float64]]:
+    """The places [m] of the openings through which a robot gets, by name."""
+    passable = [o for o in decision.openings if o.kind != "window" and (o.open >= WIDE or o.broken)]
+    return {o.name: np.array(o.position[:2], np.float64) for o in passable if o.name not in avoided}
 
 
 def _unvisited(things: Sequence[tuple[str, NDArray[np.float64]]], visits: Mapping[str, int]) -> tuple[Lookout, ...]:

@@ -22,12 +22,14 @@ from hazard_ms.planning.beginning import Course, best_course
 from hazard_ms.planning.measures import Measure, Measures
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, WALK_ONE_STEP, WALK_TO, Action, Decision, Tool
 from hazard_ms.skills.failures import NO_PATH, NOT_BURNING, UNFINISHED
 from hazard_ms.skills.motor.walking import ARRIVED
 
 OPEN = "open"
+LOOKS = (WALK_TO, EXPLORE)  # verbs of measures that look for fires
 MOST_LABELS, BEAM = 400, 20  # of the search for the rescues after measures [ours]: a tenth of a second
 PUT_DOWN = 80.0  # frames of putting down a tool [measured: 66 to 112]
 SAME_PLACE = 1.5  # distance within which a fire, or a door, is the one that was there [m] [ours]
@@ -41,6 +43,7 @@ class Mitigator:
         self._brief, self._memory = brief, memory
         self._put_down: dict[str, int] = {}  # how often each tool was put down
         self._opened: set[str] = set()
+        self._barred = False  # whether it puts down a tool to open a door
         self._aim: tuple[float, float] | None = None  # of the jet [m]
         self._begun: Candidate | None = None  # what it fetches a tool for, or goes to, and has not yet done
         self.why = ""
@@ -101,24 +104,28 @@ class Mitigator:
         """What it has begun, as it is among those `found` now, and the tools; none where it has begun nothing."""
         begun = self._begun
         seen = any(one.action.verb == EXTINGUISH for one in found)
-        if begun is None or (begun.action.verb == WALK_TO and seen):  # what burns comes before what may burn
+        if begun is None or (begun.action.verb in LOOKS and seen):  # what burns comes before what may burn
             return []
-        same = [
-            one
-            for one in found
-            if (one.action.verb, one.tool) == (begun.action.verb, begun.tool)
-            and one.charge == 0.0
-            and np.hypot(*np.subtract(one.place, begun.place)) <= SAME_PLACE
+        alike = [
+            one for one in found if (one.action.verb, one.tool) == (begun.action.verb, begun.tool) and one.charge == 0.0
         ]
-        return [*(one for one in found if one.charge > 0.0), *same[:1]]
+        same = [one for one in alike if np.hypot(*np.subtract(one.place, begun.place)) <= SAME_PLACE]
+        if begun.action.verb in LOOKS:
+            same = same or alike  # it is no longer worth a look there, but elsewhere
+        else:
+            same = same[:1]
+        return [*(one for one in found if one.charge > 0.0), *same]
 
     def _course(
         self, decision: Decision, ahead: Outlook, found: Sequence[Candidate], held: Tool | None
     ) -> Course | None:
         """The best course of those `found`, if it begins with one of them."""
-        unseen = {one.guards: (one.unseen, one.unseen_at) for one in found if one.unseen > 0.0}
-        problem = _with_unseen(ahead.plain, ahead.frames, list(unseen.values()))
-        measures = _measures(decision, ahead, found, list(unseen), held, self._brief.radius)
+        rows = {
+            (one.guards, at): one.unseen / len(one.unseen_at) for one in found for at in one.unseen_at if one.unseen > 0
+        }
+        problem = _with_unseen(ahead.plain, ahead.frames, [(value, at) for (_, at), value in rows.items()])
+        guarded = [name for name, _ in rows]
+        measures = _measures(decision, ahead, found, guarded, held, self._brief.radius)
         course = best_course(problem, measures, most_labels=MOST_LABELS, beam=BEAM)
         return course if course.steps and course.before is None else None
 
@@ -130,6 +137,10 @@ class Mitigator:
         if last.verb == OPEN and result.reason in UNFINISHED and self._memory.failures.get(str(last), 0) < TRIES:
             return last if last in decision.available else None
         barred = last.verb in (WALK_TO, WALK_ONE_STEP) and result.reason == NO_PATH
+        if barred and self._leaf(decision) is not None and any(tool.held for tool in decision.tools):
+            self._barred, self.why = True, "there was no way, and a door opens to an empty hand"
+            return Action(DROP)
+        barred, self._barred = barred or self._barred, False
         return self._door(decision, "there was no way") if barred else None
 
     def opening(self, decision: Decision) -> Action | None:
@@ -139,22 +150,31 @@ class Mitigator:
         return self._door(decision, "there may be more behind it")
 
     def _door(self, decision: Decision, why: str) -> Action | None:
-        """The nearest of the doors that can be opened farther, those that are ajar first, each once."""
-        names = [a for a in decision.available if a.verb == OPEN and a.target not in self._opened]
-        where = {o.name: o for o in decision.openings if o.kind == "door" and o.open < 0.9}
-        doors = [a for a in names if a.target in where]
-        if not doors:
+        """The door to open next, once; None where there is none, or it cannot be opened now."""
+        door = self._leaf(decision)
+        if door is None or Action(OPEN, door) not in decision.available:
+            return None
+        self._opened.add(door)
+        self.why = why
+        return Action(OPEN, door)
+
+    def _leaf(self, decision: Decision) -> str | None:
+        """The nearest of the doors that can be opened farther, those that are ajar first; None where there is none."""
+        if OPEN not in self._brief.mitigations:
             return None
         here = np.array(decision.agent_position)
+        doors = [o for o in decision.openings if o.kind == "door" and o.open < 0.9 and not o.broken]
+        doors = [o for o in doors if o.name not in self._opened]
 
-        def order(action: Action) -> tuple[bool, float]:
-            door = where[str(action.target)]
+        def order(door: KnownOpening) -> tuple[bool, float]:
             return door.open == 0.0, float(np.hypot(*(np.array(door.position[:2]) - here)))
 
-        best = min(doors, key=order)
-        self._opened.add(str(best.target))
-        self.why = why
-        return best
+        return min(doors, key=order).name if doors else None
+
+
+def _alike(one: str, other: str) -> bool:
+    """Whether two verbs are of the same kind of measure."""
+    return one == other or (one in LOOKS and other in LOOKS)
 
 
 def _with_unseen(problem: Problem, frames: NDArray[np.float64], unseen: Sequence[tuple[float, float]]) -> Problem:

@@ -33,20 +33,23 @@ class Stand:
 
 
 def stands(decision: Decision, names: Sequence[str], radius: float) -> dict[str, Stand]:
-    """The ends of walks to things on the map, by name, for a robot of `radius` [m], where a way leads to them.
+    """The ends of walks to things on the map or into openings, by name, for a robot of `radius` [m]: where a way leads.
 
     Floor that was never seen counts as free, but costs more. Raises ValueError for a name that nothing has.
     """
     seen, here = decision.map, decision.agent_position
-    things = [seen.objects[decision.index(name)] for name in names]
-    goals = [(float(t.position[0]), float(t.position[1])) for t in things]
+    openings = {opening.name: opening.position for opening in decision.openings}
+    things = [None if name in openings else seen.objects[decision.index(name)] for name in names]
+    edges = [0.0 if thing is None else thing.radius for thing in things]
+    places = [openings[name] if thing is None else thing.position for name, thing in zip(names, things, strict=True)]
+    goals = [(float(place[0]), float(place[1])) for place in places]
     if not goals:
         return {}
     ways = Ways(seen.height, seen.explored, seen.cell, seen.origin, here, [*goals, here], radius)
     made = {}
-    for name, goal, thing in zip(names, goals, things, strict=True):
-        path = ways.path(goal, ARRIVED + thing.radius, ARM + GRASP_REACH + thing.radius)
-        if path is not None and path.short <= ARM + GRASP_REACH + thing.radius:
+    for name, goal, edge in zip(names, goals, edges, strict=True):
+        path = ways.path(goal, ARRIVED + edge, ARM + GRASP_REACH + edge)
+        if path is not None and path.short <= ARM + GRASP_REACH + edge:
             end = path.points[-1] if len(path.points) else here
             made[name] = Stand(name, (float(end[0]), float(end[1])), path.length)
     return made

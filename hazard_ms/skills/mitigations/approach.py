@@ -1,4 +1,4 @@
-"""Walks to a place within reach of something that is not on the map as a thing: a handle, or flames."""
+"""Walks to a place within reach of something that is not on the map as a thing: a handle, flames, or a doorway."""
 
 from __future__ import annotations
 
@@ -7,12 +7,23 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.motor.arm import never
 from hazard_ms.skills.motor.motion import drive, turn_to
 from hazard_ms.skills.motor.walking import SLACK, TRIES, WALK_FRAMES, midpoint, way_to
+
+INSIDE = 0.3  # distance from the middle of an opening at which a walk into it has arrived [m] [ours]
+BEFORE = 1.0  # the same where that is not passable: before a door that is shut [m] [ours]
+
+
+def walk_into(stage: Stage, opening: KnownOpening) -> Skill:
+    """Walk into an `opening`, or to before it where it is shut."""
+    walked = yield from approach(stage, np.array(opening.position), INSIDE, BEFORE)
+    stage.look()
+    return Result(walked.ok, walked.reason, walked.frames)
 
 
 def approach(

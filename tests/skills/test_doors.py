@@ -150,3 +150,15 @@ def test_a_saved_state_holds_how_far_a_door_has_turned() -> None:
         rooms.world.openings.set_open(ONE, 0, 1.0)
         rooms.base.set_state_dict(saved)
         assert rooms.share() == pytest.approx(0.3) and SIZE[0] > HINGE[0]
+
+
+@pytest.mark.parametrize(("share", "nearest", "farthest"), [(1.0, 0.0, 0.3), (0.0, 0.3, 1.0)])
+def test_a_walk_leads_into_an_open_doorway_and_up_to_a_shut_door(share: float, nearest: float, farthest: float) -> None:
+    """The door is at x = 3.5 m, y = 2 m, and the walk begins 2 m from it."""
+    with two_rooms(spec(dataclasses.replace(DOOR, open=share))) as rooms:
+        for _ in range(4):  # walks of at most 100 frames
+            result = rooms.run(skill(rooms.stage, Action("walk_to", "door_0")))
+            if result.reason != failures.MAX_FRAMES:
+                break
+        x, y, _ = rooms.stage.robot.base()
+        assert result.ok and nearest <= np.hypot(x - 3.5, y - 2.0) <= farthest + 0.05

@@ -32,7 +32,8 @@ HOME = 87.0  # floor of a home [m2] [measured: mean of 12 homes of `train`]
 ROOM = 3.7  # length and width of what may burn behind a passage [m] [measured: rooms of `train` have 8 to 17 m2]
 COLD = 1.2  # distance from a young fire within which floor is warm [m] [docs/physics.md 1.1: 80 C at 1.5 m]
 WARMTH = 6.0  # distance up to which warm floor is seen [m] [ours]: longer than most rooms
-SECOND = 0.1  # of the chance of a fire in a room with another: two get in sight of each other through doors [ours]
+SAME_ROOM = 3.0  # distance in sight up to which it is surely the same room: walls may not be on the map yet [m] [ours]
+SECOND = 0.1  # of the chance of a fire in sight of another, which is in another room, or of a look in vain [ours]
 LEAST_NEW = 0.01  # share of the floor of a home that a place must show to be worth a look for fires [ours]
 
 
@@ -97,15 +98,13 @@ def fire_lookouts(
     Arguments as for `lookouts`; `fires`: where the others were found [m], each of which is in another room. From
     openings rooms are seen in which nothing is known. Where the agent stands is called HERE.
     """
-    exhausted = [*avoided, *(name for name, count in visits.items() if count >= MOST_VISITS)]
+    exhausted = [*avoided, *visits]
     passages = _passages(decision, exhausted)
     things, seen = [*_things(decision, exhausted), *passages.items()], decision.map
     ends = stands(decision, [name for name, _ in things], radius)
     floor, weight, behind = _where_it_may_burn(seen, [passages[name] for name in passages])
-    for place in looks:
-        weight[in_sight(seen, place, floor, WARMTH)] *= BARRED
-    for place in fires:
-        weight[in_sight(seen, place, floor, WARMTH)] *= SECOND
+    for place in (*looks, *fires):
+        weight[in_sight(seen, place, floor, SAME_ROOM)] *= SECOND
     kept = [(name, place) for name, place in things if name in ends]
     names, places = [HERE, *(name for name, _ in kept)], [np.array(decision.agent_position), *(p for _, p in kept)]
     eyes = [decision.agent_position, *(ends[name].place for name, _ in kept)]
@@ -139,7 +138,8 @@ def _where_it_may_burn(
             for sign in (-1, 1)
         ]
         unknown = [float(hidden[y[side], x[side]].mean()) if side.any() else 0.0 for side in sides]
-        behind[row] = sides[int(np.argmax(unknown))]
+        side = sides[int(np.argmax(unknown))] & hidden[y, x]
+        behind[row, side] = in_sight(seen, (float(passage[0]), float(passage[1])), grid[side], WARMTH)
     may = hidden[y, x] & (unseen_floor(seen, DEPTH)[y, x] | behind.any(axis=0))
     area = seen.cell**2
     left = max(HOME - float(floor.sum()) * area, float(may.sum()) * area * EVERY**2)

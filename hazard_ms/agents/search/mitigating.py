@@ -95,10 +95,16 @@ class Mitigator:
         if course is None:
             self._begun = None
             return None
-        self._begun = next(found[step.measure] for step in course.steps if found[step.measure].charge == 0.0)
-        steps = ", ".join(f"{found[step.measure].name} by {step.done:.0f}" for step in course.steps)
-        self.why = f"{steps}: averts {course.value:.1f} with rescues after it, {course.plain:.1f} by rescues alone"
-        return found[course.steps[0].measure]
+        steps = [found[step.measure] for step in course.steps]
+        end = next(step for step in steps if step.charge == 0.0)
+        if end.action.verb in LOOKS:  # looks are listed by what they show for their distance: the best one first
+            looks = [one for one in found if one.action.verb in LOOKS and one.tool == end.tool]
+            steps = [looks[0] if step is end else step for step in steps]
+            end = looks[0]
+        self._begun = end
+        told = ", ".join(f"{step.name} by {at.done:.0f}" for step, at in zip(steps, course.steps, strict=True))
+        self.why = f"{told}: averts {course.value:.1f} with rescues after it, {course.plain:.1f} by rescues alone"
+        return steps[0]
 
     def _begun_among(self, found: Sequence[Candidate]) -> list[Candidate]:
         """What it has begun, as it is among those `found` now, and the tools; none where it has begun nothing."""
@@ -109,11 +115,9 @@ class Mitigator:
         alike = [
             one for one in found if (one.action.verb, one.tool) == (begun.action.verb, begun.tool) and one.charge == 0.0
         ]
-        same = [one for one in alike if np.hypot(*np.subtract(one.place, begun.place)) <= SAME_PLACE]
-        if begun.action.verb in LOOKS:
-            same = same or alike  # it is no longer worth a look there, but elsewhere
-        else:
-            same = same[:1]
+        same = [one for one in alike if np.hypot(*np.subtract(one.place, begun.place)) <= SAME_PLACE][:1]
+        if begun.action.verb in LOOKS:  # what is no longer worth a look there may be elsewhere
+            same = [one for one in found if one.action.verb in LOOKS and one.tool == begun.tool]
         return [*(one for one in found if one.charge > 0.0), *same]
 
     def _course(
@@ -170,11 +174,6 @@ class Mitigator:
             return door.open == 0.0, float(np.hypot(*(np.array(door.position[:2]) - here)))
 
         return min(doors, key=order).name if doors else None
-
-
-def _alike(one: str, other: str) -> bool:
-    """Whether two verbs are of the same kind of measure."""
-    return one == other or (one in LOOKS and other in LOOKS)
 
 
 def _with_unseen(problem: Problem, frames: NDArray[np.float64], unseen: Sequence[tuple[float, float]]) -> Problem:

@@ -47,6 +47,8 @@ class Identities:
         """The `action` as one to true things."""
         if action.target is None:
             return Meant(action, NOTHING, None)
+        if (opening := self._env.stage.doors.find(action.target)) is not None:
+            return Meant(action, NOTHING, opening.position[:2])
         index, names = self._env.labeller.index(action.target), self._env.base.world.names[0]
         body, known = self.body(index), self._env.seen.objects.get(index)
         place = None if known is None else (float(known.position[0]), float(known.position[1]))

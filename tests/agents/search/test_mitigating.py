@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from hazard_ms.agents.base import Agent, agent
 from hazard_ms.sensing.sighting import Sighting
@@ -34,6 +35,8 @@ def home(task: str = "HazardHouseFire-v1", rooms: bool = True) -> Brief:
 def decision(last: tuple[Action, Result] = LOOK, held: str | None = None, frame: int = 60) -> Decision:
     """What is known of the two rooms from the western one at (0, 0): dry, and nothing burns yet."""
     seen = two_rooms()
+    outer = ndimage.binary_dilation(seen.explored, np.ones((5, 5), bool)) & ~seen.explored
+    seen.tell(np.where(outer, 1.93, seen.height).astype(np.float32), seen.explored | outer)
     seen.loose = np.ones(len(NAMES), bool)
     y, x = np.nonzero(seen.explored)
     seen.levels[0, y, x], seen.told_at[y, x] = 0.0, frame
@@ -120,6 +123,7 @@ def in_part(given: Decision) -> Decision:
 def test_it_looks_for_the_fires_that_it_has_not_seen() -> None:
     """Homes begin with four fires: with an extinguisher it goes and looks for them, until there are none left."""
     player, take = begun("planner", home()), (Action(PICK_UP, NAMES[1]), Result(True, frames=50))
+    player._memory.looks.append((0.0, 0.0))  # type: ignore[attr-defined]
     went = player.act(in_part(decision(take, NAMES[1], 130)))
     assert went.verb == WALK_TO and went.target != NAMES[1] and "look for fires at" in str(player.note)
     there = in_part(decision((went, Result(True, frames=50)), NAMES[1], 180))
@@ -152,6 +156,14 @@ def test_what_was_begun_is_gone_on_with(who: str) -> None:
         assert each.act(replace(held, available=(*held.available, *jets))) == jet
 
 
+def test_a_fire_by_which_nothing_is_hot_yet_is_named_by_what_is_near() -> None:
+    """A box 1.4 m from a single flame is at 85 degrees there: it is named to the skill all the same."""
+    player, take = begun("planner", home()), (Action(PICK_UP, NAMES[1]), Result(True, frames=50))
+    held = on_fire(decision(take, NAMES[1], 130), ((3.2, 0.0),))
+    assert max(seen.levels[0] for seen in held.map.objects.values()) < 100.0
+    assert player.act(held).verb == "extinguish"
+
+
 @pytest.mark.parametrize("task", ["HazardHouseFire-v1", "HazardHouseFlood-v1"])
 def test_where_there_is_no_way_it_opens_a_door(task: str) -> None:
     """Once a walk found no path it opens the door that is ajar, on and on until that is done, but none that is open."""
@@ -164,6 +176,16 @@ def test_where_there_is_no_way_it_opens_a_door(task: str) -> None:
     given = decision(walk)
     wide = replace(given, openings=(replace(DOOR, open=1.0),), available=(*given.available, open_it))
     assert begun("planner", home(task)).act(wide) != open_it
+
+
+def test_with_a_tool_in_its_hand_it_puts_that_down_to_open_a_door() -> None:
+    """No hand is free for the handle: it puts the extinguisher down and opens the door that is ajar."""
+    player, open_it = begun("planner", home()), Action("open", DOOR.name)
+    walk = (Action(WALK_TO, "book_1"), Result(False, NO_PATH))
+    ajar = (replace(DOOR, open=0.3),)
+    assert player.act(replace(decision(walk, NAMES[1]), openings=ajar)) == Action(DROP)
+    empty = decision((Action(DROP), Result(True, frames=80)), frame=140)
+    assert player.act(replace(empty, openings=ajar, available=(*empty.available, open_it))) == open_it
 
 
 def test_without_mitigations_it_only_rescues() -> None:

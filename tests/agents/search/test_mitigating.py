@@ -10,6 +10,8 @@ import pytest
 from scipy import ndimage
 
 from hazard_ms.agents.base import Agent, agent
+from hazard_ms.agents.search import candidates
+from hazard_ms.agents.search.lookouts import Lookout
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.brief import Brief
@@ -132,6 +134,14 @@ def test_it_looks_for_the_fires_that_it_has_not_seen() -> None:
     for frame, place in enumerate(((4.2, 1.0), (-3.0, 0.0), (0.0, 3.0), (0.0, -3.0))):
         done._memory.house.put_out(place, frame)  # type: ignore[attr-defined]
     assert done.act(in_part(decision(take, NAMES[1], 130))) == Action(DROP)
+
+
+def test_it_looks_first_where_a_look_costs_least(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A look at the box, on the way to the far book, comes before one at that book, which would show more."""
+    marks = Lookout("box_1", (4.2, 1.0), 0.1), Lookout("book_1", (5.0, 1.0), 0.8)
+    monkeypatch.setattr(candidates, "fire_lookouts", lambda *told: marks)
+    player, take = begun("planner", home()), (Action(PICK_UP, NAMES[1]), Result(True, frames=50))
+    assert player.act(decision(take, NAMES[1], 130)) == Action(WALK_TO, "box_1")
 
 
 def test_a_fire_that_is_seen_comes_before_those_that_may_be_elsewhere() -> None:

@@ -113,7 +113,7 @@ def fire_lookouts(
         if name in ends:
             shown[names.index(name)] |= room
     ease = 1.0 / (1.0 + np.array([0.0, *(ends[name].length for name, _ in kept)]))
-    return _best(names, places, shown * weight, ease, LEAST_NEW)
+    return _best(names, places, shown * weight, ease, LEAST_NEW, True)
 
 
 def _where_it_may_burn(
@@ -147,13 +147,22 @@ def _where_it_may_burn(
 
 
 def _best(
-    names: Sequence[str], places: Sequence[NDArray[np.float64]], shows: NDArray, ease: NDArray, least: float
+    names: Sequence[str],
+    places: Sequence[NDArray[np.float64]],
+    shows: NDArray,
+    ease: NDArray,
+    least: float,
+    passes: bool = False,
 ) -> tuple[Lookout, ...]:
-    """The best of N places by what they show, [N, P], and their `ease`, [N], each counting what others leave."""
+    """The best of N places by what they show, [N, P], and their `ease`, [N], each counting what others leave.
+
+    Where the best one shows less than `least` that is the end; or, if it `passes` over such places, the next one comes.
+    """
     chosen: list[Lookout] = []
     for _ in range(MOST):
         share = shows.sum(axis=1)
-        best = int(np.argmax(np.where(share >= least, share * ease, 0.0)))
+        score = share * ease
+        best = int(np.argmax(np.where(share >= least, score, 0.0) if passes else score))
         if share[best] < least:
             break
         place = float(places[best][0]), float(places[best][1])

@@ -67,7 +67,7 @@ class HouseFire:
 
     @property
     def places(self) -> list[tuple[float, float]]:
-        """Where fires were found [m], those that were put out first; places close to each other are of one."""
+        """The places of the fires that were found [m], those that are out first; close to each other they are one."""
         apart: list[tuple[float, float]] = []
         for out in self._out:
             if out.burned and all(np.hypot(*np.subtract(out.place, place)) >= FIRES_APART for place in apart):

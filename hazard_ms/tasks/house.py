@@ -29,7 +29,9 @@ def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
 def hazard_house_flood(physics: str = "paper", severity: str = USUAL) -> Task:
     """The task HazardHouseFlood-v1 with the physics of a preset. Raises ValueError for unknown names."""
     water = flood(physics, severity)
-    return _in_homes([dataclasses.replace(water, every=EVERY) if physics == "paper" else water], "put_on")
+    return _in_homes(
+        [dataclasses.replace(water, every=60, through_doors=True, slope=1.0) if physics == "paper" else water], "put_on"
+    )
 
 
 def _in_homes(hazards: Sequence[Hazard], *mitigations: str) -> Task:

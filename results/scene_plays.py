@@ -27,7 +27,7 @@ from hazard_ms.sketch.travel.ways import Ways
 from hazard_ms.spec import Area, Body, Opening, SceneSpec
 from results.scene_futures import FIRE, Change
 
-FETCH, PUT_OUT, SHUT = 100.0, 100.0, 150.0  # frames, without ways [ours: of the first tries in the simulator]
+FETCH, PUT_OUT, SHUT = 100.0, 100.0, 200.0  # frames, without ways [ours: of the first tries in the simulator]
 PUT_DOWN = 30.0  # frames in which an extinguisher is put down [ours]
 FIRES_EACH = 2  # fires that one extinguisher puts out [ours]
 JET = 1.0  # reach of a jet beyond where a walk ends [m] [ours]

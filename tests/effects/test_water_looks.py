@@ -14,7 +14,7 @@ import torch
 
 from hazard_ms.bench.effects import costs
 from hazard_ms.effects.entities import PREFIX, dry_ior, materials
-from hazard_ms.effects.flood import surface_corners
+from hazard_ms.effects.flood import paths_of, surface_corners
 from hazard_ms.effects.looks import Looks, makers
 from hazard_ms.effects.shaders.common import WATER
 from hazard_ms.effects.shaders.water import CUT_IOR
@@ -190,7 +190,7 @@ def test_the_surface_is_the_hazards_own(spec) -> None:  # noqa: ANN001
     state = flood.state_type.allocate({"E": 1, "B": 1} | flood.sizes(world), "cpu")
     flood.reset(state, world, torch.arange(1))
     state.level[:] = 1.4
-    place, data = surface_corners(spec)
+    place, data = surface_corners(spec, paths_of(spec))
     assert (data[..., 2] == WATER).all()
     points = torch.from_numpy(np.column_stack([place.reshape(-1, 2), np.zeros(place.size // 2)])).float()[None]
     mine = state.level.item() - state.surface_slope.item() * data[..., 0].ravel()

@@ -35,7 +35,7 @@ JET, FACED = (
 )  # frames of the jet that a flame takes, and of a fire until the jet is open [measured: 20 to 35]
 PIN = 60.0  # frames of pulling the pin, once [hazard_ms.skills.mitigations.extinguish: 2 s]
 DOUBLING = 280.0  # frames in which flames become twice as many: 41 after 1,500 frames [measured]
-SHUTTING = 230.0  # frames of shutting a door from before it [ours]
+SHUTTING = 200.0  # frames of shutting a door from before it [ours]
 TRIES = 2  # failures of one measure, after which it is given up [ours]
 STANDS = 0.7  # distance from a door at which it is shut [m] [ours]
 JET_WAY = 2.5  # distance from flames at which a jet is opened [m] [ours]

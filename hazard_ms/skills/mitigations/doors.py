@@ -27,7 +27,7 @@ from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, follow, go, lacking, never, posture_for
 from hazard_ms.skills.motor.grasping import APPROACH_FRAMES
 from hazard_ms.skills.motor.motion import drive, turn_to
-from hazard_ms.skills.motor.navigation import Ways
+from hazard_ms.skills.motor.navigation import Path, Ways
 from hazard_ms.skills.motor.routes import quickest
 from hazard_ms.skills.motor.surface import Leg, Surface
 from hazard_ms.skills.motor.surface import Place as Around
@@ -40,6 +40,9 @@ WINDOW_SHARE = 0.9  # how far a window opens: a pane that is wholly out is broke
 STANDS = 3  # places at which it tries to take the handle [ours]
 NEAR = 0.85  # share of the arm's span within which it walks where no place is known [ours]
 OFF_FACE = 0.08  # of the place for the hand from the middle of the leaf [m] [ours]
+SAG = 0.05  # by which a stretched arm hangs lower than it should [m] [ours: Fetch's 0.05 to 0.08]
+TURNING = 0.5  # metres of way that it takes as long to turn and drive forwards as to back [ours]
+STRAIGHT = 0.05  # of a way that leads straight back: distance from the line [m] [ours]
 RINGS, DIRECTIONS = (0.3, 0.6, 0.9, 1.2, 1.6), 16  # where it looks for a place aside: distances [m], number of ways
 FOLLOW_EVERY = 3  # frames from one posture of the hand at the handle to the next [ours]
 AROUND = 0.25  # of the handle, within which the arm may come to the leaf [m] [ours]
@@ -143,7 +146,7 @@ def _take(stage: Stage, handle: NDArray[np.float64]) -> Skill:
     stage.robot.use_hand(handle)
     x, y, _ = stage.robot.base()
     towards = np.array([x - handle[0], y - handle[1], 0.0])
-    aim = handle + OFF_FACE * towards / max(float(np.hypot(*towards[:2])), 1e-6)
+    aim = handle + OFF_FACE * towards / max(float(np.hypot(*towards[:2])), 1e-6) + (0.0, 0.0, SAG)
 
     def there() -> bool:
         return float(np.linalg.norm(stage.robot.hand() - handle)) < 0.9 * GRASP_REACH
@@ -189,11 +192,11 @@ def _lead(stage: Stage, leaf: Leaf, goal: float, opening: bool, home: float) -> 
 
 def _step_aside(stage: Stage, leaf: Leaf, goal: float, home: float) -> Skill:
     """Drive to the nearest place out of the way of the `leaf`, on the side `home`; not at all if it is out already."""
-    x, y, _ = stage.robot.base()
+    x, y, heading = stage.robot.base()
     radius = np.array([stage.robot.build.radius + ASIDE])
     if not leaf.meets(leaf.angle, goal, np.array([[x, y]]), radius):
         return Result(True)
-    around = np.arange(DIRECTIONS) * 2.0 * np.pi / DIRECTIONS
+    around = heading + np.pi + np.arange(DIRECTIONS) * 2.0 * np.pi / DIRECTIONS
     spots = [np.array([x + far * np.cos(a), y + far * np.sin(a)]) for far in RINGS for a in around]
     free = [
         (float(at[0]), float(at[1]))
@@ -208,10 +211,24 @@ def _step_aside(stage: Stage, leaf: Leaf, goal: float, home: float) -> Skill:
     reached = [path for path in paths if path is not None and path.short <= seen.cell and len(path.points)]
     if not reached:
         return Result(False, failures.IN_THE_SWING)
-    best = min(reached, key=lambda path: path.length)
+    best = min(reached, key=lambda path: path.length + TURNING * (_behind(path, (x, y, heading)) is None))
+    back = _behind(best, (x, y, heading))
+    if back is not None:
+        moved: Result = yield from go(stage, stage.robot.tucked, REACH_FRAMES, never, 0.3, -back)
+        return moved
     folded = yield from go(stage, stage.robot.tucked, REACH_FRAMES, never, 0.3)
     moved = yield from drive(stage, best.points, APPROACH_FRAMES)
     return Result(moved.ok, moved.reason, folded.frames + moved.frames)
+
+
+def _behind(path: Path, base: tuple[float, float, float]) -> float | None:
+    """Length [m] of a path that leads straight back from the `base`; None for others."""
+    x, y, heading = base
+    ahead = (path.points - (x, y)) @ np.array(
+        [[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]]
+    ).T
+    straight = bool((np.abs(ahead[:, 1]) < STRAIGHT).all() and ahead[-1, 0] < 0.0)
+    return float(-ahead[-1, 0]) if straight else None
 
 
 def _obstructed(stage: Stage, leaf: Leaf, first: float, last: float) -> bool:

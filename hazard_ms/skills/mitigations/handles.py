@@ -7,6 +7,7 @@ from collections.abc import Collection
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.skills.context import Stage
 from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.mitigations.views import in_view
@@ -14,21 +15,22 @@ from hazard_ms.skills.motor.navigation import Ways
 
 Array = NDArray[np.float64]
 Place = tuple[float, float]  # [m], world frame
-SHARES = (1.0, 0.9, 0.8)  # of the arm's span: distances from the handle [ours]: nearer, the elbow meets the leaf
+SHARES = (0.92, 0.87, 0.82)  # of the arm's span: distances from the handle [ours]: nearer, the elbow meets the leaf
 SIDES = 24  # directions from the handle in which places are tried [ours]
 ASIDE = 0.05  # gap that the base leaves to a leaf that turns [m] [ours]
 STEPPING = (
     1.2  # metres of way that take as long as folding the arm and stepping out of the leaf's way [ours: 80 frames]
 )
+BEFORE = 0.1  # distance from the wall of what must be in view of a shut door: its handle [m] [ours]
 CLOSE, ENOUGH = 0.05, 0.1  # distance from a place at which one stands on it, and with an obstacle on it [m] [ours]
 
 
 def stand(stage: Stage, leaf: Leaf, goal: float, home: float, without: Collection[Place] = ()) -> Place | None:
     """The place with the least way to it from which the handle of `leaf` is in reach; None for none.
 
-    To step aside before the leaf turns to the angle `goal` [rad] counts as a way, and so does nothing else. A place out
-    of the leaf's way lies on the side `home` (as Leaf.side has it), so that a robot does not shut itself in. Places
-    within ENOUGH of those in `without` do not count.
+    To step aside before the leaf turns to the angle `goal` [rad] counts as a way. A place lies on the side `home` (as
+    Leaf.side has it), so that a robot does not shut itself in; or beyond the door, in the way of its leaf, where it
+    gets through. Places within ENOUGH of those in `without` do not count.
     """
     handle, seen, build = leaf.handle(), stage.seen, stage.robot.build
     nearest, farthest = build.span(float(handle[2]))
@@ -42,11 +44,13 @@ def stand(stage: Stage, leaf: Leaf, goal: float, home: float, without: Collectio
     column, row = np.floor((places - seen.origin) / seen.cell).astype(np.int64).T
     inside = (np.minimum(row, column) >= 0) & (np.maximum(row, column) < len(seen.explored))
     places = places[inside][seen.explored[row[inside], column[inside]]]
-    places = places[in_view(stage, np.pad(places, ((0, 0), (0, 1)), constant_values=handle[2]), handle)]
+    passes = leaf.o.width * hinges.share(leaf.angle) > 2.0 * build.radius
+    aim = handle if passes else handle + np.sign(home) * BEFORE * np.array([*leaf.out, 0.0])
+    places = places[in_view(stage, np.pad(places, ((0, 0), (0, 1)), constant_values=handle[2]), aim)]
     gap = np.full(len(places), build.radius + ASIDE)
     meets = leaf.in_the_way(leaf.angle, goal, places, gap)
     sides = np.array([leaf.side(*place) for place in places]) * home
-    kept = (meets | (sides > 0.0)) & [all(np.hypot(*(p - w)) > ENOUGH for w in without) for p in places]
+    kept = (meets & passes | (sides > 0.0)) & [all(np.hypot(*(p - w)) > ENOUGH for w in without) for p in places]
     places, cost = places[kept], STEPPING * meets[kept]
     if not len(places):
         return None

@@ -59,6 +59,11 @@ class Leaf:
             return np.zeros(len(points), bool)
         return hinges.in_swing(self.room, self.o, first, last, points, radius)
 
+    @property
+    def out(self) -> Array:
+        """The direction into which it turns from where it is shut, [2]."""
+        return hinges.hinge(self.room, self.o)[2]
+
     def side(self, x: float, y: float) -> float:
         """The distance [m] of a place [m] from its wall: above 0 on the side into which it turns."""
         start, _, out = hinges.hinge(self.room, self.o)

@@ -199,6 +199,22 @@ def test_the_surface_is_the_hazards_own(spec) -> None:  # noqa: ANN001
     assert np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() == pytest.approx(np.prod(spec.room.size), rel=1e-3)
 
 
+@pytest.mark.render
+def test_the_surface_follows_doors() -> None:
+    """What is drawn ends at a door that was shut, and goes on behind it once it is open again."""
+    door = Opening("door", "middle", 1.5, 0.9, 2.0, open=1.0)
+    place = flooded(0.6, spec=replace(PARTED, room=replace(PARTED.room, openings=(door,))), view=OVERHEAD)
+    blue = []
+    for share in (1.0, 0.0, 1.0):
+        place.world.openings.set_open(torch.arange(1), 0, share)
+        place.hazard.advance(place.state, place.world, 1 / 30)
+        place.state.level[:] = 0.6
+        blue.append(place.picture(300)["rgb"].astype(int))
+    differs = (abs(blue[1] - blue[0]).max(-1) > 10).mean(0)
+    assert differs.mean() > 0.1 and (differs == 0.0).sum() >= 5
+    assert (abs(blue[2] - blue[0]).max(-1) > 10).mean() < 0.02
+
+
 def test_the_cost_of_an_unknown_task_is_not_measured() -> None:
     with pytest.raises(ValueError, match="env_id must be one of HazardFire-v1, .*, got 'HazardSnow-v1'"):
         costs("HazardSnow-v1", 3, 0)

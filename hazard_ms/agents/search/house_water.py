@@ -25,7 +25,7 @@ SLOPE = math.tan(math.radians(1.0))  # of the surface along the way (docs/benchm
 WATER_DENSITY = 1000.0  # [kg/m^3]
 LEAST = 0.01  # level below which nothing floats off [m] [ours: tops are seen to a centimetre]
 WET = 0.003  # level from which a cell was seen wet [m] [ours]
-AT_SOURCE = 0.03  # drop up to which water comes in beside a place: half a metre of way [m] [ours]
+AT_SOURCE = 0.03  # drop up to which water comes in beside a place [m] [ours]
 
 Array = NDArray[np.float64]
 

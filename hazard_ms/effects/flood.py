@@ -17,7 +17,7 @@ import torch
 from sapien.render import RenderMaterial, RenderShapeTriangleMesh
 from torch import Tensor
 
-from hazard_ms.effects.entities import FRAMES_PER_SECOND, dry_ior, entities_of, make_effect, materials
+from hazard_ms.effects.entities import FRAMES_PER_SECOND, Effect, dry_ior, entities_of, make_effect, materials
 from hazard_ms.effects.scene_effects import Place, SceneEffects
 from hazard_ms.effects.shaders.common import WATER
 from hazard_ms.effects.shaders.water import WET_IOR
@@ -39,15 +39,26 @@ class _SceneFlood:
     """The flood of one scene."""
 
     def __init__(self, scene: sapien.Scene, spec: SceneSpec, names: tuple[str, ...], around: Surroundings) -> None:
-        self._around = around
-        self._path_length = _path_lengths(_paths(spec), around.places)[0]
-        self._surface = make_effect(scene, ripple_texture(), lambda material: surface_mesh(spec, material), 0)
-        if self._surface is not None:
-            material = self._surface.material
-            material.transmission_texture = around.texture
-            material.transmission = 1.0
+        self._scene, self._spec, self._around = scene, spec, around
+        self._surface: Effect | None = None
+        self.lead(paths_of(spec))
         self._things = [materials(e) for e in entities_of(scene, names)]
         self._wet = [0.0] * len(names)
+
+    def lead(self, paths: flow_paths.FlowPaths) -> None:
+        """Let the water come along `paths`, [1, ...], from now on."""
+        self.reached = paths.doorway_distance[0].tolist()
+        self._path_length = _path_lengths(paths, self._around.places)[0]
+        if self._surface is not None:
+            self._scene.remove_entity(self._surface.entity)
+        spec = self._spec
+        self._surface = make_effect(
+            self._scene, ripple_texture(), lambda material: surface_mesh(spec, paths, material), 0
+        )
+        if self._surface is not None:
+            material = self._surface.material
+            material.transmission_texture = self._around.texture
+            material.transmission = 1.0
 
     def show(self, level: float, slope: float, time: float, surface: np.ndarray | None, size: tuple[int, int]) -> None:
         """Show water at `level` [m] at its source, with a surface slope.
@@ -92,17 +103,19 @@ class FloodEffects(SceneEffects):
         surface = flood.surface.cpu().numpy() if isinstance(flood, InundationState) else None
         size = floor_plan.size_of([spec.room for spec in world.specs])
         for e, scene in enumerate(self._scenes):
+            if surface is None and world.openings.inner and scene.reached != flood.doorway_distance[e].tolist():
+                scene.lead(_paths_in(flood, e))  # a door was opened or shut
             scene.show(level[e], slope[e], time[e], None if surface is None else surface[e], size)
             scene.wet(wet[e])
 
 
-def surface_corners(spec: SceneSpec) -> tuple[np.ndarray, np.ndarray]:
-    """The surface of the water over the floor of the scene's room as Q quads, as far as water can get.
+def surface_corners(spec: SceneSpec, paths: flow_paths.FlowPaths) -> tuple[np.ndarray, np.ndarray]:
+    """The surface of the water over the floor of a room as Q quads, as far as it gets along `paths`, [1, ...].
 
     Returns the places of their corners [m], [Q, 4, 2], and what these carry, [Q, 4, 3]: path length of the water [m],
     its direction [rad], kind.
     """
-    paths, room = _paths(spec), spec.room
+    room = spec.room
     low, high = -room.beyond, (room.size[0] + room.beyond, room.size[1] + room.beyond)
     cuts = [sorted([low, high[k], *(p.at for p in room.partitions if p.axis == "yx"[k])]) for k in (0, 1)]
     corners = []
@@ -120,9 +133,11 @@ def surface_corners(spec: SceneSpec) -> tuple[np.ndarray, np.ndarray]:
     return place[reached], np.stack([length, turn, np.full_like(length, WATER)], -1)[reached]
 
 
-def surface_mesh(spec: SceneSpec, material: RenderMaterial) -> RenderShapeTriangleMesh | None:
+def surface_mesh(
+    spec: SceneSpec, paths: flow_paths.FlowPaths, material: RenderMaterial
+) -> RenderShapeTriangleMesh | None:
     """The mesh of `surface_corners`, whose vertices coincide; None if water gets nowhere."""
-    place, data = (c.reshape(-1, c.shape[-1]).astype(np.float32) for c in surface_corners(spec))
+    place, data = (c.reshape(-1, c.shape[-1]).astype(np.float32) for c in surface_corners(spec, paths))
     if len(place) == 0:
         return None
     first = 4 * np.arange(len(place) // 4)[:, None]
@@ -132,8 +147,13 @@ def surface_mesh(spec: SceneSpec, material: RenderMaterial) -> RenderShapeTriang
     )
 
 
-def _paths(spec: SceneSpec) -> flow_paths.FlowPaths:
-    """The paths of the water in the scene's room, [1, ...]."""
+def _paths_in(flood: FloodState, e: int) -> flow_paths.FlowPaths:
+    """The paths of the water in environment `e` as they are now, [1, ...]."""
+    return flow_paths.FlowPaths(*(getattr(flood, name)[e : e + 1].cpu() for name in flow_paths.FlowPaths._fields))
+
+
+def paths_of(spec: SceneSpec) -> flow_paths.FlowPaths:
+    """The paths of water from the source walls of the scene's room at its start, [1, ...]."""
     counts = flow_paths.sizes((spec,))
     made = flow_paths.paths_of(spec, counts["W"], counts["D"])
     shapes = {"partition": (1, counts["W"], 2), "doorway": (1, counts["D"], 4), "doorway_part": (1, counts["D"], 2)}

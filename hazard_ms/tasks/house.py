@@ -16,9 +16,10 @@ from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks.rescue import rescue
 
 DOORS = ("open", "shut")
-# Frames in which water of `paper` rises by a step: four times those in rooms, since homes have four times the floor
-# (72 to 120 m2) for the same inflow [ours]
-EVERY = 40
+# Water of `paper` in homes: it comes in at the outer doors, rises by a step in EVERY frames, and its surface slopes by
+# SLOPE [degrees]. In rooms it takes 10 frames and 3 degrees, but homes have four times the floor (72 to 120 m2), and at
+# 3 degrees it would have to stand 0.5 m deep at a door to get 10 m into a home [ours]
+EVERY, SLOPE = 60, 1.0
 
 
 def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
@@ -29,7 +30,9 @@ def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
 def hazard_house_flood(physics: str = "paper", severity: str = USUAL) -> Task:
     """The task HazardHouseFlood-v1 with the physics of a preset. Raises ValueError for unknown names."""
     water = flood(physics, severity)
-    return _in_homes([dataclasses.replace(water, every=EVERY) if physics == "paper" else water], "put_on")
+    return _in_homes(
+        [dataclasses.replace(water, every=60, through_doors=True, slope=1.0) if physics == "paper" else water], "put_on"
+    )
 
 
 def _in_homes(hazards: Sequence[Hazard], *mitigations: str) -> Task:

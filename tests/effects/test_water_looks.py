@@ -14,7 +14,7 @@ import torch
 
 from hazard_ms.bench.effects import costs
 from hazard_ms.effects.entities import PREFIX, dry_ior, materials
-from hazard_ms.effects.flood import surface_corners
+from hazard_ms.effects.flood import paths_of, surface_corners
 from hazard_ms.effects.looks import Looks, makers
 from hazard_ms.effects.shaders.common import WATER
 from hazard_ms.effects.shaders.water import CUT_IOR
@@ -190,13 +190,29 @@ def test_the_surface_is_the_hazards_own(spec) -> None:  # noqa: ANN001
     state = flood.state_type.allocate({"E": 1, "B": 1} | flood.sizes(world), "cpu")
     flood.reset(state, world, torch.arange(1))
     state.level[:] = 1.4
-    place, data = surface_corners(spec)
+    place, data = surface_corners(spec, paths_of(spec))
     assert (data[..., 2] == WATER).all()
     points = torch.from_numpy(np.column_stack([place.reshape(-1, 2), np.zeros(place.size // 2)])).float()[None]
     mine = state.level.item() - state.surface_slope.item() * data[..., 0].ravel()
     np.testing.assert_allclose(np.maximum(mine, 0.0), flood.image(state, world, points)[0].numpy(), atol=1e-4)
     a, b = place[:, 1] - place[:, 0], place[:, 3] - place[:, 0]
     assert np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() == pytest.approx(np.prod(spec.room.size), rel=1e-3)
+
+
+@pytest.mark.render
+def test_the_surface_follows_doors() -> None:
+    """What is drawn ends at a door that was shut, and goes on behind it once it is open again."""
+    door = Opening("door", "middle", 1.5, 0.9, 2.0, open=1.0)
+    place = flooded(0.6, spec=replace(PARTED, room=replace(PARTED.room, openings=(door,))), view=OVERHEAD)
+    blue = []
+    for share in (1.0, 0.0, 1.0):
+        place.world.openings.set_open(torch.arange(1), 0, share)
+        place.hazard.advance(place.state, place.world, 1 / 30)
+        place.state.level[:] = 0.6
+        blue.append(place.picture(300)["rgb"].astype(int))
+    differs = (abs(blue[1] - blue[0]).max(-1) > 10).mean(0)
+    assert differs.mean() > 0.1 and (differs == 0.0).sum() >= 5
+    assert (abs(blue[2] - blue[0]).max(-1) > 10).mean() < 0.02
 
 
 def test_the_cost_of_an_unknown_task_is_not_measured() -> None:

@@ -17,7 +17,7 @@ from hazard_ms.skills.decision import Action
 from hazard_ms.skills.mitigations.doors import open_ones, shut_ones
 from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.grasping import GRASP_REACH
-from hazard_ms.spec import Body, Fixture, Opening
+from hazard_ms.spec import AgentStart, Body, Fixture, Opening
 from tests.worlds.two_rooms import DOOR, FAR, HALL, HINGE, ONE, SIZE, TwoRooms, spec, two_rooms
 
 OPEN, SHUT = Action("open", "door_0"), Action("shut", "door_0")
@@ -70,6 +70,15 @@ def test_a_door_opens_and_shuts_from_either_side(robot: str, start: object) -> N
         assert (result.ok, result.reason) == (True, "")  # type: ignore[attr-defined]
         assert rooms.share() == 0.0 and nearest < GRASP_REACH
         assert sum(0.0 < share < 1.0 for share in shares) + 1 == SHUTTING
+
+
+@pytest.mark.parametrize("away", [0.45, 0.6, 0.75])
+def test_a_robot_that_stands_too_near_to_the_handle_draws_back(away: float) -> None:
+    """So near, the elbow meets the leaf before the hand gets to the handle; the door is shut at the first try."""
+    handle = (HINGE + (-0.83, 0.0)).tolist()  # of a leaf that is open
+    with two_rooms(spec(door=AJAR, start=AgentStart((handle[0] - 0.3, handle[1] + away), -math.pi / 2))) as rooms:
+        result = rooms.run(skill(rooms.stage, SHUT))
+        assert (result.ok, rooms.share()) == (True, 0.0) and result.frames < 330
 
 
 def test_a_hand_pulls_the_moment_of_what_presses_and_the_usual_force() -> None:

@@ -1,6 +1,6 @@
 """Water in a home, foreseen by the law of the paper from where it was seen: it falls along its way, and rises.
 
-    level(p, t) = rise t - drop(p),   drop(p) = least of drop(c) + tan(3 degrees) way(c, p) over places c seen wet
+    level(p, t) = rise t - drop(p),   drop(p) = least of drop(c) + tan(1 degree) way(c, p) over places c seen wet
 
 Ways lead through what is open: behind shut doors it stays dry (docs/physics.md 1.2). How fast it rises is what the
 highest level was over the frame in which it was seen, as it is at the wall from which it comes; or faster, if it was
@@ -21,11 +21,11 @@ from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.spec.catalogue import CATEGORIES
 
-SLOPE = math.tan(math.radians(3.0))  # of the surface along the way (docs/physics.md 1.2)
+SLOPE = math.tan(math.radians(1.0))  # of the surface along the way (docs/benchmark.md 1.1)
 WATER_DENSITY = 1000.0  # [kg/m^3]
 LEAST = 0.01  # level below which nothing floats off [m] [ours: tops are seen to a centimetre]
 WET = 0.003  # level from which a cell was seen wet [m] [ours]
-AT_SOURCE = 0.03  # drop up to which water comes in beside a place: half a metre of way [m] [ours]
+AT_SOURCE = 0.03  # drop up to which water comes in beside a place [m] [ours]
 
 Array = NDArray[np.float64]
 

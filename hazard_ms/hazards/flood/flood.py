@@ -74,6 +74,7 @@ class Flood(Hazard):
     electronic_time: float = 0.0  # how long for electronics [s]
     soaks: bool = False  # porous things lose their lift
     least_grip: float = 0.8  # share of its own motion that the agent keeps at least [ours]
+    through_doors: bool = False  # water comes in at the outer doors, not over the whole of the walls [ours]
 
     def __post_init__(self) -> None:
         for name in ("rise", "every", "cap", "slope"):
@@ -94,12 +95,12 @@ class Flood(Hazard):
         return self.current * self.gain
 
     def sizes(self, world: World) -> dict[str, int]:
-        return flow_paths.sizes(world.specs)
+        return flow_paths.sizes(world.specs, self.through_doors)
 
     def reset(self, state: FloodState, world: World, rows: Tensor) -> None:
         state.surface_slope[rows] = math.tan(math.radians(self.slope))
         sizes = state.partition.shape[1], state.doorway.shape[1]
-        made = [flow_paths.paths_of(world.specs[row], *sizes) for row in rows.tolist()]
+        made = [flow_paths.paths_of(world.specs[row], *sizes, self.through_doors) for row in rows.tolist()]
         for name in flow_paths.FlowPaths._fields:
             target = getattr(state, name)
             entries = torch.tensor([paths[name] for paths in made], dtype=target.dtype, device=world.device)

@@ -6,7 +6,8 @@ all, each reached by the shortest path. The depth decreases along the path, so a
 doorway, and the level is the same on both sides of it (but for the thickness of the partition, and at the outer edge of
 a doorway that water passes on its path elsewhere). Nothing flows through closed walls and doors. Where water comes from
 a second wall, too, a path begins at whichever wall makes it shorter; that wall is described as a doorway without depth,
-in which the water already stands.
+in which the water already stands. Where water comes in at outer doors alone, so is each of them, and no part lies along
+a source.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ from hazard_ms.hazards.flood import reach
 from hazard_ms.hazards.flood.flood_state import FloodState
 from hazard_ms.hazards.flood.reach import NEVER
 from hazard_ms.kernels.launch import Launches, of_environments
-from hazard_ms.scenes.walls import WALLS
+from hazard_ms.scenes.inlets import inlets
+from hazard_ms.scenes.walls import WALLS, on_wall
 from hazard_ms.spec import Opening, Partition, Room, SceneSpec, Vec2
 
 # Direction in which water flows in from each side of a room
@@ -30,7 +32,7 @@ SIDES: dict[str, Vec2] = {"south": (0.0, 1.0), "east": (-1.0, 0.0), "north": (0.
 
 @dataclass(frozen=True)
 class Doorway:
-    """The inside of a doorway, or a second source wall: a rectangle on the floor, and the parts beside it."""
+    """The inside of a doorway, or a source: a rectangle on the floor, and the parts beside it."""
 
     low: Vec2  # [m]
     high: Vec2  # [m]
@@ -62,16 +64,22 @@ class FlowPaths(NamedTuple):
     doorway_part: Tensor  # number of a part beside the doorway, and bits in which others beside it differ, [E, D, 2]
 
 
-def sizes(specs: tuple[SceneSpec, ...]) -> dict[str, int]:
-    """The largest numbers of partitions, W, and of doorways, doors beside them and second source walls, D."""
+def sizes(specs: tuple[SceneSpec, ...], through_doors: bool = False) -> dict[str, int]:
+    """The largest numbers of partitions, W, and of doorways, doors beside them and sources but the first wall, D."""
     return {
         "W": max(len(s.room.partitions) for s in specs),
-        "D": max(len(_ways(s.room)) + (s.second_flood_side is not None) for s in specs),
+        "D": max(
+            len(_ways(s.room)) + (len(inlets(s)) if through_doors else s.second_flood_side is not None) for s in specs
+        ),
     }
 
 
-def paths_of(spec: SceneSpec, partitions: int, doorways: int) -> dict[str, Any]:
-    """The entries of FlowPaths for one scene, padded to so many. Raises ValueError for an unknown side."""
+def paths_of(spec: SceneSpec, partitions: int, doorways: int, through_doors: bool = False) -> dict[str, Any]:
+    """The entries of FlowPaths for one scene, padded to so many.
+
+    `through_doors`: water comes in at outer doors (hazard_ms.scenes.inlets), not over the whole source walls. Raises
+    ValueError for an unknown side.
+    """
     sides = [spec.flood_side] if spec.second_flood_side is None else [spec.flood_side, spec.second_flood_side]
     for side in sides:
         if side not in SIDES:
@@ -80,12 +88,17 @@ def paths_of(spec: SceneSpec, partitions: int, doorways: int) -> dict[str, Any]:
     sources = [_source(room, side) for side in sides]
     ways = _ways(room)
     found = [_doorway(room, o.wall, o.centre, o.width) for o in ways]
-    distances = _doorway_distances(found, sources, [o.share > 0.0 for o in ways])
-    for source in sources[1:]:
-        found.append(_as_doorway(room, source))
-        distances.append(0.0)
-    spare = doorways - len(found)
     first = sources[0]
+    is_open = [o.share > 0.0 for o in ways]
+    if through_doors:
+        others = [_inlet(room, o) for o in inlets(spec)]
+        distances = _doorway_distances(found, [], others, is_open)
+        first = first._replace(bits=1 << partitions, part=1 << partitions)  # of no part
+    else:
+        others = [_as_doorway(room, source) for source in sources[1:]]
+        distances = _doorway_distances(found, sources, [], is_open)
+    found, distances = [*found, *others], [*distances, *[0.0] * len(others)]
+    spare = doorways - len(found)
     return {
         "flow": list(first.flow),
         "origin_length": first.origin_length,
@@ -122,6 +135,14 @@ def _as_doorway(room: Room, source: Source) -> Doorway:
     return Doorway(low, high, source.part, ((1 << len(room.partitions)) - 1) & ~source.bits)
 
 
+def _inlet(room: Room, door: Opening) -> Doorway:
+    """An opening in an outer wall as a doorway without depth."""
+    low, high = (on_wall(room, door.wall, door.centre + d * door.width / 2, 0.0, 0.0)[:2] for d in (-1, 1))
+    middle = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2)
+    part = sum((middle[_across(p)] > p.at) << k for k, p in enumerate(room.partitions))
+    return Doorway(low, high, part, 0)
+
+
 def _doorway(room: Room, wall: str, centre: float, width: float) -> Doorway:
     number = next(k for k, p in enumerate(room.partitions) if p.name == wall)
     p = room.partitions[number]
@@ -147,17 +168,20 @@ def _straight(source: Source, doorway: Doorway) -> float:
     )
 
 
-def _doorway_distances(doorways: list[Doorway], sources: list[Source], is_open: list[bool]) -> list[float]:
-    """Length of the shortest path from a source wall to each doorway [m]: straight, or from doorway to doorway."""
+def _doorway_distances(
+    doorways: list[Doorway], sources: list[Source], inlets: list[Doorway], is_open: list[bool]
+) -> list[float]:
+    """Length of the shortest path from a source to each doorway [m]: straight, or from doorway to doorway."""
     pairs = zip(doorways, is_open, strict=True)
-    lengths = [min(_straight(source, d) for source in sources) if free else NEVER for d, free in pairs]
+    lengths = [min((_straight(s, d) for s in sources), default=NEVER) if free else NEVER for d, free in pairs]
+    ways, free, lengths = [*doorways, *inlets], [*is_open, *[True] * len(inlets)], [*lengths, *[0.0] * len(inlets)]
     for _ in doorways:  # each round finds at least one more shortest path
         for i, d in enumerate(doorways):
-            for j, other in enumerate(doorways):
-                if i != j and is_open[i] and is_open[j] and _beside(d) & _beside(other):
+            for j, other in enumerate(ways):
+                if i != j and free[i] and free[j] and _beside(d) & _beside(other):
                     gap = [max(d.low[k] - other.high[k], other.low[k] - d.high[k], 0.0) for k in range(2)]
                     lengths[i] = min(lengths[i], lengths[j] + (gap[0] ** 2 + gap[1] ** 2) ** 0.5)
-    return lengths
+    return lengths[: len(doorways)]
 
 
 def through_open(paths: FlowPaths | FloodState, there: Tensor, is_open: Tensor) -> Tensor:

@@ -11,6 +11,7 @@ windows are not drawn open; the force is checked before and during the turn, but
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,22 +22,27 @@ from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.mitigations.approach import approach
+from hazard_ms.skills.mitigations.handles import ASIDE, CLOSE, ENOUGH, Place, stand
 from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, follow, go, lacking, never, posture_for
 from hazard_ms.skills.motor.grasping import APPROACH_FRAMES
-from hazard_ms.skills.motor.motion import drive
-from hazard_ms.skills.motor.navigation import Ways
+from hazard_ms.skills.motor.motion import drive, turn_to
+from hazard_ms.skills.motor.navigation import Path, Ways
 from hazard_ms.skills.motor.routes import quickest
-from hazard_ms.skills.motor.surface import Leg, Place, Surface
+from hazard_ms.skills.motor.surface import Leg, Surface
+from hazard_ms.skills.motor.surface import Place as Around
 from hazard_ms.spec.robot import GRASP_REACH
 
 # Times of a quarter turn [s]: doors that move by themselves take 4 s to open, and 3 s to shut from 90 to 10 degrees and
 # 1.5 s from there, at least [ANSI/BHMA A156.19, 4.1.2 and 4.2]: leaves of 45 kg then have no more than 1.69 J
 OPENING_TIME, SHUTTING_TIME = 4.0, 4.5
 WINDOW_SHARE = 0.9  # how far a window opens: a pane that is wholly out is broken [ours]
-SHARES = (0.85, 0.65)  # of the arm's span: distances from the handle at which it stands, in turn [ours]
+STANDS = 3  # places at which it tries to take the handle [ours]
+NEAR = 0.85  # share of the arm's span within which it walks where no place is known [ours]
 OFF_FACE = 0.08  # of the place for the hand from the middle of the leaf [m] [ours]
-ASIDE = 0.05  # gap that the base leaves to a leaf that turns [m] [ours]
+SAG = 0.05  # by which a stretched arm hangs lower than it should [m] [ours: Fetch's 0.05 to 0.08]
+TURNING = 0.5  # metres of way that it takes as long to turn and drive forwards as to back [ours]
+STRAIGHT = 0.05  # of a way that leads straight back: distance from the line [m] [ours]
 RINGS, DIRECTIONS = (0.3, 0.6, 0.9, 1.2, 1.6), 16  # where it looks for a place aside: distances [m], number of ways
 FOLLOW_EVERY = 3  # frames from one posture of the hand at the handle to the next [ours]
 AROUND = 0.25  # of the handle, within which the arm may come to the leaf [m] [ours]
@@ -75,22 +81,10 @@ def _turn(stage: Stage, name: str, opening: bool) -> Skill:
     leaf = Leaf(stage.world, known.number)
     goal = hinges.angle(_most(known.kind)) if opening else 0.0
     home = leaf.side(*stage.robot.base()[:2])
-    nearest, farthest = stage.robot.build.span(float(leaf.handle()[2]))
-    used, reason = 0, failures.UNREACHABLE
-    for share in SHARES:
-        walked = yield from approach(stage, leaf.handle(), max(nearest, share * farthest), farthest + GRASP_REACH)
-        used += walked.frames
-        if not walked.ok:
-            return Result(False, walked.reason, used)
-        stage.doors.enter(known.number, stage.frame, stage.maps)  # it stands before it now
-        if leaf.broken or abs(leaf.angle - goal) < 1e-3:
-            return Result(not leaf.broken, failures.BROKEN if leaf.broken else "", used)
-        taken = yield from _take(stage, leaf.handle())
-        used += taken.frames
-        if taken.ok:
-            reason = ""
-            break
-        used += (yield from fold(stage, _place(leaf.handle()))).frames
+    taken = yield from _get_hold(stage, leaf, goal, home)
+    reason, used = taken.reason, taken.frames
+    if _settled(leaf, goal):
+        return Result(not leaf.broken, failures.BROKEN if leaf.broken else "", used)
     if not reason and leaf.force(opening) > stage.robot.build.pull:
         reason = failures.HELD_SHUT if opening else failures.HELD_OPEN
     if not reason:
@@ -98,16 +92,53 @@ def _turn(stage: Stage, name: str, opening: bool) -> Skill:
         reason, used = turned.reason, used + turned.frames
         stage.doors.enter(known.number, stage.frame, stage.maps)
     if taken.ok:
-        used += (yield from fold(stage, _place(leaf.handle()))).frames
+        used += (yield from fold(stage, _around(leaf.handle()))).frames
     return Result(not reason, reason, used)
+
+
+def _settled(leaf: Leaf, goal: float) -> bool:
+    return leaf.broken or abs(leaf.angle - goal) < 1e-3
+
+
+def _get_hold(stage: Stage, leaf: Leaf, goal: float, home: float) -> Skill:
+    """Bring the hand to the handle from the best place, and from the next best ones where the arm does not get there.
+
+    It ends early where the leaf turns out to be at the angle `goal` [rad] already, or broken.
+    """
+    handle, used, tried = leaf.handle(), 0, list[Place]()
+    farthest = stage.robot.build.span(float(handle[2]))[1]
+    for _ in range(STANDS):
+        place = stand(stage, leaf, goal, home, tried)
+        if place is None:  # not seen yet, or nowhere to stand: as near as it gets
+            walked = yield from approach(stage, handle, NEAR * farthest, farthest + GRASP_REACH)
+        else:
+            walked = yield from approach(stage, np.array(place), CLOSE, ENOUGH, _at(stage, place))
+        used += walked.frames
+        if walked.reason in (failures.MAX_FRAMES, failures.NO_PATH):
+            return Result(False, walked.reason, used)
+        used += (yield from turn_to(stage, handle)).frames
+        stage.doors.enter(leaf.number, stage.frame, stage.maps)  # it stands before it now
+        if _settled(leaf, goal):
+            return Result(False, frames=used)
+        taken = yield from _take(stage, handle)
+        used += taken.frames
+        if taken.ok:
+            return Result(True, frames=used)
+        used += (yield from fold(stage, _around(handle))).frames
+        tried += [stage.robot.base()[:2]] if place is None else [place, stage.robot.base()[:2]]
+    return Result(False, failures.UNREACHABLE, used)
+
+
+def _at(stage: Stage, place: Place) -> Callable[[], bool]:
+    return lambda: float(np.hypot(*np.subtract(stage.robot.base()[:2], place))) < CLOSE
 
 
 def _most(kind: str) -> float:
     return WINDOW_SHARE if kind == "window" else 1.0
 
 
-def _place(handle: NDArray[np.float64]) -> Place:
-    return Place(handle, AROUND, 0.0, float(handle[2]) + AROUND)
+def _around(handle: NDArray[np.float64]) -> Around:
+    return Around(handle, AROUND, 0.0, float(handle[2]) + AROUND)
 
 
 def _take(stage: Stage, handle: NDArray[np.float64]) -> Skill:
@@ -115,7 +146,7 @@ def _take(stage: Stage, handle: NDArray[np.float64]) -> Skill:
     stage.robot.use_hand(handle)
     x, y, _ = stage.robot.base()
     towards = np.array([x - handle[0], y - handle[1], 0.0])
-    aim = handle + OFF_FACE * towards / max(float(np.hypot(*towards[:2])), 1e-6)
+    aim = handle + OFF_FACE * towards / max(float(np.hypot(*towards[:2])), 1e-6) + (0.0, 0.0, SAG)
 
     def there() -> bool:
         return float(np.linalg.norm(stage.robot.hand() - handle)) < 0.9 * GRASP_REACH
@@ -123,7 +154,7 @@ def _take(stage: Stage, handle: NDArray[np.float64]) -> Skill:
     posture = posture_for(stage, aim)
     if posture.error > GRASP_REACH:
         return Result(False, failures.UNREACHABLE)
-    route = quickest(stage, [Leg(posture.arm, 0.0)], Surface(stage, _place(handle)), lacking(stage))
+    route = quickest(stage, [Leg(posture.arm, 0.0)], Surface(stage, _around(handle)), lacking(stage))
     moved = yield from follow(stage, route, there)
     used = moved.frames
     if not there():
@@ -161,11 +192,11 @@ def _lead(stage: Stage, leaf: Leaf, goal: float, opening: bool, home: float) -> 
 
 def _step_aside(stage: Stage, leaf: Leaf, goal: float, home: float) -> Skill:
     """Drive to the nearest place out of the way of the `leaf`, on the side `home`; not at all if it is out already."""
-    x, y, _ = stage.robot.base()
+    x, y, heading = stage.robot.base()
     radius = np.array([stage.robot.build.radius + ASIDE])
     if not leaf.meets(leaf.angle, goal, np.array([[x, y]]), radius):
         return Result(True)
-    around = np.arange(DIRECTIONS) * 2.0 * np.pi / DIRECTIONS
+    around = heading + np.pi + np.arange(DIRECTIONS) * 2.0 * np.pi / DIRECTIONS
     spots = [np.array([x + far * np.cos(a), y + far * np.sin(a)]) for far in RINGS for a in around]
     free = [
         (float(at[0]), float(at[1]))
@@ -180,10 +211,24 @@ def _step_aside(stage: Stage, leaf: Leaf, goal: float, home: float) -> Skill:
     reached = [path for path in paths if path is not None and path.short <= seen.cell and len(path.points)]
     if not reached:
         return Result(False, failures.IN_THE_SWING)
-    best = min(reached, key=lambda path: path.length)
+    best = min(reached, key=lambda path: path.length + TURNING * (_behind(path, (x, y, heading)) is None))
+    back = _behind(best, (x, y, heading))
+    if back is not None:
+        moved: Result = yield from go(stage, stage.robot.tucked, REACH_FRAMES, never, 0.3, -back)
+        return moved
     folded = yield from go(stage, stage.robot.tucked, REACH_FRAMES, never, 0.3)
     moved = yield from drive(stage, best.points, APPROACH_FRAMES)
     return Result(moved.ok, moved.reason, folded.frames + moved.frames)
+
+
+def _behind(path: Path, base: tuple[float, float, float]) -> float | None:
+    """Length [m] of a path that leads straight back from the `base`; None for others."""
+    x, y, heading = base
+    ahead = (path.points - (x, y)) @ np.array(
+        [[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]]
+    ).T
+    straight = bool((np.abs(ahead[:, 1]) < STRAIGHT).all() and ahead[-1, 0] < 0.0)
+    return float(-ahead[-1, 0]) if straight else None
 
 
 def _obstructed(stage: Stage, leaf: Leaf, first: float, last: float) -> bool:

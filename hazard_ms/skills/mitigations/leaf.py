@@ -9,6 +9,8 @@ from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening
 
+Array = NDArray[np.float64]
+
 
 class Leaf:
     """One door or window of the first environment."""
@@ -35,7 +37,7 @@ class Leaf:
         rows = self._openings.state.open.new_zeros(1).long()
         self._openings.set_open(rows, self.number, hinges.share(angle))
 
-    def handle(self) -> NDArray[np.float64]:
+    def handle(self) -> Array:
         """The middle of its handle now [m], [3], world frame."""
         return hinges.handle(self.room, self.o, self.angle)
 
@@ -44,12 +46,23 @@ class Leaf:
         pressing = float(self._openings.force[0, self.number]) * (1.0 if self.inner else -1.0)
         return hinges.handle_force(pressing if opening else -pressing, self.o.width)
 
-    def meets(self, first: float, last: float, points: NDArray[np.float64], radius: NDArray[np.float64]) -> bool:
-        """Whether it would meet a disc when it turns between these angles [rad].
+    def meets(self, first: float, last: float, points: Array, radius: Array) -> bool:
+        """Whether it would meet one of the discs of `in_the_way`."""
+        return bool(self.in_the_way(first, last, points, radius).any())
+
+    def in_the_way(self, first: float, last: float, points: Array, radius: Array) -> NDArray[np.bool_]:
+        """Whether it would meet each of N discs when it turns between these angles [rad], [N].
 
         Discs are around `points` [m], [N, 2], world frame, with `radius` [m], [N].
         """
-        return self.inner and bool(hinges.in_swing(self.room, self.o, first, last, points, radius).any())
+        if not self.inner:
+            return np.zeros(len(points), bool)
+        return hinges.in_swing(self.room, self.o, first, last, points, radius)
+
+    @property
+    def out(self) -> Array:
+        """The direction into which it turns from where it is shut, [2]."""
+        return hinges.hinge(self.room, self.o)[2]
 
     def side(self, x: float, y: float) -> float:
         """The distance [m] of a place [m] from its wall: above 0 on the side into which it turns."""

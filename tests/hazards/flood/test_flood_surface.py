@@ -121,8 +121,11 @@ def test_no_level_ever_falls(preset: str, side: str, kind: str) -> None:
     assert kind in ("closed", "cross") or (before > 0.8).all()
 
 
-def ways_on_a_grid(side: str, kind: str, cell: float = 0.05) -> np.ndarray:
-    """Shortest ways from the source wall by Dijkstra on cells and 16 directions: walls block, doorways do not."""
+def ways_on_a_grid(side: str, kind: str, cell: float = 0.05, door: tuple[float, float] | None = None) -> np.ndarray:
+    """Shortest ways from the source wall by Dijkstra on cells and 16 directions: walls block, doorways do not.
+
+    They begin between both ends of a `door` in that wall [m], if it has one.
+    """
     nx, ny = round(SIZE[0] / cell), round(SIZE[1] / cell)
     x, y = np.meshgrid((np.arange(nx) + 0.5) * cell, (np.arange(ny) + 0.5) * cell, indexing="ij")
     blocked = np.zeros((nx, ny), bool)
@@ -131,7 +134,9 @@ def ways_on_a_grid(side: str, kind: str, cell: float = 0.05) -> np.ndarray:
         doors = [np.abs(along - o.centre) < o.width / 2 for o in DIVIDED[kind][1] if o.wall == p.name]
         blocked |= (np.abs(across - p.at) <= p.thickness / 2) & ~np.any([np.zeros_like(blocked), *doors], axis=0)
     far = {"east": SIZE[0] - x, "west": x, "north": SIZE[1] - y, "south": y}[side]
-    best = np.where((far < cell) & ~blocked, far, np.inf)
+    low, high = door or (-np.inf, np.inf)
+    beside = y if side in ("east", "west") else x
+    best = np.where((far < cell) & (beside > low) & (beside < high) & ~blocked, far, np.inf)
     heap = [(best[i, j], i, j) for i, j in zip(*np.nonzero(np.isfinite(best)), strict=True)]
     heapq.heapify(heap)
     steps = [(a, b) for a in range(-2, 3) for b in range(-2, 3) if math.gcd(a, b) == 1]

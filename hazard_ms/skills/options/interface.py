@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from hazard_ms.sensing.observation_table import INF, Row
 from hazard_ms.skills.options.features import Encoder
-from hazard_ms.skills.options.options import CART_SLOTS, COUNT, LANDMARK_SLOTS, TARGET_SLOTS
+from hazard_ms.skills.options.fires import FIRE_SLOTS
+from hazard_ms.skills.options.options import CART_SLOTS, LANDMARK_SLOTS, TARGET_SLOTS, option_count
 
 INFO = (
     Row("value", (), "float", "", "", 0.0, 1.0, "value rescued so far, as a share of all"),
@@ -16,7 +17,6 @@ INFO = (
     Row("rescued", (), "int", "", "", 0.0, TARGET_SLOTS, "targets that are safe"),
     Row("targets", (), "int", "", "", 0.0, TARGET_SLOTS, "things to rescue"),
     Row("sim_error", (), "bool", "", "", 0.0, 1.0, "the simulation broke; truncates the episode"),
-    Row("action_mask", (COUNT,), "bool", "", "", 0.0, 1.0, "which options can be chosen next"),
 )
 OPTIONS = (
     ("target", TARGET_SLOTS, "fetch target i: walk to it, pick it up, and put it into the bag if there is one"),
@@ -25,19 +25,25 @@ OPTIONS = (
     ("look", 1, "look around on the spot"),
     ("stop", 1, "end the episode"),
 )
+MEASURES = (
+    ("fire", FIRE_SLOTS, "put out fire k, with an extinguisher that is fetched first unless one is in the hand"),
+    ("tool", 1, "fetch the nearest extinguisher, to look for fires with it in hand"),
+)
 
 
 def describe(encoder: Encoder) -> dict[str, list[Row]]:
     """Rows of observation, action, reward and info of an environment of skills, by section."""
     actions, start = [], 0
-    for name, count, text in OPTIONS:
+    for name, count, text in (*OPTIONS, *(MEASURES if encoder.measures else ())):
         actions.append(Row(f"[{start}:{start + count}] {name}", (), "int64", "", "", start, start + count - 1, text))
         start += count
+    told, size = "which options can be chosen next", (option_count(encoder.measures),)
+    mask = Row("action_mask", size, "bool", "", "", 0.0, 1.0, told)
     rewards = [
         Row("value (default)", (), "float", "", "", 0.0, 1.0, "value that this step rescued, as a share of all"),
         Row("paper", (), "float", "", "", -INF, INF, "reward='paper': what the original's learner gets"),
     ]
-    return {"observation": list(observation(encoder)), "action": actions, "reward": rewards, "info": list(INFO)}
+    return {"observation": list(observation(encoder)), "action": actions, "reward": rewards, "info": [*INFO, mask]}
 
 
 def observation(encoder: Encoder) -> list[Row]:

@@ -130,3 +130,13 @@ def test_features_of_the_fire_and_the_tool() -> None:
     tool = dict(zip(names, parts["tools"][0].tolist(), strict=True))
     assert (tool["known"], tool["held"], tool["charge"], tool["left"]) == pytest.approx((1.0, 0.0, 360 / 500, 0.2))
     assert parts["targets"][0][6] == 1.0  # the value of 20 is the most there is
+
+
+def test_a_tool_in_the_hand_is_not_something_that_is_held() -> None:
+    """As in the sketch: what is fetched next is not barred by it."""
+    _, decision = scene()
+    held = dataclasses.replace(decision, tools=(dataclasses.replace(decision.tools[0], held=True),), held="extinguisher")
+    encoder = Encoder([RANGE], 0.3, measures=True)
+    names = [column.name for column in encoder.tables["global"][1]]
+    row = encoder.split(encoder.encode(held, Options(fire=0).menu(held)))["global"][0]
+    assert row[names.index("holding")] == 0.0

@@ -28,7 +28,7 @@ from hazard_ms.skills.options.feature_columns import (
     global_columns,
     target_columns,
 )
-from hazard_ms.skills.options.fires import FIRE_SLOTS, THREAT, Fire
+from hazard_ms.skills.options.fires import FIRE_SLOTS, THREAT, Fire, tool_in_hand
 from hazard_ms.skills.options.landmarks import Landmark
 from hazard_ms.skills.options.options import CART_SLOTS, LANDMARK_SLOTS, TARGET_SLOTS, Menu
 from hazard_ms.spec.catalogue import MOST_VALUE
@@ -187,7 +187,7 @@ class Encoder:
         return (
             decision.frame / decision.max_frames,
             float(decision.max_frames - decision.frame),
-            float(decision.held is not None),
+            float(decision.held is not None and not (self.measures and tool_in_hand(decision))),
             float(bool(decision.containers)),
             float(known),
             float(len(missing) - known),

@@ -135,7 +135,9 @@ def test_features_of_the_fire_and_the_tool() -> None:
 def test_a_tool_in_the_hand_is_not_something_that_is_held() -> None:
     """As in the sketch: what is fetched next is not barred by it."""
     _, decision = scene()
-    held = dataclasses.replace(decision, tools=(dataclasses.replace(decision.tools[0], held=True),), held="extinguisher")
+    held = dataclasses.replace(
+        decision, tools=(dataclasses.replace(decision.tools[0], held=True),), held="extinguisher"
+    )
     encoder = Encoder([RANGE], 0.3, measures=True)
     names = [column.name for column in encoder.tables["global"][1]]
     row = encoder.split(encoder.encode(held, Options(fire=0).menu(held)))["global"][0]

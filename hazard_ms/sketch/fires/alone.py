@@ -1,4 +1,4 @@
-"""What each fire of a scene would do if it alone burned, played without a robot in copies of the episode.
+"""Plays what each fire of a scene would do if it alone burned, without a robot in copies of the episode.
 
 A fire is all seats that begin close to each other on the same side of walls, so that one discharge is for all of them.
 The sketch takes what several fires do together as what the first of them does: a thing is damaged when the first of

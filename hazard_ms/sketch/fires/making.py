@@ -41,7 +41,7 @@ class Measures:
 
     @classmethod
     def of(cls, task: Task, physics: str, spec: SceneSpec, seed: int) -> Measures | None:
-        """Those of a scene with the fate that `seed` gives it; None where its task has none."""
+        """Make those of a scene with the fate that `seed` gives it; None where its task has none."""
         if not has_measures(task):
             return None
         categories = tools_of([EXTINGUISH])
@@ -52,7 +52,7 @@ class Measures:
         return cls(fires, tuple(kinds), charge)
 
     def stands(self, ways: Ways, sight: Sight, start: Floats) -> Floats:
-        """Where each fire is fought from [m], [F, 2]: the place nearest to `start` [m], [2], with a view of it."""
+        """The places from which each fire is fought [m], [F, 2]: nearest to `start` [m], [2], with a view of it."""
         made = []
         for place in self.fires.place:
             away = np.hypot(*(ways.places - place).T)

@@ -88,7 +88,10 @@ def refuse_start(scenes: Ints, seeds: Ints, rows: Ints, count: int) -> None:
 
 
 def checked(option: ArrayLike, count: int, options: int) -> Ints:
-    """Columns of masks [N, A], one for each of N = `count` rescues with A = `options`; ValueError for anything else."""
+    """Columns of masks [N, A], one for each of N = `count` rescues, with A = `options`.
+
+    Raises ValueError for anything else.
+    """
     chosen = np.asarray(option)
     if chosen.shape != (count,) or chosen.dtype.kind not in "iu":
         raise ValueError(f"option must be {count} whole numbers, got {chosen!r:.100}")

@@ -1,4 +1,4 @@
-"""Where sites are from N robots, as features have it."""
+"""Places of sites as N robots see them, in the columns of features."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from hazard_ms.sketch.travel.ways import TURN
 
 
 def place_of(stack: Stack, state: Rescues, site: Ints, known: NDArray[np.bool_]) -> list[Floats]:
-    """Distances ahead and to the left [m], and walking time without turns [frames], to `site` [N, K]; 0 if unknown."""
+    """Distances ahead and to the left [m], and walking time without turns [frames], [N, K] each, of `site` [N, K].
+
+    They are 0 where it is not `known`, [N, K].
+    """
     rows = np.arange(len(site))
     forward, left = seen_from(state, stack.position[state.scene[:, None], site])
     frames = ahead(stack, state, rows, site)

@@ -28,7 +28,7 @@ from hazard_ms.skills.options.feature_columns import (
     global_columns,
     target_columns,
 )
-from hazard_ms.skills.options.fires import FIRE_SLOTS, THREAT, Fire, tool_in_hand
+from hazard_ms.skills.options.fires import FIRE_SLOTS, THREAT, KnownFire, tool_in_hand
 from hazard_ms.skills.options.landmarks import Landmark
 from hazard_ms.skills.options.options import CART_SLOTS, LANDMARK_SLOTS, TARGET_SLOTS, Menu
 from hazard_ms.spec.catalogue import MOST_VALUE
@@ -162,7 +162,7 @@ class Encoder:
         sighting = decision.map.objects[decision.index(mark.name)]
         return (*self._place(decision, ways, sighting), mark.edge, float(mark.visits))
 
-    def _fire(self, decision: Decision, menu: Menu, ways: Ways, fire: Fire) -> tuple[float, ...]:
+    def _fire(self, decision: Decision, menu: Menu, ways: Ways, fire: KnownFire) -> tuple[float, ...]:
         near = 0.0
         for target in decision.targets:
             sighting = decision.map.objects.get(target.index)

@@ -35,7 +35,7 @@ Places = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Fire:
+class KnownFire:
     """A fire that was seen."""
 
     name: str  # of the hot thing by which it is told
@@ -56,11 +56,11 @@ class FireMemory:
     def __init__(self, hazard: int) -> None:
         """Begin an episode; `hazard`: the number of the fire among its hazards."""
         self._hazard = hazard
-        self._known: dict[str, Fire] = {}
+        self._known: dict[str, KnownFire] = {}
         self._out: list[tuple[tuple[float, float], int]] = []  # places where fires were put out [m], and when
         self.count_out = 0
 
-    def fires(self, decision: Decision) -> tuple[Fire, ...]:
+    def fires(self, decision: Decision) -> tuple[KnownFire, ...]:
         """The fires that are known at `decision`, the ones with most flames first, F at most."""
         seen = decision.map
         levels = seen.levels[self._hazard]
@@ -71,7 +71,7 @@ class FireMemory:
             hot[y[old], x[old]] = False
         grown = ndimage.binary_dilation(hot, np.ones((3, 3)), iterations=GAP)
         labels, count = ndimage.label(grown, np.ones((3, 3)))
-        found: dict[str, Fire] = {}
+        found: dict[str, KnownFire] = {}
         for label in range(1, count + 1):
             y, x = np.nonzero(hot & (labels == label))
             points = seen.centre_of(y, x)
@@ -82,7 +82,7 @@ class FireMemory:
             if name is not None:
                 flames = SHOWN * float(np.median(weight * (away / REACH) ** 2))
                 place = float(middle[0]), float(middle[1])
-                found[name] = Fire(name, place, flames, int(seen.told_at[y, x].max()))
+                found[name] = KnownFire(name, place, flames, int(seen.told_at[y, x].max()))
         self._known = found
         return tuple(sorted(found.values(), key=lambda fire: -fire.flames)[:FIRE_SLOTS])
 

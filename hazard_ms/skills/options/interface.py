@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hazard_ms.sensing.observation_table import INF, Row
 from hazard_ms.skills.options.features import Encoder
 from hazard_ms.skills.options.fires import FIRE_SLOTS
-from hazard_ms.skills.options.options import CART_SLOTS, LANDMARK_SLOTS, TARGET_SLOTS, option_count
+from hazard_ms.skills.options.options import CART_SLOTS, COUNT, LANDMARK_SLOTS, TARGET_SLOTS, option_count
 
 INFO = (
     Row("value", (), "float", "", "", 0.0, 1.0, "value rescued so far, as a share of all"),
@@ -17,6 +19,7 @@ INFO = (
     Row("rescued", (), "int", "", "", 0.0, TARGET_SLOTS, "targets that are safe"),
     Row("targets", (), "int", "", "", 0.0, TARGET_SLOTS, "things to rescue"),
     Row("sim_error", (), "bool", "", "", 0.0, 1.0, "the simulation broke; truncates the episode"),
+    Row("action_mask", (COUNT,), "bool", "", "", 0.0, 1.0, "which options can be chosen next"),
 )
 OPTIONS = (
     ("target", TARGET_SLOTS, "fetch target i: walk to it, pick it up, and put it into the bag if there is one"),
@@ -37,13 +40,12 @@ def describe(encoder: Encoder) -> dict[str, list[Row]]:
     for name, count, text in (*OPTIONS, *(MEASURES if encoder.measures else ())):
         actions.append(Row(f"[{start}:{start + count}] {name}", (), "int64", "", "", start, start + count - 1, text))
         start += count
-    told, size = "which options can be chosen next", (option_count(encoder.measures),)
-    mask = Row("action_mask", size, "bool", "", "", 0.0, 1.0, told)
+    mask = replace(INFO[-1], shape=(option_count(encoder.measures),))
     rewards = [
         Row("value (default)", (), "float", "", "", 0.0, 1.0, "value that this step rescued, as a share of all"),
         Row("paper", (), "float", "", "", -INF, INF, "reward='paper': what the original's learner gets"),
     ]
-    return {"observation": list(observation(encoder)), "action": actions, "reward": rewards, "info": [*INFO, mask]}
+    return {"observation": list(observation(encoder)), "action": actions, "reward": rewards, "info": [*INFO[:-1], mask]}
 
 
 def observation(encoder: Encoder) -> list[Row]:

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from hazard_ms.sensing.observations import SLOTS
 from hazard_ms.skills.decision import DROP, EXPLORE, STOP, Action, Decision, Tool
 from hazard_ms.skills.failures import NOT_BURNING
-from hazard_ms.skills.options.fires import FIRE_SLOTS, Fire, FireMemory, tool_in_hand, usable_tool
+from hazard_ms.skills.options.fires import FIRE_SLOTS, FireMemory, KnownFire, tool_in_hand, usable_tool
 from hazard_ms.skills.options.landmarks import Landmark, landmarks
 
 TARGET_SLOTS = SLOTS  # T, number of slots for targets, as in the target table of observations
@@ -70,7 +70,7 @@ class Menu:
     landmarks: tuple[Landmark, ...]  # by slot, L at most
     failures: dict[str, int]  # number of failures of targets and carts by name; 0 if absent
     mask: NDArray[np.bool_]  # [A], whether each option can be chosen
-    fires: tuple[Fire, ...] = ()  # by slot, F at most; none where tasks have no measures
+    fires: tuple[KnownFire, ...] = ()  # by slot, F at most; none where tasks have no measures
     tool: Tool | None = None  # the extinguisher in the hand, else the nearest that can be used
     out: int = 0  # number of fires that were put out
 

@@ -13,9 +13,9 @@ from hazard_ms.sketch.travel.ways import TURN
 
 
 def place_of(stack: Stack, state: Rescues, site: Ints, known: NDArray[np.bool_]) -> list[Floats]:
-    """Distances ahead and to the left [m], and walking time without turns [frames], [N, K] each, of `site` [N, K].
+    """Distances ahead and to the left [m], and walking time without turns [frames], [N, S] each, of `site` [N, S].
 
-    They are 0 where it is not `known`, [N, K].
+    They are 0 where it is not `known`, [N, S].
     """
     rows = np.arange(len(site))
     forward, left = seen_from(state, stack.position[state.scene[:, None], site])

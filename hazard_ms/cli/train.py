@@ -50,7 +50,7 @@ def bc(
     from hazard_ms.learning.cloning import Student, train
     from hazard_ms.learning.scenes import generated
     from hazard_ms.machine.files import make_folder
-    from hazard_ms.sketch.scenes import SCENES, level_ranges
+    from hazard_ms.sketch.scenes import SCENES, level_ranges, measures_of
     from hazard_ms.sketch.skill_times import load
     from hazard_ms.spec.checks import whole
 
@@ -58,7 +58,7 @@ def bc(
     whole(rounds, 1, 1000, "rounds")
     whole(episodes, 1, 10**7, "episodes")
     make_folder(output)
-    student = Student(level_ranges(env_id, physics), whole(seed, 0, 2**31, "seed"))
+    student = Student(level_ranges(env_id, physics), whole(seed, 0, 2**31, "seed"), measures_of(env_id, physics))
     numbers = [*range(SCENES, SCENES + count), *range(VALIDATION, VALIDATION + VALIDATION_SCENES)]
     made = generated(env_id, physics, numbers, whole(workers, 0, 1000, "workers"))
     threads = torch.get_num_threads()
@@ -98,9 +98,11 @@ def clone(
     from hazard_ms.learning.cloning import Student, imitate
     from hazard_ms.learning.recorded import choices
     from hazard_ms.machine.files import make_folder
-    from hazard_ms.sketch.scenes import level_ranges
+    from hazard_ms.sketch.scenes import level_ranges, measures_of
     from hazard_ms.spec.checks import whole
 
+    if measures_of(env_id, physics):
+        raise ValueError(f"env_id must be a task whose options have no measures, which nobody recorded, got {env_id}")
     student = Student(level_ranges(env_id, physics), whole(seed, 0, 2**31, "seed"))
     whole(passes, 1, 10**6, "passes")
     found = choices(demos, env_id, physics, student.encoder.layout)
@@ -163,7 +165,7 @@ def ppo(
     from hazard_ms.agents.learned.weights import ENDING, load, load_map
     from hazard_ms.learning.scenes import generated
     from hazard_ms.machine.files import make_folder
-    from hazard_ms.sketch.scenes import SCENES, level_ranges
+    from hazard_ms.sketch.scenes import SCENES, level_ranges, measures_of
     from hazard_ms.sketch.skill_times import load as times_of
     from hazard_ms.spec.checks import one_of, whole
 
@@ -176,8 +178,7 @@ def ppo(
         raise ValueError(f"train ppo needs the extra `rl`: pip install 'hazard_ms[rl]', got {missing}") from None
     settings, six = BY_ACTIONS[one_of(actions, ACTIONS, "actions")], actions == "paper"
     wanted = settings.decisions if decisions is None else whole(decisions, 1, 2**31, "decisions")
-    count = whole(scenes, 1, VALIDATION - SCENES, "scenes")
-    whole(seed, 0, 2**31, "seed")
+    count, _ = whole(scenes, 1, VALIDATION - SCENES, "scenes"), whole(seed, 0, 2**31, "seed")
     reward = settings.reward if reward is None else one_of(reward, ("value", "paper"), "reward")
     if masked and not six:
         raise ValueError("masked must be left out with actions options, which always have masks, got True")
@@ -186,9 +187,9 @@ def ppo(
     if not minutes > 0:
         raise ValueError(f"minutes must be positive, got {minutes}")
     width, processes = SHARE if share is None else share, whole(workers, 0, 1000, "workers")
-    ranges = level_ranges(env_id, physics)
-    shape = shape_for(actions, ranges, width, masked)
-    begun = None if start is None else (load_map if six else load)(start, env_id)
+    ranges, measures = level_ranges(env_id, physics), measures_of(env_id, physics)
+    shape = shape_for(actions, ranges, width, masked, measures)
+    begun = None if start is None else load_map(start, env_id) if six else load(start, env_id, measures=measures)
     if six and begun is not None and begun.shape != shape:
         raise ValueError(f"share and masked must be those of the policy in start, {begun.shape}, got {width}, {masked}")
     words = f"hazard-ms train ppo -e {env_id} --seed {seed} --scenes {scenes} --reward {reward} --physics {physics}"
@@ -228,10 +229,11 @@ def score(
     from hazard_ms.agents.learned.weights import load, load_map, sees_map
     from hazard_ms.learning.comparison import six_table, table
     from hazard_ms.learning.playing import MapPlayer, Player
-    from hazard_ms.sketch.scenes import more_scenes
+    from hazard_ms.sketch.scenes import measures_of, more_scenes
     from hazard_ms.sketch.skill_times import load as times_of
 
-    policy = load_map(weights, env_id) if sees_map(weights) else load(weights, env_id)
+    six, measures = sees_map(weights), measures_of(env_id, physics)
+    policy = load_map(weights, env_id) if six else load(weights, env_id, measures=measures)
     scenes, times = more_scenes(env_id, physics, VALIDATION, VALIDATION_SCENES), times_of("fetch")
     if isinstance(policy, MapPolicy):
         print(six_table(scenes, times, {str(weights): MapPlayer(policy).play}))

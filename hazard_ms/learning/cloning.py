@@ -25,7 +25,7 @@ from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
 from hazard_ms.learning.labels import SEEDS, Labels, collect
 from hazard_ms.learning.playing import TRIALS, Player
 from hazard_ms.learning.recorded import Choices
-from hazard_ms.sketch.policies import POLICIES, Policy, play
+from hazard_ms.sketch.policies import POLICIES, Policy, fighter, play
 from hazard_ms.sketch.rescues.features import MISSING
 from hazard_ms.sketch.rescues.scene import Floats, SketchScene
 from hazard_ms.sketch.rescues.state import AGAIN, TRAINING, Domain
@@ -64,11 +64,14 @@ class Round:
 class Student:
     """A policy that learns, and plays in the sketch."""
 
-    def __init__(self, ranges: Sequence[tuple[float, float]], seed: int) -> None:
-        """Make an untrained student; `ranges`: ends of each hazard's usual level, in its unit."""
+    def __init__(self, ranges: Sequence[tuple[float, float]], seed: int, measures: bool = False) -> None:
+        """Make an untrained student; `ranges`: ends of each hazard's usual level, in its unit.
+
+        `measures`: whether its options have measures about a fire.
+        """
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(seed)
-            self.policy = SetPolicy(Shape(tuple(ranges), ignored=MISSING))
+            self.policy = SetPolicy(Shape(tuple(ranges), ignored=MISSING, measures=measures))
         player = Player(self.policy)
         self.encoder, self.play = player.encoder, player.play
         self._chance = torch.Generator().manual_seed(seed)
@@ -163,16 +166,16 @@ def train(
 ) -> list[Round]:
     """Train `student` in `scenes` for `rounds` of `episodes` each; afterwards it is as after its best round.
 
-    In the first JUDGED rounds, JUDGE plays on after the options that are tried, then the student. The best round is
-    that of the highest mean Value in the scenes `validation`. Each round is `told`. Raises ValueError for numbers
-    below 1.
+    In the first JUDGED rounds, JUDGE, or `fighter` where there are fires to put out, plays on after the options that
+    are tried, then the student. The best round is that of the highest mean Value in the scenes `validation`. Each round
+    is `told`. Raises ValueError for numbers below 1.
     """
     for name, number in (("rounds", rounds), ("episodes", episodes)):
         if number < 1:
             raise ValueError(f"{name} must be at least 1, got {number}")
-    chance, judge = np.random.default_rng(seed), POLICIES[JUDGE]
-    usual, made = _value(validation, times, judge), list[Round]()
+    chance, usual, made = np.random.default_rng(seed), _value(validation, times, POLICIES[JUDGE]), list[Round]()
     sketch = Sketch(scenes, times, episodes, TRAINING)
+    judge = fighter if sketch.stack.measures else POLICIES[JUDGE]
     labels, best = None, None
     for number in range(rounds):
         sketch.reset(chance.integers(len(scenes), size=episodes), chance.integers(SEEDS, size=episodes))

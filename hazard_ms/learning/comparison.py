@@ -8,7 +8,7 @@ import numpy as np
 
 from hazard_ms.learning.cloning import JUDGE, scores
 from hazard_ms.learning.playing import TRIALS, SixPolicy, at_random, possible_at_random, six_scores
-from hazard_ms.sketch.policies import POLICIES, Policy
+from hazard_ms.sketch.policies import POLICIES, Policy, fighter
 from hazard_ms.sketch.rescues.scene import Floats, SketchScene
 from hazard_ms.sketch.skill_times import SkillTimes
 
@@ -20,7 +20,8 @@ def table(scenes: Sequence[SketchScene], times: SkillTimes, policies: Mapping[st
 
     They are compared with JUDGE; the error is that of the mean difference over the scenes.
     """
-    return _lines({name: scores(scenes, times, policy) for name, policy in {**POLICIES, **policies}.items()}, JUDGE)
+    plain = POLICIES | ({"fighter": fighter} if any(len(scene.fire_site) for scene in scenes) else {})
+    return _lines({name: scores(scenes, times, policy) for name, policy in {**plain, **policies}.items()}, JUDGE)
 
 
 def six_table(scenes: Sequence[SketchScene], times: SkillTimes, policies: Mapping[str, SixPolicy]) -> str:

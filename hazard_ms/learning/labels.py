@@ -69,7 +69,7 @@ def collect(
     everyone = np.arange(len(sketch.state.frame))
     while not sketch.state.over.all():
         rows = np.flatnonzero(~sketch.state.over)
-        features = encoder.encode(sketch.stack, sketch.state, sketch.slots)[rows]
+        features = encoder.encode(sketch.stack, sketch.state, sketch.slots, sketch.tool)[rows]
         made.append(Labels(features, *worth(sketch, rows, judge, chance)))
         allowed = worthwhile(sketch.mask)
         at_random = (chance.random(allowed.shape) * allowed).argmax(axis=1)

@@ -27,13 +27,13 @@ class Player:
 
     def __init__(self, policy: SetPolicy) -> None:
         """Take a `policy`, which may go on learning."""
-        self.policy, self.encoder = policy, SketchEncoder(policy.shape.ranges)
+        self.policy, self.encoder = policy, SketchEncoder(policy.shape.ranges, policy.shape.measures)
 
     def play(self, sketch: Sketch, chance: np.random.Generator) -> Ints:
         """The options that it chooses for all rescues, [N]; for those that are over, any. Nothing is drawn."""
         del chance
         made, rows = np.zeros(len(sketch.state.frame), np.int64), np.flatnonzero(~sketch.state.over)
-        seen = torch.from_numpy(self.encoder.encode(sketch.stack, sketch.state, sketch.slots)[rows])
+        seen = torch.from_numpy(self.encoder.encode(sketch.stack, sketch.state, sketch.slots, sketch.tool)[rows])
         allowed = torch.from_numpy(worthwhile(sketch.mask[rows]))
         parts = zip(seen.split(AT_ONCE), allowed.split(AT_ONCE), strict=True)
         made[rows] = torch.cat([self.policy.choose(*part) for part in parts]).numpy()

@@ -211,14 +211,19 @@ def _between(ends: tuple[float, float], share: float) -> float:
 
 
 def shape_for(
-    actions: str, ranges: Sequence[tuple[float, float]], share: float = SHARE, masked: bool = False
+    actions: str,
+    ranges: Sequence[tuple[float, float]],
+    share: float = SHARE,
+    masked: bool = False,
+    measures: bool = False,
 ) -> Shape | MapShape:
     """The usual shape of a policy for "options" or "paper" that learns in the sketch.
 
-    `share` of the widths of the original's network, and whether actions are `masked`, are those of "paper".
+    `share` of the widths of the original's network, and whether actions are `masked`, are those of "paper"; `measures`
+    of "options": whether some are about a fire.
     """
     if actions == OPTIONS:
-        return Shape(tuple(ranges), WIDTH, HEADS, BLOCKS, MISSING)
+        return Shape(tuple(ranges), WIDTH, HEADS, BLOCKS, MISSING, measures)
     return MapShape(tuple(ranges), share=share, masked=masked, ignored=MISSING_PLANES, at_things=True)
 
 

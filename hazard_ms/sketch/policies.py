@@ -13,7 +13,7 @@ import numpy as np
 from hazard_ms.sketch.rescues.menu import distances
 from hazard_ms.sketch.rescues.scene import Bools, Floats, Ints
 from hazard_ms.sketch.world import Sketch
-from hazard_ms.skills.options.options import CART, END, FIRST, LANDMARK, LOOK
+from hazard_ms.skills.options.options import CART, END, FIRE, FIRST, LANDMARK, LOOK
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
 
 # of the greedy agent (hazard_ms.agents.greedy), of which this is the sketch
@@ -21,6 +21,7 @@ WALKING = 1.0 / 62.0  # [m/frame]
 HANDLING = 1.0  # what picking up costs, as a distance [m]
 # of the rule agent (hazard_ms.agents.rule)
 RULE_GIVES_UP = 2  # failures with one thing
+LARGE = 12  # flames from which a fire is left alone (hazard_ms.agents.fighter)
 
 Policy = Callable[[Sketch, np.random.Generator], Ints]
 
@@ -59,6 +60,18 @@ def rule(sketch: Sketch, chance: np.random.Generator) -> Ints:
     found = np.where(searching, first, found)
     done = (state.rescued_at >= 0) | (state.value == 0.0)
     return np.where((found == FIRST[END]) & ~done.all(axis=1), FIRST[LOOK], found)
+
+
+def fighter(sketch: Sketch, chance: np.random.Generator) -> Ints:
+    """The known fire with the fewest flames in each rescue, if it can be put out; else as `greedy`: [N]."""
+    made = greedy(sketch, chance)
+    if not sketch.stack.measures:
+        return made
+    state, fires = sketch.state, sketch.stack.fire_site.shape[1]
+    small = sketch.mask[:, FIRST[FIRE] : FIRST[FIRE] + fires] & (state.fire_flames < LARGE)
+    first = np.where(small, state.fire_flames, LARGE).argmin(axis=1)
+    fights = small.any(axis=1) & (state.frame > 0)
+    return np.where(fights, FIRST[FIRE] + first, made)
 
 
 POLICIES: dict[str, Policy] = {"greedy": greedy, "nearest": nearest, "rule": rule}

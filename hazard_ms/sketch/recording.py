@@ -78,7 +78,7 @@ def record(
         courses = [_simulated(task, physics, spec, seed) for spec, seed in zip(specs, seeds, strict=True)]
     else:
         world = building.make_world(tuple(specs), torch.device("cpu"))
-        courses = [_begun(task, physics, world, seeds)]
+        courses = [begun(task, physics, world, seeds)]
     made = [line for course in courses for line in course.run(length)]
     return [
         dataclasses.replace(line, task=task.name, physics=physics, suite=suite_of(task, physics, spec, length))
@@ -193,7 +193,7 @@ def _flames(episode: Episode, e: int) -> tuple[NDArray[np.int32], NDArray[np.flo
     return np.zeros(0, np.int32), np.zeros((0, 2), np.float32)
 
 
-def _begun(task: Task, physics: str, world: World, seeds: Sequence[int]) -> Course:
+def begun(task: Task, physics: str, world: World, seeds: Sequence[int]) -> Course:
     """Episodes at frame 0."""
     episode, rows = Episode(world, task.hazards, task.safe_place), torch.arange(world.num_envs)
     episode.begin(rows, torch.tensor(list(seeds)))
@@ -205,7 +205,7 @@ def _simulated(task: Task, physics: str, spec: SceneSpec, seed: int) -> Course:
     """One episode at frame 0 in a simulator of its own, without a robot."""
     control, rate = FREQUENCIES[physics]
     scene = bare_scene.build(spec, rate=rate, loose=loosened(task.hazards, spec))
-    course = _begun(task, physics, scene.world, (seed,))
+    course = begun(task, physics, scene.world, (seed,))
 
     def physics_step() -> None:
         for _ in range(rate // control):

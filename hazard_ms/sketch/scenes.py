@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,22 +15,24 @@ import numpy as np
 from hazard_ms.robots import robot_class
 from hazard_ms.scenes.splits import SCENES, spare_scene
 from hazard_ms.simulation.building import extent_of
+from hazard_ms.sketch.fires.making import Measures, has_measures
 from hazard_ms.sketch.keeping import kept
 from hazard_ms.sketch.limits import limit_of
 from hazard_ms.sketch.recording import recorded, suite_of
+from hazard_ms.sketch.rescues.grid import grid_of
 from hazard_ms.sketch.rescues.scene import LOOKS, SPOTS, Floats, Ints, SketchScene, spot_offsets
+from hazard_ms.sketch.rescues.sites import Sites
 from hazard_ms.sketch.sight import FETCH, G1, Sight
 from hazard_ms.sketch.timeline import STRIDE, Timeline
 from hazard_ms.sketch.travel.ways import Ways
 from hazard_ms.skills.options.landmarks import MIN_SPACING
 from hazard_ms.spec import SceneSpec, Task
-from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.catalogue import CATEGORIES, value_of
 from hazard_ms.spec.checks import one_of, whole
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import task_of
 
 SITE_STEP = 0.6  # distance that a moving target goes on from one of its sites to the next, below NEAR [m] [ours]
-INDOOR_CELL, OUTDOOR_CELL = 0.5, 1.0  # edges of the cells, in each of which sight is the same [m] [ours]
 FLOOR_SEEN = 5.0  # distance up to which a look shows the floor without gaps: farther off, pixels are too sparse [m]
 MANY_PIXELS = 1e4  # of a thing, beyond which the number makes no difference
 MOST_SCENES = 100_000  # any larger number of a scene must be a mistake [ours]
@@ -89,35 +90,32 @@ def level_ranges(env_id: str, physics: str) -> list[tuple[float, float]]:
     return [(hazard.level.low, hazard.level.high) for hazard in task_of(env_id, physics).hazards]
 
 
+def measures_of(env_id: str, physics: str) -> bool:
+    """Whether options of a task have measures about a fire. Raises ValueError for unknown names."""
+    return has_measures(task_of(env_id, physics))
+
+
 def sketch_scene(task: Task, physics: str, spec: SceneSpec, seed: int, robot: str = "fetch") -> SketchScene:
     """The scene `spec` with the fate that `seed` gives it in `task` under the preset `physics`, for `robot`.
 
     It is kept in the cache folder. Raises ValueError for an unknown preset or robot.
     """
     follows_from = f"{suite_of(task, physics, spec)} {task.safe_place.containers} {seed} {robot}"
-    return kept(spec.name, follows_from, lambda: _Maker(task, spec, recorded(task, physics, spec, seed), robot).scene())
 
+    def made() -> SketchScene:
+        future, measures = recorded(task, physics, spec, seed), Measures.of(task, physics, spec, seed)
+        return _Maker(task, spec, future, robot, measures).scene()
 
-@dataclass
-class _Sites:
-    """Places of sites while they are collected: position [m] and the number of the thing along B."""
-
-    position: list[Floats]
-    thing: list[int]
-
-    def add(self, position: Floats, thing: int) -> int:
-        self.position.append(position)
-        self.thing.append(thing)
-        return len(self.thing) - 1
+    return kept(spec.name, follows_from, made)
 
 
 class _Maker:
     """Makes one scene of the sketch."""
 
-    def __init__(self, task: Task, spec: SceneSpec, future: Timeline, robot: str) -> None:
+    def __init__(self, task: Task, spec: SceneSpec, future: Timeline, robot: str, measures: Measures | None) -> None:
         if future.stride != STRIDE:
             raise ValueError(f"stride of the timeline must be {STRIDE} frames, got {future.stride}")
-        self.task, self.spec, self.future = task, spec, future
+        self.task, self.spec, self.future, self.measures = task, spec, future, measures
         self.sight = Sight(spec, EYES[one_of(robot, EYES, "robot")])
         self.ways = Ways(spec, radius=robot_class(robot).build.radius)
         self.start = np.asarray(spec.agent_start.position, dtype=np.float64)
@@ -127,13 +125,14 @@ class _Maker:
 
     def scene(self) -> SketchScene:
         """All arrays of the scene."""
-        sites = _Sites([np.array([*self.start, 0.0])], [-1])
-        course = self._courses(sites)
+        sites = Sites([np.array([*self.start, 0.0])], [-1])
+        course, grid = self._courses(sites), grid_of(self.spec.room, self.ways.places)
         carts = [sites.add(self.future.start[n].astype(np.float64), n) for n in self.carts]
         marks = [sites.add(self.future.start[n].astype(np.float64), n) for n in self._landmarks()]
+        measures = self._measures(sites, grid["stand"])
         position = np.array(sites.position)
         edge = np.array([0.0 if n < 0 else np.hypot(*extent_of(self.spec.things[n])[:2]) / 2 for n in sites.thing])
-        height, grid = self.future.start[self.targets, 2].astype(np.float64), self._grid()
+        height = self.future.start[self.targets, 2].astype(np.float64)
         return SketchScene(
             name=self.spec.name,
             max_frames=self.task.max_frames,
@@ -142,7 +141,7 @@ class _Maker:
             target_site=course,
             cart_site=np.array(carts, np.int64),
             landmark_site=np.array(marks, np.int64),
-            value=np.array([CATEGORIES[self.spec.things[n].category].value for n in self.targets], np.float64),
+            value=np.array([value_of(self.spec.things[n]) for n in self.targets], np.float64),
             height=height,
             clearance=self._clearance(position[course[0], :2]),
             damaged_at=self.future.damaged_at[self.targets].astype(np.int64),
@@ -153,9 +152,10 @@ class _Maker:
             **grid,
             **self._travel(grid["stand"], position[:, :2], edge),
             **self._views(grid["stand"], position, np.array(sites.thing), marks),
+            **measures,
         )
 
-    def _courses(self, sites: _Sites) -> Ints:
+    def _courses(self, sites: Sites) -> Ints:
         """The sites of the targets at every sample, [K, T]; one sample if nothing moves."""
         places = self.future.positions(np.array(self.targets)).astype(np.float64)
         made = np.zeros(places.shape[:2], np.int64)
@@ -166,6 +166,19 @@ class _Maker:
                     anchor, site = place, sites.add(place, number)
                 made[k, t] = site
         return made[:1] if (made == made[0]).all() else made
+
+    def _measures(self, sites: Sites, stand: Floats) -> dict[str, Any]:
+        """The arrays about fires and extinguishers, whose sites are added; none where the task has no measures.
+
+        `stand` [P, 2] [m]: from where they are seen.
+        """
+        if self.measures is None:
+            return {}
+        stands, tools = self.measures.stands(self.ways, self.sight, self.start), self.measures.tools
+        fire_site = [sites.add(np.array([*stand, 0.0]), -1) for stand in stands]
+        tool_site = [sites.add(self.future.start[n].astype(np.float64), n) for n in tools]
+        seen = self.measures.seen(self.sight, stand)
+        return {"fire_seen": seen, **self.measures.arrays(self.targets, fire_site, tool_site)}
 
     def _landmarks(self) -> list[int]:
         """Numbers along B of the things that are landmarks: things at rest, furniture first, MIN_SPACING apart."""
@@ -178,28 +191,6 @@ class _Maker:
             if n not in moving and apart:
                 chosen.append(n)
         return chosen
-
-    def _grid(self) -> dict[str, Any]:
-        """The cells of the grid, and the stands: in each cell the free place nearest to its middle."""
-        room, edge = self.spec.room, OUTDOOR_CELL if self.spec.room.open_air else INDOOR_CELL
-        border = room.beyond if room.open_air else 0.0
-        shape = (int(np.ceil((room.size[1] + 2 * border) / edge)), int(np.ceil((room.size[0] + 2 * border) / edge)))
-        floor = self.ways.places
-        at = (floor + border) / edge
-        order = np.argsort(np.abs(at % 1.0 - 0.5).max(axis=1), kind="stable")
-        x, y = np.clip(np.floor(at[order]).astype(int), 0, np.array(shape[::-1]) - 1).T
-        _, first = np.unique(y * shape[1] + x, return_index=True)
-        stand = floor[order][first]
-        y, x = np.divmod(np.arange(shape[0] * shape[1]), shape[1])
-        middle = (np.stack([x, y], axis=-1) + 0.5) * edge - border
-        nearest = np.hypot(*np.moveaxis(middle[:, None] - stand, -1, 0)).argmin(axis=1)
-        return {
-            "stand": stand,
-            "stand_of": nearest,
-            "grid_origin": (-border, -border),
-            "grid_cell": edge,
-            "grid_shape": shape,
-        }
 
     def _travel(self, stand: Floats, position: Floats, edge: Floats) -> dict[str, Any]:
         """Ways from `stand` [P, 2] [m] to things of `edge` [S] [m] at `position` [S, 2] [m]."""
@@ -234,7 +225,8 @@ class _Maker:
     def _views(self, stand: Floats, position: Floats, thing: Ints, marks: Sequence[int]) -> dict[str, Any]:
         """The sight from `stand` [P, 2] [m] of `thing`, numbers along B, [S], at `position` [S, 3] [m]."""
         pixels = np.zeros((len(stand), len(position)), np.float16)
-        pixels[:, 1:] = np.minimum(self.sight.pixels(stand, None, thing[1:], position[1:]), MANY_PIXELS)
+        some = thing >= 0
+        pixels[:, some] = np.minimum(self.sight.pixels(stand, None, thing[some], position[some]), MANY_PIXELS)
         return {"pixels": pixels, "spots": self._spots(stand, position[list(marks), :2])}
 
     def _spots(self, places: Floats, marks: Floats) -> Floats:

@@ -6,10 +6,13 @@
     landmark l    walk there and look around
     look          look around
     stop          the episode ends
+    fire f        fetch an extinguisher, walk to the fire, put it out
+    tool          fetch an extinguisher
 
 Ways, sight and fates come from scenes (`hazard_ms.sketch.rescues.scene`), times of skills from tables. Nothing that the
-robot does changes the hazard, and nothing is pushed aside. A rescue is a function of its scene, its seed and its
-options: it goes the same alone as among thousands. The rewards of an episode add up to its score Value.
+robot does changes the hazard, unless it puts out a fire, and nothing is pushed aside. A rescue is a function of its
+scene, its seed and its options: it goes the same alone as among thousands. The rewards of an episode add up to its
+score: Value, or what is averted where there are fires to put out (`hazard_ms.sketch.fires.fates`).
 """
 
 from __future__ import annotations
@@ -22,25 +25,35 @@ import torch
 from numpy.typing import ArrayLike
 
 from hazard_ms.simulation.chance import Chance
+from hazard_ms.sketch.fires.fates import averted, damaged_at
+from hazard_ms.sketch.fires.robots import Robots
 from hazard_ms.sketch.rescues import menu
-from hazard_ms.sketch.rescues.looking import look, stands, target_site
-from hazard_ms.sketch.rescues.pursuit import ahead, apart, in_sight, journey, meeting
-from hazard_ms.sketch.rescues.scene import LOOKS, Bools, Floats, Ints, SketchScene, Stack
+from hazard_ms.sketch.rescues.looking import stands, target_site
+from hazard_ms.sketch.rescues.pursuit import ahead, apart, in_sight, meeting
+from hazard_ms.sketch.rescues.scene import Bools, Floats, Ints, SketchScene, Stack
 from hazard_ms.sketch.rescues.state import AS_MEASURED, Domain, Rescues
-from hazard_ms.sketch.skill_times import BAG, EXPLORE, NO_PATH, PICK_UP, SkillTimes
+from hazard_ms.sketch.skill_times import BAG, EXPLORE, PICK_UP, SkillTimes
 from hazard_ms.sketch.skill_times import CART as OVER_CART
-from hazard_ms.skills.motor.walking import WALK_FRAMES
 from hazard_ms.skills.options.environment import IDLE
-from hazard_ms.skills.options.macros import LEGS, NEAR
-from hazard_ms.skills.options.options import CART, CART_SLOTS, END, FIRST, LANDMARK, LOOK, TARGET, TARGET_SLOTS
+from hazard_ms.skills.options.macros import NEAR
+from hazard_ms.skills.options.options import (
+    CART,
+    END,
+    FIRE,
+    FIRST,
+    LANDMARK,
+    LOOK,
+    MEASURED_COUNT,
+    TARGET,
+    TARGET_SLOTS,
+    TOOL,
+)
 
-WALK_BUDGET = LEGS * WALK_FRAMES  # frames after which an approach is given up
-THINGS = TARGET_SLOTS + CART_SLOTS  # targets and carts that a scene can have: landmarks are numbered from there
 TRIES = 2  # walks to a thing that moves: the second when it is seen from where it was expected [ours]
 DRAWS = 6  # uniform numbers of a step: two each for the pick-up, the drop, and a walk without a path
 
 
-class Sketch:
+class Sketch(Robots):
     """Many rescues at once: `state` tells all about them, `mask` [N, A] what can be chosen, `step` plays an option."""
 
     def __init__(
@@ -59,7 +72,6 @@ class Sketch:
             raise ValueError(f"count must be at least 1, got {count}")
         self.stack, self.times, self.domain, self._stop = Stack(scenes), times, domain, stop
         self.state, self._chance = Rescues.allocate(count, self.stack), Chance(count)
-        self._targets = self.stack.value.shape[1]
         self._menu()
 
     def reset(self, scene: ArrayLike, seeds: ArrayLike, rows: ArrayLike | None = None) -> None:
@@ -91,7 +103,7 @@ class Sketch:
         An option that cannot be chosen costs a few frames; what is over stays as it is. Raises ValueError for anything
         but numbers of options.
         """
-        chosen = menu.checked(option, len(self.state.frame))
+        chosen = menu.checked(option, *self.mask.shape)
         state, before, started = self.state, self.state.score.copy(), self.state.frame.copy()
         allowed = self.mask[np.arange(len(chosen)), chosen]
         self._chance.tick()
@@ -101,6 +113,8 @@ class Sketch:
             (self._stow, FIRST[CART], FIRST[LANDMARK]),
             (self._search, FIRST[LANDMARK], FIRST[LOOK]),
             (self._explore, FIRST[LOOK], FIRST[END]),
+            (self._put_out, FIRST[FIRE], FIRST[TOOL]),
+            (self._arm, FIRST[TOOL], MEASURED_COUNT),
         ):
             rows = np.flatnonzero(allowed & (chosen >= first) & (chosen < end))
             if len(rows):
@@ -114,13 +128,16 @@ class Sketch:
         state.frame[~state.over & (state.frame == started) & ~stopped] += IDLE
         state.frame = np.minimum(state.frame, limit)
         self._drift_in()
+        if self.stack.measures:
+            state.score = averted(self.stack, state)
         done = ((state.rescued_at >= 0) | (state.value == 0.0)).all(axis=1)
         state.over |= (state.frame >= limit) | done | stopped
         self._menu()
 
     def _fetch(self, rows: Ints, target: Ints) -> None:
-        """Walk to a target and pick it up; with a bag, put it in."""
+        """Walk to a target and pick it up; with a bag, put it in. A tool in the hand is put down before."""
         stack, state = self.stack, self.state
+        self._lay_down(rows)
         goal, here, trying = state.seen_site[rows, target], np.zeros(len(rows), bool), np.arange(len(rows))
         for _ in range(TRIES):
             some, wanted = rows[trying], target[trying]
@@ -147,7 +164,7 @@ class Sketch:
         worked, frames = self.times.draw(PICK_UP, self._luck[rows, :2], *place, ease)
         worked &= self._pass(rows, frames)
         state.missed[rows] = np.where(worked, -1, target)
-        damaged = stack.damaged_at[scene, target]
+        damaged = damaged_at(stack, state, rows)[np.arange(len(rows)), target]
         state.spoiled[rows, target] |= worked & (damaged >= 0) & (damaged <= state.frame[rows])
         state.held[rows[worked]] = target[worked]
         return worked
@@ -201,50 +218,9 @@ class Sketch:
         self._look(rows, state.place[rows][:, None], None, state.frame[rows][:, None])
         state.looked[rows] = whole
 
-    def _pass(self, rows: Ints, frames: Floats) -> Bools:
-        """Let `frames` [R] at usual pace pass; whether the episode lasts so long, [R]."""
-        after = self.state.frame[rows] + np.rint(frames * self.state.pace[rows]).astype(np.int64)
-        limit = self.stack.max_frames[self.state.scene[rows]]
-        self.state.frame[rows] = np.minimum(after, limit)
-        return after <= limit
-
-    def _walk(self, rows: Ints, goal: Ints, most: Floats | int = WALK_BUDGET) -> Bools:
-        """Walk to the sites `goal` [R] for `most` frames, with looks on the way; whether the robot arrived, [R]."""
-        state, scene = self.state, self.state.scene[rows]
-        frames = ahead(self.stack, state, rows, goal) * state.pace[rows]
-        none = ~np.isfinite(frames)
-        room = self.stack.max_frames[scene] - state.frame[rows]
-        spent = np.minimum(np.where(none, 0.0, np.minimum(frames, most)), room)
-        share = np.where(none, 0.0, np.where(frames > 0.0, spent / np.maximum(frames, 1e-9), 1.0))
-        if none.any():
-            nothing, sure = np.zeros(len(rows)), np.ones(len(rows))
-            lost = self.times.draw(NO_PATH, self._luck[rows, 4:], nothing, nothing, sure)[1]
-            spent = np.where(none, np.minimum(lost * state.pace[rows], room), spent)
-        there, some = share == 1.0, np.flatnonzero(~none & (frames > 0.0))
-        self._travel(rows[some], goal[some], share[some], spent[some])
-        state.frame[rows] += np.rint(spent).astype(np.int64)
-        state.site[rows[some]] = np.where(there, goal, -1)[some]
-        return there
-
-    def _travel(self, rows: Ints, goal: Ints, share: Floats, spent: Floats) -> None:
-        """Move along the first `share` [R] of the ways to the sites `goal` [R], and look on the way."""
-        points, facing = journey(self.stack, self.state, rows, goal, share)
-        passed = np.rint(spent[:, None] * np.arange(1, LOOKS + 1) / LOOKS).astype(np.int64)
-        self._look(rows, points, facing, self.state.frame[rows][:, None] + passed)
-        self.state.place[rows], self.state.heading[rows], self.state.missed[rows] = points[:, -1], facing[:, -1], -1
-        self.state.stand[rows] = stands(self.stack, self.state.scene[rows], points[:, -1])
-
-    def _look(self, rows: Ints, points: Floats, facing: Floats | None, frame: Ints) -> None:
-        missed = None
-        if self.domain.missed > 0.0:
-            targets, carts, marks = self._targets, self.stack.cart_site.shape[1], self.stack.landmark_site.shape[1]
-            columns = np.r_[:targets, TARGET_SLOTS : TARGET_SLOTS + carts, THINGS : THINGS + marks]
-            missed = self._draw("sketch.sight", THINGS + marks)[rows][:, columns] < self.domain.missed
-        look(self.stack, self.state, rows, points, facing, frame, missed)
-
-    def _draw(self, stream: str, count: int) -> Floats:
-        return self._chance.uniform(stream, count).numpy().astype(np.float64)
-
     def _menu(self) -> None:
         self.slots = menu.landmark_slots(self.stack, self.state)
+        self.tool = self.nearest_tool()
         self.mask = menu.mask(self.stack, self.state, self.slots, self._stop)
+        if self.stack.measures:
+            menu.offer_measures(self.mask, self.stack, self.state, self.tool)

@@ -20,6 +20,7 @@ from hazard_ms.agents.learned.weights import ENDING, load, load_map
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.skills.options.features import Encoder
+from hazard_ms.skills.options.fires import measured, tool_in_hand
 from hazard_ms.skills.options.macros import Macro, play
 from hazard_ms.skills.options.options import TARGET, Menu, Option, Options
 from hazard_ms.skills.options.paper_actions import NAMES, SixActions
@@ -68,13 +69,14 @@ class Learned(Agent):
 
         Raises ValueError if the file holds no policy for its task and as many hazards, and if the package brings none.
         """
+        fire = measured(brief.mitigations, [hazard.name for hazard in brief.hazards])
         if self._loaded is None or self._loaded[0] != brief.task:
             path = weights_file(self._weights, self.name, brief.task, self.made_by)
-            self._loaded = brief.task, load(path, brief.task, self.made_by)
+            self._loaded = brief.task, load(path, brief.task, self.made_by, fire is not None)
         self._policy = self._loaded[1]
         check_hazards(self._policy.shape.ranges, brief)
-        self._encoder = Encoder(self._policy.shape.ranges, brief.radius)
-        self._options = Options()
+        self._encoder = Encoder(self._policy.shape.ranges, brief.radius, fire is not None)
+        self._options = Options(fire=fire)
         self._playing: tuple[Option, Macro] | None = None
 
     def act(self, decision: Decision) -> Action:
@@ -84,7 +86,7 @@ class Learned(Agent):
             try:
                 return macro.send(decision)
             except StopIteration as ended:
-                self._options.note(option, ended.value)
+                self._options.note(option, ended.value, decision)
         menu = self._options.menu(decision)
         option = self._choose(decision, menu)
         macro = play(option, decision)
@@ -92,7 +94,7 @@ class Learned(Agent):
         return next(macro)
 
     def _choose(self, decision: Decision, menu: Menu) -> Option:
-        if decision.held is not None and not decision.containers:
+        if decision.held is not None and not decision.containers and not tool_in_hand(decision):
             self.note = "into the bag"
             return Option(TARGET, decision.held)
         features = torch.from_numpy(self._encoder.encode(decision, menu))[None]

@@ -2,7 +2,7 @@
 
     token    one for each thing that can matter, and one for the whole: an MLP of its row of features and of the whole's
     mixing   BLOCKS times: each token adds what it draws from all others (attention), then an MLP of itself
-    logit    an MLP of the token of each target, cart and landmark; two of the whole's: look around, stop
+    logit    an MLP of the token of each target, cart and landmark, fire and tool; two of the whole's: look around, stop
 
 Rows of rescued targets and of empty slots are left out. Columns that a teacher's world cannot give are `ignored`.
 """
@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from hazard_ms.skills.options.features import Encoder
-from hazard_ms.skills.options.options import CART, END, FIRST, LANDMARK, LOOK, TARGET
+from hazard_ms.skills.options.options import CART, END, FIRE, FIRST, LANDMARK, LOOK, TARGET, TOOL
 
 KINDS = {"targets": TARGET, "carts": CART, "landmarks": LANDMARK}  # tables of things, and their options
+MEASURES = {"fires": FIRE, "tools": TOOL}  # the same of tasks with measures, beside those
 MOST = {"width": 1024, "heads": 1024, "blocks": 32}  # of an architecture: any larger number must be a mistake [ours]
 FORBIDDEN = -1e9  # logit of an option that the mask forbids: its probability is 0 in float32
 
@@ -34,6 +35,7 @@ class Shape:
     heads: int = 4  # of each attention, which divide the width
     blocks: int = 2  # of mixing
     ignored: tuple[str, ...] = ()  # columns, or the beginnings of their names, that are not read
+    measures: bool = False  # whether its options have measures about a fire
 
     def __post_init__(self) -> None:
         """Raises ValueError for numbers below 1 or above MOST, and for heads that do not divide the width."""
@@ -45,9 +47,10 @@ class Shape:
 
 
 def worthwhile(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """A `mask` [..., A] without `stop`, as long as there is a target, a cart or a landmark to go to: [..., A]."""
+    """A `mask` [..., A] without `stop`, as long as there is anything to go to: [..., A]."""
     made = mask.copy()
-    made[..., FIRST[END]] &= ~mask[..., : FIRST[LOOK]].any(axis=-1)
+    others = mask[..., : FIRST[LOOK]].any(axis=-1) | mask[..., FIRST[END] + 1 :].any(axis=-1)
+    made[..., FIRST[END]] &= ~others
     return made
 
 
@@ -77,9 +80,10 @@ class SetPolicy(nn.Module):
         """Make an untrained policy."""
         super().__init__()
         self.shape = shape
-        self.layout = Encoder(shape.ranges, 0.0)
+        self.layout = Encoder(shape.ranges, 0.0, shape.measures)
+        self.kinds = KINDS | (MEASURES if shape.measures else {})
         whole = len(self.layout.tables["global"][1])
-        inputs = {name: len(self.layout.tables[name][1]) + whole for name in KINDS} | {"global": whole}
+        inputs = {name: len(self.layout.tables[name][1]) + whole for name in self.kinds} | {"global": whole}
         self.enter = nn.ModuleDict(
             {
                 name: nn.Sequential(nn.Linear(size, shape.width), nn.ReLU(), nn.Linear(shape.width, shape.width))
@@ -114,7 +118,7 @@ class SetPolicy(nn.Module):
         whole = parts["global"]
         rows = {"global": self.enter["global"](whole)}
         exists = [torch.ones_like(whole[..., 0], dtype=torch.bool)]
-        for name in KINDS:
+        for name in self.kinds:
             table = parts[name]
             rows[name] = self.enter[name](torch.cat([table, whole.expand(-1, table.shape[1], -1)], dim=-1))
             exists.append(self._matters(name, table))
@@ -126,7 +130,7 @@ class SetPolicy(nn.Module):
     def logits(self, tokens: dict[str, Tensor], mask: Tensor) -> Tensor:
         """Logits [N, A] from `tokens` [N, rows, width]; FORBIDDEN where `mask` [N, A] is not set."""
         made = torch.full(mask.shape, FORBIDDEN, device=mask.device)
-        for name, kind in KINDS.items():
+        for name, kind in self.kinds.items():
             made[:, FIRST[kind] : FIRST[kind] + tokens[name].shape[1]] = self.score[name](tokens[name])[..., 0]
         made[:, FIRST[LOOK] : FIRST[END] + 1] = self.score["global"](tokens["global"][:, 0])
         return made.masked_fill(~mask, FORBIDDEN)
@@ -152,5 +156,5 @@ class SetPolicy(nn.Module):
         columns: Sequence[str] = [column.name for column in self.layout.tables[name][1]]
         if name == "targets":
             return (rows[..., columns.index("value")] > 0) & (rows[..., columns.index("rescued")] == 0)
-        told = "known" if name == "carts" else "edge"  # no landmark is offered without an edge
+        told = "edge" if name == "landmarks" else "known"  # no landmark is offered without an edge
         return rows[..., columns.index(told)] > 0

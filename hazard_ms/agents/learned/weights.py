@@ -20,7 +20,7 @@ from torch import Tensor
 
 from hazard_ms.agents.learned.map_policy import MapPolicy, MapShape
 from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
-from hazard_ms.skills.options.feature_columns import FEATURES_VERSION
+from hazard_ms.skills.options.feature_columns import FEATURES_VERSION, MEASURED_VERSION
 from hazard_ms.skills.options.paper_map import MAP_VERSION
 from hazard_ms.spec.foreign import plain
 from hazard_ms.spec.foreign.arrays import check_archive
@@ -35,7 +35,8 @@ LIMITS = plain.Limits(most_entries=1000)  # of a shape [ours]
 
 def contents(policy: SetPolicy | MapPolicy, task: str, facts: Mapping[str, Any]) -> tuple[bytes, str]:
     """The contents of both files of a `policy` for `task`; `facts`, plain data, say how it came about."""
-    row = {"task": task, **_version(policy), "shape": asdict(policy.shape), **facts}
+    measures = isinstance(policy, SetPolicy) and policy.shape.measures
+    row = {"task": task, **_version(policy, measures), "shape": asdict(policy.shape), **facts}
     return save(dict(stored(policy))), json.dumps(row, indent=1, allow_nan=False) + "\n"
 
 
@@ -45,22 +46,22 @@ def stored(policy: SetPolicy | MapPolicy) -> dict[str, torch.Tensor]:
     return {name: part.half() for name, part in numbers.items()} if isinstance(policy, MapPolicy) else numbers
 
 
-def load(path: Path, task: str, made_by: str = "train bc") -> SetPolicy:
+def load(path: Path, task: str, made_by: str = "train bc", measures: bool = False) -> SetPolicy:
     """The policy over options in a file NAME.safetensors, with its NAME.json, ready to be asked at decisions of `task`.
 
-    `made_by`: the command that makes such files.
+    `made_by`: the command that makes such files; `measures`: whether options of the task have measures about a fire.
 
     Raises ValueError for files that are missing or damaged, and for policies of another task, or of another version of
     the features.
     """
-    found = _read(path, task, made_by, SetPolicy)
+    found = _read(path, task, made_by, SetPolicy, measures)
     assert isinstance(found, SetPolicy)
     return found
 
 
 def load_map(path: Path, task: str, made_by: str = "train ppo --actions paper") -> MapPolicy:
     """The policy over the six actions in a file, as `load` does it; it raises the same."""
-    found = _read(path, task, made_by, MapPolicy)
+    found = _read(path, task, made_by, MapPolicy, False)
     assert isinstance(found, MapPolicy)
     return found
 
@@ -93,18 +94,27 @@ def unpacked_state(packed: bytes) -> dict[str, Any]:
     return dict(torch.load(io.BytesIO(packed), map_location="cpu", weights_only=True))
 
 
-def _version(policy: SetPolicy | MapPolicy | type) -> dict[str, int]:
+def _version(policy: SetPolicy | MapPolicy | type, measures: bool) -> dict[str, int]:
     kind = policy if isinstance(policy, type) else type(policy)
-    return {"map_version": MAP_VERSION} if kind is MapPolicy else {"features_version": FEATURES_VERSION}
+    return {"map_version": MAP_VERSION} if kind is MapPolicy else {"features_version": features_version(measures)}
 
 
-def _read(path: Path, task: str, made_by: str, kind: type[SetPolicy] | type[MapPolicy]) -> SetPolicy | MapPolicy:
+def features_version(measures: bool) -> int:
+    """The version of the features of tasks with `measures`, or of those without."""
+    return MEASURED_VERSION if measures else FEATURES_VERSION
+
+
+def _read(
+    path: Path, task: str, made_by: str, kind: type[SetPolicy] | type[MapPolicy], measures: bool
+) -> SetPolicy | MapPolicy:
     try:
         facts = told(path)
-        for name, wanted in {**_version(kind), "task": task}.items():
+        for name, wanted in {**_version(kind, measures), "task": task}.items():
             if facts.get(name) != wanted:
                 raise ValueError(f"{name} must be {wanted}, got {facts.get(name)!s:.100}")
         shape = plain.made(MapShape if kind is MapPolicy else Shape, facts.get("shape"), "shape", LIMITS)
+        if isinstance(shape, Shape) and shape.measures != measures:
+            raise ValueError(f"measures of its shape must be {measures}, got {shape.measures}")
         if len(shape.ranges) > MOST_HAZARDS or any(not low < high for low, high in shape.ranges):
             raise ValueError(f"ranges must be (low, high) of at most {MOST_HAZARDS} hazards, got {shape.ranges!r:.100}")
         numbers = _numbers(read_foreign(path, LARGEST))

@@ -15,14 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 from hazard_ms.sketch.paper.maps import MapMaker
 from hazard_ms.sketch.paper.moves import SixSketch
 from hazard_ms.sketch.rescues.features import SketchEncoder
-from hazard_ms.sketch.rescues.scene import Bools, Floats, SketchScene
-from hazard_ms.sketch.rescues.state import AS_MEASURED, Domain
+from hazard_ms.sketch.rescues.scene import Bools, Floats, Ints, SketchScene
+from hazard_ms.sketch.rescues.state import AS_MEASURED, Domain, Rescues
 from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.sketch.world import Sketch
 from hazard_ms.skills.options import paper_actions
 from hazard_ms.skills.options.choices import OPTIONS, PAPER
 from hazard_ms.skills.options.environment import refuse_mask
-from hazard_ms.skills.options.options import CART, COUNT, END, FIRST, KINDS, LANDMARK, TARGET
+from hazard_ms.skills.options.options import CART, END, FIRE, FIRST, KINDS, LANDMARK, TARGET, TOOL, option_count
 from hazard_ms.spec.checks import flag, one_of
 
 
@@ -65,11 +65,10 @@ class Choices(Protocol):
 class OptionChoices:
     """Numbered options, of which a mask forbids what cannot be done, and features of what is known."""
 
-    count = COUNT
-
     def __init__(self, sketch: Sketch, ranges: Sequence[tuple[float, float]]) -> None:
         """Take a `sketch`; `ranges`: ends of each hazard's usual level, in its unit."""
-        self.sketch, self.encoder = sketch, SketchEncoder(ranges)
+        self.sketch, self.encoder = sketch, SketchEncoder(ranges, sketch.stack.measures)
+        self.count = option_count(sketch.stack.measures)
 
     def space(self) -> gym.spaces.Box:
         """The bounds of the features."""
@@ -77,7 +76,7 @@ class OptionChoices:
 
     def observe(self) -> NDArray[np.float32]:
         """The features of all rescues, [N, F]."""
-        return self.encoder.encode(self.sketch.stack, self.sketch.state, self.sketch.slots)
+        return self.encoder.encode(self.sketch.stack, self.sketch.state, self.sketch.slots, self.sketch.tool)
 
     @property
     def mask(self) -> Bools:
@@ -87,20 +86,26 @@ class OptionChoices:
     def step(self, chosen: ArrayLike) -> Played:
         """Play the options `chosen` [N], columns of `mask` [N, A]. Raises ValueError for anything else."""
         option, mask, state = np.asarray(chosen), self.sketch.mask, self.sketch.state
-        failures = state.failures.sum(axis=1)
+        failures = _failures(state)
         gained, over = self.sketch.step(option)
         allowed = mask[np.arange(len(option)), option]
         looking = (option >= FIRST[LANDMARK]) & (option < FIRST[END])
-        ok = allowed & np.where(looking, state.looked, state.failures.sum(axis=1) == failures)
+        ok = allowed & np.where(looking, state.looked, _failures(state) == failures)
         return Played(gained, over, allowed, allowed & (option == FIRST[END]), ok)
 
     def name(self, row: int, number: int) -> str:
         """An option as text: the sketch numbers things where the simulator names them."""
         kind = max((k for k in KINDS if FIRST[k] <= number), key=FIRST.__getitem__)
         slot = number - FIRST[kind]
-        if kind not in (TARGET, CART, LANDMARK):
-            return kind
+        if kind not in (TARGET, CART, LANDMARK, FIRE):
+            return f"{kind} {int(self.sketch.tool[row])}" if kind == TOOL else kind
         return f"{kind} {int(self.sketch.slots[row, slot]) if kind == LANDMARK else slot}"
+
+
+def _failures(state: Rescues) -> Ints:
+    """The number of failures of each rescue so far, [N]."""
+    parts = (state.failures, state.fire_failures, state.tool_failures)
+    return np.asarray(sum(part.sum(axis=1) for part in parts), np.int64)
 
 
 class PaperChoices:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from hazard_ms.registry import TASKS
+from hazard_ms.sketch.fires.making import has_measures
 from hazard_ms.sketch.rescues.scene import SketchScene
 from hazard_ms.sketch.scenes import EYES, MOST_SCENES, level_ranges, more_scenes, scenes_of
 from hazard_ms.sketch.skill_times import SkillTimes, shipped
@@ -74,6 +75,11 @@ class Settings:
     def ranges(self) -> list[tuple[float, float]]:
         """The ends of the usual level of each hazard, in its unit."""
         return level_ranges(self.task, self.physics)
+
+    @property
+    def measures(self) -> bool:
+        """Whether its options have measures about a fire."""
+        return has_measures(task_of(self.task, self.physics))
 
     @property
     def times(self) -> SkillTimes:

@@ -15,7 +15,7 @@ from hazard_ms.sketch.rescues.state import AS_MEASURED, Domain
 from hazard_ms.skills.options.choices import ACTIONS, OPTIONS
 from hazard_ms.skills.options.environment import NOT_AVAILABLE, SEEDS, refuse_mask
 from hazard_ms.skills.options.features import Encoder
-from hazard_ms.skills.options.options import COUNT as OPTION_COUNT
+from hazard_ms.skills.options.options import option_count
 from hazard_ms.skills.options.paper_actions import COUNT as PAPER_COUNT
 from hazard_ms.skills.options.paper_map import MapLayout
 from hazard_ms.skills.options.rewards import REWARDS, VALUE
@@ -68,9 +68,10 @@ class SketchSkills(gym.Env[NDArray[np.float32], np.int64]):
         self.actions, self._reward = one_of(actions, ACTIONS, "actions"), one_of(reward, REWARDS, "reward")
         self._stop, self._masked, self._domain = flag(stop, "stop"), flag(masked, "masked"), domain
         refuse_mask(masked, actions)
-        layout = Encoder(self.settings.ranges, 0.0) if actions == OPTIONS else MapLayout(self.settings.ranges)
+        measures = self.settings.measures
+        layout = Encoder(self.settings.ranges, 0.0, measures) if actions == OPTIONS else MapLayout(self.settings.ranges)
         self.observation_space: gym.spaces.Box = layout.space()  # type: ignore[assignment]
-        self.action_space = gym.spaces.Discrete(OPTION_COUNT if actions == OPTIONS else PAPER_COUNT)
+        self.action_space = gym.spaces.Discrete(option_count(measures) if actions == OPTIONS else PAPER_COUNT)
         self._play: Rewarded | None = None
 
     def reset(

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hazard_ms.sensing.sighting import SEEN_PIXELS
+from hazard_ms.sketch.fires.robots import THINGS
 from hazard_ms.sketch.rescues.looking import HALF_VIEW, NO_DISTANCE, target_site
 from hazard_ms.sketch.rescues.menu import distances
 from hazard_ms.sketch.rescues.pursuit import ahead, apart
@@ -19,7 +20,7 @@ from hazard_ms.sketch.skill_times import BAG
 from hazard_ms.sketch.skill_times import CART as OVER_CART
 from hazard_ms.sketch.travel.geodesic import on_the_spot
 from hazard_ms.sketch.travel.ways import SETTLE, TURN, WALK
-from hazard_ms.sketch.world import DRAWS, THINGS, Sketch
+from hazard_ms.sketch.world import DRAWS, Sketch
 from hazard_ms.skills.motor.walking import MIDPOINT, SLACK, WALK_FRAMES
 from hazard_ms.skills.options.macros import NEAR
 from hazard_ms.skills.options.options import TARGET_SLOTS

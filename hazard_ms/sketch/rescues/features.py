@@ -11,12 +11,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.sketch.fires.features import fires, tools
 from hazard_ms.sketch.rescues.menu import edges
-from hazard_ms.sketch.rescues.pursuit import ahead
+from hazard_ms.sketch.rescues.places import place_of
 from hazard_ms.sketch.rescues.scene import Floats, Ints, Stack
 from hazard_ms.sketch.rescues.state import Rescues
-from hazard_ms.sketch.travel.geodesic import on_the_spot
-from hazard_ms.sketch.travel.ways import TURN
 from hazard_ms.skills.options.feature_columns import SOON
 from hazard_ms.skills.options.features import Encoder
 
@@ -26,22 +25,31 @@ MISSING = ("explored", "failed", "front")  # columns, or the beginnings of their
 class SketchEncoder:
     """Encodes rescues as `Encoder` encodes decisions: the same tables, scales and bounds."""
 
-    def __init__(self, ranges: Sequence[tuple[float, float]]) -> None:
-        """Make the encoder of a task; `ranges`: ends of each hazard's usual level, in its unit."""
-        self.layout = Encoder(ranges, 0.0)
+    def __init__(self, ranges: Sequence[tuple[float, float]], measures: bool = False) -> None:
+        """Make the encoder of a task; `ranges`: ends of each hazard's usual level, in its unit.
+
+        `measures`: whether its options have measures about a fire.
+        """
+        self.layout = Encoder(ranges, 0.0, measures)
         ends = np.array(ranges, np.float64).reshape(-1, 2)
         self._low, self._span = ends[:, 0], ends[:, 1] - ends[:, 0]
 
-    def encode(self, stack: Stack, state: Rescues, slots: Ints) -> NDArray[np.float32]:
-        """The features of all rescues: F dimensionless numbers each, float32 [N, F]; `slots`: see `landmark_slots`."""
+    def encode(self, stack: Stack, state: Rescues, slots: Ints, tool: Ints | None = None) -> NDArray[np.float32]:
+        """The features of all rescues: F dimensionless numbers each, float32 [N, F].
+
+        `slots`: see `landmark_slots`; `tool`: see `Robots.nearest_tool`, [N]; None: there are none.
+        """
         made = np.zeros((len(state.frame), self.layout.size), np.float32)
         parts = self.layout.split(made)
-        for table, quantities in (
+        tables = [
             ("targets", self._targets(stack, state)),
             ("carts", self._carts(stack, state)),
             ("landmarks", self._landmarks(stack, state, slots)),
             ("global", self._whole(stack, state)),
-        ):
+        ]
+        if self.layout.measures and tool is not None:
+            tables += [("fires", fires(stack, state)), ("tools", tools(stack, state, tool))]
+        for table, quantities in tables:
             columns = self.layout.tables[table][1]
             scale, low, high = (np.array([getattr(c, n) for c in columns]) for n in ("scale", "low", "high"))
             parts[table][:, : quantities.shape[1]] = np.clip(quantities / scale, low, high)
@@ -59,7 +67,7 @@ class SketchEncoder:
             known,
             held,
             saved & there,
-            *_place(stack, state, state.seen_site, known),
+            *place_of(stack, state, state.seen_site, known),
             state.value,
             *told,
             (state.seen_damaged & state.known[:, :targets]) | (state.spoiled & (saved | held)),
@@ -86,7 +94,7 @@ class SketchEncoder:
         """Rows of carts, [N, C, D]."""
         targets, carts = state.value.shape[1], stack.cart_site.shape[1]
         known = state.known[:, targets : targets + carts] & stack.cart_there[state.scene]
-        place = _place(stack, state, stack.cart_site[state.scene], known)
+        place = place_of(stack, state, stack.cart_site[state.scene], known)
         return np.stack([known, *place, state.failures[:, targets:]], axis=-1).astype(np.float64)
 
     def _landmarks(self, stack: Stack, state: Rescues, slots: Ints) -> Floats:
@@ -95,7 +103,7 @@ class SketchEncoder:
         if not stack.landmark_site.shape[1]:
             return np.zeros((*slots.shape, 5))
         site = stack.landmark_site[state.scene][row, mark]
-        columns = [*_place(stack, state, site, offered), edges(stack, state)[row, mark], state.visits[row, mark]]
+        columns = [*place_of(stack, state, site, offered), edges(stack, state)[row, mark], state.visits[row, mark]]
         return np.stack([np.where(offered, column, 0.0) for column in columns], axis=-1)
 
     def _whole(self, stack: Stack, state: Rescues) -> Floats:
@@ -118,15 +126,3 @@ class SketchEncoder:
             *(nothing for _ in self._low),
         ]
         return np.stack(columns, axis=-1)[:, None].astype(np.float64)
-
-
-def _place(stack: Stack, state: Rescues, site: Ints, known: NDArray[np.bool_]) -> list[Floats]:
-    """Distances ahead and to the left [m], and walking time without turns [frames], to `site` [N, K]; 0 if unknown."""
-    rows = np.arange(len(site))
-    off = stack.position[state.scene[:, None], site] - state.place[:, None]
-    c, s = np.cos(state.heading)[:, None], np.sin(state.heading)[:, None]
-    frames = ahead(stack, state, rows, site)
-    first = stack.first[state.scene[:, None], state.stand[:, None], site]
-    turn = np.where(state.site[:, None] == site, 0.0, TURN * on_the_spot(first - state.heading[:, None]))
-    parts = [c * off[..., 0] + s * off[..., 1], c * off[..., 1] - s * off[..., 0], np.maximum(frames - turn, 0.0)]
-    return [np.where(known, part, 0.0) for part in parts]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.sensing.sighting import SEEN_PIXELS
+from hazard_ms.sketch.fires.fates import damaged_at, levels_at
 from hazard_ms.sketch.rescues.scene import Bools, Floats, Ints, Stack
 from hazard_ms.sketch.rescues.state import Rescues
 from hazard_ms.sketch.timeline import STRIDE
@@ -87,8 +88,6 @@ def _remember(stack: Stack, state: Rescues, rows: Ints, seen: Bools, site: Ints,
     state.seen_level[old, kept, 1] = state.seen_level[old, kept, 0]
     state.seen_site[who, target] = site[row, newest, target]
     state.seen_frame[who, target, 0] = when
-    scene = state.scene[who]
-    last = stack.level.shape[1] - 1
-    state.seen_level[who, target, 0] = stack.level[scene, np.minimum(when // STRIDE, last), target]
-    damaged = stack.damaged_at[scene, target]
+    state.seen_level[who, target, 0] = levels_at(stack, state, who, target, when)
+    damaged = damaged_at(stack, state, who)[np.arange(len(who)), target]
     state.seen_damaged[who, target] = (damaged >= 0) & (damaged <= when)

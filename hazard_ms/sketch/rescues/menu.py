@@ -10,13 +10,16 @@ from hazard_ms.sketch.rescues.state import Rescues
 from hazard_ms.skills.options.landmarks import MOST_VISITS
 from hazard_ms.skills.options.options import (
     CART,
-    COUNT,
     END,
+    FIRE,
+    FIRE_GIVE_UP,
     FIRST,
     GIVE_UP,
     LANDMARK,
     LANDMARK_SLOTS,
     LOOK,
+    TOOL,
+    option_count,
 )
 
 # Border around a landmark: what furniture hides for good, and what each of the spots around it adds until it was seen.
@@ -54,7 +57,7 @@ def landmark_slots(stack: Stack, state: Rescues) -> Ints:
 def mask(stack: Stack, state: Rescues, slots: Ints, stop: bool) -> Bools:
     """Mask of the options that can be chosen, [N, A]; `slots`: see `landmark_slots`; `stop`: whether that can be."""
     targets, carts = stack.value.shape[1], stack.cart_site.shape[1]
-    made = np.zeros((len(state.frame), COUNT), bool)
+    made = np.zeros((len(state.frame), option_count(stack.measures)), bool)
     free, running = (state.held < 0)[:, None], ~state.over
     trying = state.known[:, : targets + carts] & (state.failures < GIVE_UP)
     made[:, :targets] = free & trying[:, :targets] & (state.rescued_at < 0) & stack.there[state.scene]
@@ -63,6 +66,14 @@ def mask(stack: Stack, state: Rescues, slots: Ints, stop: bool) -> Bools:
     made[:, FIRST[END]] = stop
     made[:, FIRST[LOOK]] = ~state.looked | ~made[:, : FIRST[LOOK]].any(axis=1)
     return made & running[:, None]
+
+
+def offer_measures(made: Bools, stack: Stack, state: Rescues, tool: Ints) -> None:
+    """Set in the masks `made` [N, A] which measures can be taken with the extinguisher `tool` [N], -1 for none."""
+    ready, fires = (tool >= 0) & (state.held < 0) & ~state.over, stack.fire_site.shape[1]
+    burns = state.fire_known & (state.out_at < 0) & (state.fire_failures < FIRE_GIVE_UP) & stack.fire_there[state.scene]
+    made[:, FIRST[FIRE] : FIRST[FIRE] + fires] = ready[:, None] & burns
+    made[:, FIRST[TOOL]] = ready & (state.armed != tool)
 
 
 def refuse_start(scenes: Ints, seeds: Ints, rows: Ints, count: int) -> None:
@@ -76,11 +87,14 @@ def refuse_start(scenes: Ints, seeds: Ints, rows: Ints, count: int) -> None:
         raise ValueError(f"scene must be from 0 to {count - 1}, got {scenes.max()}")
 
 
-def checked(option: ArrayLike, count: int) -> Ints:
-    """Columns of masks [N, A], one for each of N = `count` rescues. Raises ValueError for anything else."""
+def checked(option: ArrayLike, count: int, options: int) -> Ints:
+    """Columns of masks [N, A], one for each of N = `count` rescues, with A = `options`.
+
+    Raises ValueError for anything else.
+    """
     chosen = np.asarray(option)
     if chosen.shape != (count,) or chosen.dtype.kind not in "iu":
         raise ValueError(f"option must be {count} whole numbers, got {chosen!r:.100}")
-    if chosen.min() < 0 or chosen.max() >= COUNT:
-        raise ValueError(f"option must be from 0 to {COUNT - 1}, got {chosen.min()} to {chosen.max()}")
+    if chosen.min() < 0 or chosen.max() >= options:
+        raise ValueError(f"option must be from 0 to {options - 1}, got {chosen.min()} to {chosen.max()}")
     return chosen

@@ -8,7 +8,8 @@ all sites begin: there is one for each cell of a coarse grid over the floor.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,11 @@ LOOKS = 4  # looks on each way, Q: the robot looks once a metre, and ways are ab
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+
+
+def _none(shape: int | tuple[int, ...], kind: type) -> Any:
+    """An empty array of this shape, for scenes without what it is about."""
+    return field(default_factory=lambda: np.zeros(shape, kind))
 
 
 @dataclass(frozen=True)
@@ -60,6 +66,15 @@ class SketchScene:
     level: Floats  # of each hazard at each target at every sample, in its unit, [K, T, H]
     limit: Floats  # level from which each target is damaged, in the hazard's unit, [T, H]; infinite: none
     traits: Floats  # of each target, as agents are told of it: see TRAITS, [T, 3]
+    # of tasks with measures: F fires that can be put out (hazard_ms.sketch.fires.alone), and E extinguishers
+    fire_site: Ints = _none(0, np.int64)  # where each is fought from, [F]
+    fire_place: Floats = _none((0, 2), np.float64)  # where it is [m], [F, 2]
+    fire_seen: Bools = _none((0, 0), np.bool_)  # whether each is in sight of a stand, [P, F]
+    hit_at: Ints = _none((0, 0), np.int64)  # frame in which each alone damages each target, [F, T]; -1: never
+    fire_level: NDArray[np.float16] = _none((0, 0, 0), np.float16)  # at each target with each alone [C], [K, F, T]
+    flames: Ints = _none((0, 0), np.int64)  # of each fire at each sample, [K, F]
+    tool_site: Ints = _none(0, np.int64)  # where each extinguisher is at the start, [E]
+    tool_charge: Floats = _none(0, np.float64)  # frames that it lasts, [E]
 
     def __post_init__(self) -> None:
         sites, targets, marks = len(self.position), len(self.value), len(self.landmark_site)
@@ -128,6 +143,18 @@ class Stack:
         self.stand, self.stand_of = _stacked([s.stand for s in scenes], 0.0), _stacked([s.stand_of for s in scenes], 0)
         self.pixels = _stacked([s.pixels for s in scenes], 0.0)
         self.spots = _stacked([s.spots for s in scenes], 0)
+        self.measures = any(len(s.fire_site) for s in scenes)  # whether there is anything to put out
+        self.fire_there = _stacked([np.ones(len(s.fire_site), bool) for s in scenes], False)
+        self.tool_there = _stacked([np.ones(len(s.tool_site), bool) for s in scenes], False)
+        self.fire_site, self.tool_site, self.tool_charge, self.fire_seen = (
+            _stacked([getattr(s, n) for s in scenes], 0) for n in ("fire_site", "tool_site", "tool_charge", "fire_seen")
+        )
+        self.fire_place = _stacked([s.fire_place for s in scenes], 0.0)
+        self.hit_at = _stacked([s.hit_at for s in scenes], -1)
+        self.fire_level, self.flames = (
+            _stacked(_lasting([getattr(s, n) for s in scenes]) if self.measures else [getattr(s, n) for s in scenes], 0)
+            for n in ("fire_level", "flames")
+        )
         # all floor around each landmark that is ever seen, [W, L]: the rest counts for nothing
         self.all_spots = np.bitwise_or.reduce(self.spots, axis=1)
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.sketch.rescues.scene import Bools, Floats, Ints, Stack
-from hazard_ms.spec.catalogue import DAMAGED_SHARE
+from hazard_ms.spec.catalogue import DAMAGED_SHARE, MOST_VALUE
 from hazard_ms.spec.checks import finite
 
 VALUES = (1.0, 5.0)  # that a target can have (docs/benchmark.md 1)
@@ -71,9 +71,19 @@ class Rescues:
     spots: NDArray[np.uint16]  # floor around each landmark that was seen, one bit each, [N, L]
     looked: Bools  # whether the robot has just looked around, [N]
     over: Bools  # [N]
-    score: Floats  # value rescued so far as a share of all, [N]
+    score: Floats  # value rescued so far as a share of all; with measures, what is averted so far: see Sketch, [N]
     pace: Floats  # factor on all times, [N]
     ease: Floats  # factor on the share of attempts that work, [N]
+    out_at: Ints  # frame in which each fire was put out, [N, F]; -1: it burns
+    fire_known: Bools  # whether each was seen, [N, F]
+    fire_frame: Ints  # in which it was last seen, [N, F]
+    fire_flames: Ints  # that it had then, [N, F]
+    fire_failures: Ints  # to put it out, [N, F]
+    armed: Ints  # the extinguisher in the hand, or -1, [N]
+    tool_known: Bools  # whether each was seen, [N, E]
+    tool_site: Ints  # where each is, [N, E]
+    tool_left: Floats  # frames that each lasts, [N, E]
+    tool_failures: Ints  # to pick each up, [N, E]
 
     @classmethod
     def allocate(cls, count: int, stack: Stack) -> Rescues:
@@ -89,6 +99,10 @@ class Rescues:
             "visits": (marks,),
             "spots": (marks,),
         }
+        for name in ("out_at", "fire_known", "fire_frame", "fire_flames", "fire_failures"):
+            shapes[name] = (stack.fire_site.shape[1],)
+        for name in ("tool_known", "tool_site", "tool_left", "tool_failures"):
+            shapes[name] = (stack.tool_site.shape[1],)
         for name in ("value", "rescued_at", "spoiled", "laid", "seen_site", "seen_damaged"):
             shapes[name] = (targets,)
         kinds = {"Ints": np.int64, "Floats": np.float64, "Bools": np.bool_}
@@ -110,12 +124,14 @@ class Rescues:
             getattr(self, each.name)[rows] = 0
         self.scene[rows] = scene
         self.place[rows], self.heading[rows] = stack.position[scene, 0], stack.heading[scene]
-        for name in ("held", "missed", "goal", "rescued_at", "laid", "seen_frame"):
+        for name in ("held", "missed", "goal", "rescued_at", "laid", "seen_frame", "out_at", "armed"):
             getattr(self, name)[rows] = -1
         self.pace[rows] = domain.pace[0] + chance[:, 0] * (domain.pace[1] - domain.pace[0])
         self.ease[rows] = domain.ease[0] + chance[:, 1] * (domain.ease[1] - domain.ease[0])
         anew, drawn = (part[:, : self.value.shape[1]] for part in np.split(chance[:, 2:], 2, axis=1))
-        values = np.where(anew < domain.revalued, np.where(drawn < 0.5, *VALUES), stack.value[scene])
+        self.tool_site[rows], self.tool_left[rows] = stack.tool_site[scene], stack.tool_charge[scene]
+        other = 1.0 + np.floor(drawn * MOST_VALUE) if stack.measures else np.where(drawn < 0.5, *VALUES)
+        values = np.where(anew < domain.revalued, other, stack.value[scene])
         self.value[rows] = np.where(stack.there[scene], values, 0.0)
 
     def copies(self, rows: Ints) -> Rescues:

@@ -16,7 +16,7 @@ from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.skills.options import paper_actions
 from hazard_ms.skills.options.features import Encoder
 from hazard_ms.skills.options.macros import Macro, play, worked
-from hazard_ms.skills.options.options import COUNT, Menu, Option, Options
+from hazard_ms.skills.options.options import Menu, Option, Options, option_count
 from hazard_ms.skills.options.paper_actions import SixActions
 from hazard_ms.skills.options.paper_map import MapLayout
 
@@ -48,19 +48,18 @@ class Choices(Protocol):
     def macro(self, number: int, decision: Decision) -> Macro | None:
         """The macro of a choice; None for one that cannot be taken."""
 
-    def note(self, number: int, ok: bool) -> None:
-        """Remember that a choice was played, and whether it worked."""
+    def note(self, number: int, ok: bool, decision: Decision) -> None:
+        """Remember that a choice was played, and whether it worked; `decision`: the one that follows."""
 
 
 class OptionChoices:
     """Numbered options, of which a mask forbids what cannot be done, and features of what is known."""
 
-    count = COUNT
-
-    def __init__(self, encoder: Encoder, stop: bool) -> None:
-        """Take the `encoder` of a task; `stop`: whether episodes may be ended early."""
-        self._encoder, self._stop = encoder, stop
-        self.menu = Menu((), (), (), {}, np.zeros(COUNT, bool))
+    def __init__(self, encoder: Encoder, stop: bool, fire: int | None = None) -> None:
+        """Take the `encoder` of a task; `stop`: whether episodes may be ended early; `fire`: see `Options`."""
+        self._encoder, self._stop, self._fire = encoder, stop, fire
+        self.count = option_count(fire is not None)
+        self.menu = Menu((), (), (), {}, np.zeros(self.count, bool))
 
     def space(self) -> gym.spaces.Box:
         """The bounds of the features."""
@@ -69,7 +68,7 @@ class OptionChoices:
     def begin(self, seed: int) -> None:
         """Begin an episode. Nothing is random."""
         del seed
-        self._options = Options(self._stop)
+        self._options = Options(self._stop, self._fire)
 
     def see(self, decision: Decision) -> NDArray[np.float32]:
         """The features of a decision, [F]."""
@@ -91,11 +90,11 @@ class OptionChoices:
         option = self._option(number)
         return None if option is None else play(option, decision)
 
-    def note(self, number: int, ok: bool) -> None:
-        """Remember that an option was played, and whether it worked."""
+    def note(self, number: int, ok: bool, decision: Decision) -> None:
+        """Remember that an option was played, and whether it worked; `decision`: the one that follows."""
         option = self._option(number)
         assert option is not None  # nothing else is played
-        self._options.note(option, ok)
+        self._options.note(option, ok, decision)
 
     def _option(self, number: int) -> Option | None:
         return self.menu.option(number) if self.menu.mask[number] else None
@@ -138,7 +137,7 @@ class PaperChoices:
         action = self._actions.action(number)
         return None if action is None else _once(action)
 
-    def note(self, number: int, ok: bool) -> None:
+    def note(self, number: int, ok: bool, decision: Decision) -> None:
         """Remember nothing: the next decision tells how an action ended."""
 
 

@@ -12,7 +12,9 @@ from hazard_ms.robots import robot_class
 from hazard_ms.sensing.modes import needs_pictures
 from hazard_ms.sensing.observation_table import Row
 from hazard_ms.skills.options.features import Encoder
+from hazard_ms.skills.options.fires import measured
 from hazard_ms.skills.options.interface import describe as describe_skills
+from hazard_ms.tasks import task_of
 
 SKILLS = "Skills-v"  # in the ids of environments of skills
 
@@ -23,8 +25,11 @@ def sections_of(env_id: str, obs_mode: str, robot_uids: str, **settings: Any) ->
     Raises ValueError for unknown names.
     """
     if SKILLS in env_id:
-        ranges = interface.ranges(env_id.replace(SKILLS, "-v"))
-        return describe_skills(Encoder(ranges, robot_class(robot_uids).build.radius))
+        name = env_id.replace(SKILLS, "-v")
+        task = task_of(name, "paper")
+        fire = measured(task.mitigations, [hazard.name for hazard in task.hazards])
+        radius = robot_class(robot_uids).build.radius
+        return describe_skills(Encoder(interface.ranges(name), radius, fire is not None))
     backend = "auto" if needs_pictures(obs_mode) else "none"
     settings = {key: value for key, value in settings.items() if value is not None}
     made = gym.make(env_id, obs_mode=obs_mode, robot_uids=robot_uids, render_backend=backend, **settings)

@@ -19,6 +19,7 @@ from hazard_ms.skills.decision import Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.options.choices import ACTIONS, OPTIONS, Choices, OptionChoices, PaperChoices
 from hazard_ms.skills.options.features import Encoder
+from hazard_ms.skills.options.fires import measured
 from hazard_ms.skills.options.macros import Macro
 from hazard_ms.skills.options.options import Menu
 from hazard_ms.skills.options.paper_map import MapLayout
@@ -85,8 +86,9 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         self.skills.colours = False
         base = self.skills.base
         ranges = [(hazard.level.low, hazard.level.high) for hazard in base.task.hazards]
-        self.encoder = Encoder(ranges, base.agent.build.radius)
-        options = OptionChoices(self.encoder, stop)
+        fire = measured(base.task.mitigations, [hazard.name for hazard in base.task.hazards])
+        self.encoder = Encoder(ranges, base.agent.build.radius, fire is not None)
+        options = OptionChoices(self.encoder, stop, fire)
         self._choices: Choices = options if actions == OPTIONS else PaperChoices(MapLayout(ranges), masked)
         self._options = options if actions == OPTIONS else None
         self.observation_space: gym.spaces.Box = self._choices.space()  # type: ignore[assignment]
@@ -126,7 +128,7 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
         result, terminated, macro = Result(False, NOT_AVAILABLE), False, self._choices.macro(number, self._decision)
         if macro is not None:
             result, terminated = self._play(macro)
-            self._choices.note(number, result.ok)
+            self._choices.note(number, result.ok, self._decision)
         if self.skills.frame == start and not terminated:
             self.skills.run(_stand(self.skills.stage))
             self._decision = self.skills.decision()

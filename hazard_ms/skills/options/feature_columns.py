@@ -12,6 +12,7 @@ from hazard_ms.skills.options.landmarks import MOST_VISITS
 from hazard_ms.skills.options.options import GIVE_UP
 
 FEATURES_VERSION = 1  # goes up whenever a column is added, moved or changes its meaning: a policy fits one version
+MEASURED_VERSION = 2  # the same of the layout of tasks with measures, which is another
 NO_PATH_KNOWN = 2.0  # walking time to where no path is known, in units of its scale
 SOON = 100.0  # frames over which the change of a level is given
 
@@ -39,8 +40,8 @@ _PLACE = (
 )
 
 
-def target_columns(hazards: int) -> tuple[Column, ...]:
-    """The columns of a target's row in a task with this many `hazards`."""
+def target_columns(hazards: int, most: float = 5.0) -> tuple[Column, ...]:
+    """The columns of a target's row in a task with this many `hazards`; `most`: the value of a target at most."""
     levels = [
         column
         for k in range(hazards)
@@ -54,7 +55,7 @@ def target_columns(hazards: int) -> tuple[Column, ...]:
         _flag("held", "it is in the hand"),
         _flag("rescued", "it is rescued"),
         *_PLACE,
-        Column("value", "", 5.0, 0.0, 1.0, "what its rescue is worth undamaged"),
+        Column("value", "", most, 0.0, 1.0, "what its rescue is worth undamaged"),
         _flag("flammable", "it can burn"),
         _flag("waterproof", "water does not damage it"),
         Column("ignition", "C", 300.0, 0.0, 2.0, "its ignition temperature"),
@@ -74,6 +75,22 @@ LANDMARK_COLUMNS = (
     *_PLACE,
     Column("edge", "m", 10.0, 0.0, 1.0, "length of the border to unexplored floor within 2 m of it"),
     Column("visits", "", float(MOST_VISITS), 0.0, 1.0, "times that it was searched at"),
+)
+
+FIRE_COLUMNS = (
+    _flag("known", "a fire is in this slot"),
+    *_PLACE,
+    Column("flames", "", 10.0, 0.0, 2.0, "number of its flames when last seen, as temperatures tell"),
+    Column("unseen", "frame", 1500.0, 0.0, 2.0, "time since it was last seen"),
+    Column("near", "value", 40.0, 0.0, 2.0, "value of known whole targets within 3 m of it that are not rescued"),
+    Column("failures", "", 2.0, 0.0, 1.0, "times that putting it out failed; at 1 it is no longer offered"),
+)
+TOOL_COLUMNS = (
+    _flag("known", "an extinguisher can be used"),
+    _flag("held", "it is in the hand"),
+    *_PLACE,
+    Column("charge", "frame", 500.0, 0.0, 2.0, "time that it lasts"),
+    Column("out", "", 4.0, 0.0, 2.0, "number of fires that were put out"),
 )
 
 

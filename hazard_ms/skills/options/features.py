@@ -1,8 +1,9 @@
 """Decisions as numbers for a policy: one flat, bounded vector, made only from what the agent has seen and been told.
 
-Four tables in a row: T targets, C carts, L landmarks, and one row about the whole; their columns are declared in
-`hazard_ms.skills.options.feature_columns`. An empty slot is all zeros. Places are in the agent's own frame, whose x
-axis points ahead and whose y axis points to the left, so that turning the whole room changes nothing.
+Four tables in a row: T targets, C carts, L landmarks, and one row about the whole; in tasks with measures two more: F
+fires, and one row about extinguishers. Their columns are declared in `hazard_ms.skills.options.feature_columns`. An
+empty slot is all zeros. Places are in the agent's own frame, whose x axis points ahead and whose y axis points to the
+left, so that turning the whole room changes nothing.
 """
 
 from __future__ import annotations
@@ -19,30 +20,44 @@ from hazard_ms.skills.motor.navigation import Ways
 from hazard_ms.skills.motor.walking import ARRIVED
 from hazard_ms.skills.options.feature_columns import (
     CART_COLUMNS,
+    FIRE_COLUMNS,
     LANDMARK_COLUMNS,
     SOON,
+    TOOL_COLUMNS,
     Column,
     global_columns,
     target_columns,
 )
+from hazard_ms.skills.options.fires import FIRE_SLOTS, THREAT, KnownFire, tool_in_hand
 from hazard_ms.skills.options.landmarks import Landmark
 from hazard_ms.skills.options.options import CART_SLOTS, LANDMARK_SLOTS, TARGET_SLOTS, Menu
+from hazard_ms.spec.catalogue import MOST_VALUE
+from hazard_ms.spec.extinguishers import EXTINGUISHERS
 
+USUAL_VALUE = 5.0  # of a target at most where tasks have no measures (docs/benchmark.md 1)
+JET_WAY = 2.5  # distance from flames at which a jet is opened [m] [ours]
+FRAMES_PER_SECOND = 30.0  # of the presets (docs/benchmark.md 1)
 FRAMES_PER_METRE = 62.0  # frames that a metre of walking takes (docs/benchmark.md 1)
 
 
 class Encoder:
     """Encodes decisions of one task. Policies and the environment use the same encoder, so what they learn fits."""
 
-    def __init__(self, ranges: Sequence[tuple[float, float]], radius: float) -> None:
-        """Make the encoder of a task; `ranges`: ends of each hazard's usual level; `radius` of the robot [m]."""
-        self.ranges, self.radius = tuple(ranges), radius
-        self.tables = {
-            "targets": (TARGET_SLOTS, target_columns(len(self.ranges))),
+    def __init__(self, ranges: Sequence[tuple[float, float]], radius: float, measures: bool = False) -> None:
+        """Make the encoder of a task; `ranges`: ends of each hazard's usual level; `radius` of the robot [m].
+
+        `measures`: whether its options have measures about a fire.
+        """
+        self.ranges, self.radius, self.measures = tuple(ranges), radius, measures
+        most = float(MOST_VALUE if measures else USUAL_VALUE)
+        self.tables: dict[str, tuple[int, tuple[Column, ...]]] = {
+            "targets": (TARGET_SLOTS, target_columns(len(self.ranges), most)),
             "carts": (CART_SLOTS, CART_COLUMNS),
             "landmarks": (LANDMARK_SLOTS, LANDMARK_COLUMNS),
             "global": (1, global_columns(len(self.ranges))),
         }
+        if measures:
+            self.tables |= {"fires": (FIRE_SLOTS, FIRE_COLUMNS), "tools": (1, TOOL_COLUMNS)}
         self.size = sum(rows * len(columns) for rows, columns in self.tables.values())
 
     def cells(self) -> Iterator[tuple[int, str, int, Column]]:
@@ -82,6 +97,10 @@ class Encoder:
         for slot, mark in enumerate(menu.landmarks):
             self._put(parts["landmarks"][slot], "landmarks", self._landmark(decision, ways, mark))
         self._put(parts["global"][0], "global", self._whole(decision))
+        if self.measures:
+            for slot, fire in enumerate(menu.fires):
+                self._put(parts["fires"][slot], "fires", self._fire(decision, menu, ways, fire))
+            self._put(parts["tools"][0], "tools", self._tool(decision, menu, ways))
         return made
 
     def _put(self, row: NDArray[np.float32], table: str, quantities: Sequence[float]) -> None:
@@ -93,8 +112,10 @@ class Encoder:
         """All paths from where the agent stands: one search for all things."""
         seen = decision.map
         names = (*menu.targets, *menu.carts, *(mark.name for mark in menu.landmarks))
+        if menu.tool is not None:
+            names = (*names, menu.tool.name)
         indices = {decision.index(name) for name in names} & set(seen.objects)
-        goals = [_flat(seen.objects[index]) for index in sorted(indices)]
+        goals = [_flat(seen.objects[index]) for index in sorted(indices)] + [fire.place for fire in menu.fires]
         inside = [goal for goal in goals if all(0 <= c < len(seen.explored) for c in seen.cell_of(goal))]
         start = decision.agent_position
         return Ways(seen.height, seen.explored, seen.cell, seen.origin, start, inside, self.radius)
@@ -103,10 +124,7 @@ class Encoder:
         """Distances ahead and to the left [m], and walking time [frames]."""
         if sighting is None:
             return 0.0, 0.0, 0.0
-        x, y = np.subtract(_flat(sighting), decision.agent_position)
-        c, s = np.cos(decision.agent_heading), np.sin(decision.agent_heading)
-        frames = ways.length(_flat(sighting), ARRIVED + sighting.radius) * FRAMES_PER_METRE
-        return float(c * x + s * y), float(c * y - s * x), frames
+        return _seen_from(decision, ways, _flat(sighting), ARRIVED + sighting.radius)
 
     def _target(self, decision: Decision, menu: Menu, ways: Ways, name: str) -> tuple[float, ...]:
         target = decision.target(name)
@@ -144,6 +162,23 @@ class Encoder:
         sighting = decision.map.objects[decision.index(mark.name)]
         return (*self._place(decision, ways, sighting), mark.edge, float(mark.visits))
 
+    def _fire(self, decision: Decision, menu: Menu, ways: Ways, fire: KnownFire) -> tuple[float, ...]:
+        near = 0.0
+        for target in decision.targets:
+            sighting = decision.map.objects.get(target.index)
+            if sighting is not None and not (target.rescued or target.held or target.damaged):
+                near += target.value * (np.hypot(*np.subtract(_flat(sighting), fire.place)) <= THREAT)
+        place = _seen_from(decision, ways, fire.place, JET_WAY)
+        return 1.0, *place, fire.flames, float(decision.frame - fire.seen), near, menu.failures.get(fire.name, 0)
+
+    def _tool(self, decision: Decision, menu: Menu, ways: Ways) -> tuple[float, ...]:
+        tool = menu.tool
+        if tool is None:
+            return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, float(menu.out)
+        seen = None if tool.held else decision.map.objects.get(decision.index(tool.name))
+        charge = EXTINGUISHERS[tool.kind].seconds * tool.left * FRAMES_PER_SECOND
+        return 1.0, float(tool.held), *self._place(decision, ways, seen), charge, float(menu.out)
+
     def _whole(self, decision: Decision) -> tuple[float, ...]:
         targets, seen = decision.targets, decision.map
         missing = [t for t in targets if not (t.rescued or t.held)]
@@ -152,7 +187,7 @@ class Encoder:
         return (
             decision.frame / decision.max_frames,
             float(decision.max_frames - decision.frame),
-            float(decision.held is not None),
+            float(decision.held is not None and not (self.measures and tool_in_hand(decision))),
             float(bool(decision.containers)),
             float(known),
             float(len(missing) - known),
@@ -170,6 +205,14 @@ class Encoder:
             return float("inf")
         centres = seen.origin + seen.cell * (np.stack([x, y], axis=-1) + 0.5)
         return float(np.hypot(*(centres - np.asarray(decision.agent_position)).T).min())
+
+
+def _seen_from(decision: Decision, ways: Ways, place: tuple[float, float], near: float) -> tuple[float, float, float]:
+    """Distances ahead and to the left of `place` [m], and walking time to `near` [m] from it [frames]."""
+    x, y = np.subtract(place, decision.agent_position)
+    c, s = np.cos(decision.agent_heading), np.sin(decision.agent_heading)
+    frames = ways.length(place, near) * FRAMES_PER_METRE
+    return float(c * x + s * y), float(c * y - s * x), frames
 
 
 def _flat(sighting: Sighting) -> tuple[float, float]:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hazard_ms.sensing.observation_table import INF, Row
 from hazard_ms.skills.options.features import Encoder
-from hazard_ms.skills.options.options import CART_SLOTS, COUNT, LANDMARK_SLOTS, TARGET_SLOTS
+from hazard_ms.skills.options.fires import FIRE_SLOTS
+from hazard_ms.skills.options.options import CART_SLOTS, COUNT, LANDMARK_SLOTS, TARGET_SLOTS, option_count
 
 INFO = (
     Row("value", (), "float", "", "", 0.0, 1.0, "value rescued so far, as a share of all"),
@@ -25,19 +28,24 @@ OPTIONS = (
     ("look", 1, "look around on the spot"),
     ("stop", 1, "end the episode"),
 )
+MEASURES = (
+    ("fire", FIRE_SLOTS, "put out fire k, with an extinguisher that is fetched first unless one is in the hand"),
+    ("tool", 1, "fetch the nearest extinguisher, to look for fires with it in hand"),
+)
 
 
 def describe(encoder: Encoder) -> dict[str, list[Row]]:
     """Rows of observation, action, reward and info of an environment of skills, by section."""
     actions, start = [], 0
-    for name, count, text in OPTIONS:
+    for name, count, text in (*OPTIONS, *(MEASURES if encoder.measures else ())):
         actions.append(Row(f"[{start}:{start + count}] {name}", (), "int64", "", "", start, start + count - 1, text))
         start += count
+    mask = replace(INFO[-1], shape=(option_count(encoder.measures),))
     rewards = [
         Row("value (default)", (), "float", "", "", 0.0, 1.0, "value that this step rescued, as a share of all"),
         Row("paper", (), "float", "", "", -INF, INF, "reward='paper': what the original's learner gets"),
     ]
-    return {"observation": list(observation(encoder)), "action": actions, "reward": rewards, "info": list(INFO)}
+    return {"observation": list(observation(encoder)), "action": actions, "reward": rewards, "info": [*INFO[:-1], mask]}
 
 
 def observation(encoder: Encoder) -> list[Row]:

@@ -8,7 +8,9 @@ from dataclasses import replace
 from hazard_ms.episode.rewards import FOR_HOLDING, FOR_NEARNESS, PER_RESCUE
 from hazard_ms.sensing.observation_table import JOINT_MARGIN, OBSERVATION_VERSION, Row
 from hazard_ms.skills.options.description import bounds, entries, sections_of
-from hazard_ms.skills.options.feature_columns import FEATURES_VERSION
+from hazard_ms.skills.options.feature_columns import FEATURES_VERSION, MEASURED_VERSION
+from hazard_ms.skills.options.features import Encoder
+from hazard_ms.skills.options.interface import describe
 
 HEAD = f"""# What a learner sees, does and gets
 
@@ -40,6 +42,15 @@ the numbers a, a + b, a + 2 b, ... of slots 0, 1, 2, ... The unit says what a nu
 keep their slots throughout an episode; landmarks are chosen anew at every decision. An empty slot is all zeros. The
 level of a hazard is 0 and 1 at the ends of its usual range. `action_masks()` tells which options can be chosen.
 """
+MEASURES = f"""
+### Measures
+
+`HazardHouseFireSkills-v1`, and every task with a fire and the skill `extinguish`, has a layout of its own, version
+**{MEASURED_VERSION}**: the above with these numbers and options behind it, and values of targets in units of 20,
+not 5. Fires are chosen anew at every decision, those with most flames first. An extinguisher in the hand does not count
+as `holding` anything: it is put down before a target is fetched.
+
+"""
 
 
 def page(env_ids: Sequence[str], robot_names: Sequence[str]) -> str:
@@ -61,7 +72,15 @@ def page(env_ids: Sequence[str], robot_names: Sequence[str]) -> str:
     parts += ["\n## Info\n\n", _table(info), SKILLS]
     for name, rows in sections_of(first.replace("-v", "Skills-v"), "state", "fetch").items():
         parts += [f"\n### {name.capitalize()}\n\n", _table(rows)]
+    parts += [MEASURES, _table(measure_rows())]
     return "".join(parts)
+
+
+def measure_rows() -> list[Row]:
+    """The rows of observations and actions that only tasks with measures have."""
+    sections = describe(Encoder([(0.0, 1.0)], 0.0, measures=True))
+    plain = describe(Encoder([(0.0, 1.0)], 0.0))
+    return [row for name in ("observation", "action") for row in sections[name][len(plain[name]) :]]
 
 
 def _of_tasks(tasks: Mapping[str, Mapping[str, list[Row]]]) -> list[Row]:

@@ -5,10 +5,12 @@
     landmark  walk_to until arrived; explore
     look      explore
     stop      stop
+    fire      walk_to and pick_up of an extinguisher, unless one is in the hand; extinguish until that is done
+    tool      the same without the last
 
 A macro is a generator: it yields actions, receives the decision that follows each, and returns whether it worked. A
 walk of the benchmark ends after 100 frames, so a macro walks on as long as walks bring the agent nearer. From less than
-NEAR away it continues even if the last walk did not arrive.
+NEAR away it continues even if the last walk did not arrive. A tool in the hand is put down before.
 """
 
 from __future__ import annotations
@@ -18,9 +20,12 @@ from collections.abc import Generator
 import numpy as np
 
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision
-from hazard_ms.skills.options.options import CART, END, LANDMARK, LOOK, TARGET, Option
+from hazard_ms.skills.failures import UNFINISHED
+from hazard_ms.skills.options.fires import EXTINGUISH, tool_in_hand
+from hazard_ms.skills.options.options import CART, END, FIRE, LANDMARK, LOOK, TARGET, TOOL, Option
 
 LEGS = 8  # greatest number of walks of one approach: 13 m, longer than any path in a room
+SPRAYS = 3  # greatest number of `extinguish` at one fire [ours]
 PROGRESS = 0.2  # least length of a walk that is worth continuing, if it did not arrive [m]
 NEAR = 0.7  # a pick-up or a drop is tried from here: arrival is at 0.5 m, and a position has some error [m]
 
@@ -32,8 +37,12 @@ def play(option: Option, decision: Decision) -> Macro:
     """The macro of `option`, begun at `decision`. Raises ValueError for an option that names nothing."""
     if option.kind in (LOOK, END):
         return _single(Action(EXPLORE if option.kind == LOOK else STOP))
-    if option.name is None or option.kind not in (TARGET, CART, LANDMARK):
-        raise ValueError(f"option must be target, cart or landmark with a name, look or stop, got {option}")
+    if option.name is None or option.kind not in (TARGET, CART, LANDMARK, FIRE, TOOL):
+        raise ValueError(f"option must be target, cart, landmark, fire or tool with a name, look or stop, got {option}")
+    if option.kind == FIRE:
+        return _put_out(decision, option.name, option.tool)
+    if option.kind == TOOL:
+        return _arm(decision, option.name)
     return {TARGET: _fetch, CART: _bring, LANDMARK: _search}[option.kind](decision, option.name)
 
 
@@ -48,6 +57,8 @@ def worked(decision: Decision) -> bool:
 
 def _fetch(decision: Decision, name: str) -> Macro:
     """Pick the target up and, in tasks with a bag, put it away; a target that is in the hand is only put away."""
+    if tool_in_hand(decision):
+        decision = yield Action(DROP)
     if decision.held is None:
         decision, near = yield from _approach(decision, name)
         if not near:
@@ -58,6 +69,31 @@ def _fetch(decision: Decision, name: str) -> Macro:
     if decision.containers:
         return decision.held == name
     decision = yield Action(DROP)
+    return worked(decision)
+
+
+def _arm(decision: Decision, tool: str) -> Macro:
+    """Walk to an extinguisher and take it into the hand; another tool is put down."""
+    if tool_in_hand(decision):
+        decision = yield Action(DROP)
+    decision, near = yield from _approach(decision, tool)
+    if not near:
+        return False
+    decision = yield Action(PICK_UP, tool)
+    return decision.held == tool
+
+
+def _put_out(decision: Decision, name: str, tool: str | None) -> Macro:
+    """Put out the fire at the thing called `name`; `tool`: the extinguisher to fetch first, None for none."""
+    if tool is not None:
+        armed = yield from _arm(decision, tool)
+        if not armed:
+            return False
+    for _ in range(SPRAYS):
+        decision = yield Action(EXTINGUISH, name)
+        result = decision.last_result
+        if result is None or result.reason not in UNFINISHED:
+            break
     return worked(decision)
 
 

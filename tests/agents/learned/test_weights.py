@@ -63,6 +63,23 @@ def test_what_is_not_a_policy_of_the_task_is_refused(tmp_path: Path) -> None:
         weights.load(path, FIRE)
 
 
+def test_a_policy_without_measures_is_refused_where_there_are_some_and_the_other_way_round(tmp_path: Path) -> None:
+    """Layouts of both have versions of their own, so that the published tasks keep their policies."""
+    path = stored(tmp_path)
+    with pytest.raises(ValueError, match="features_version must be 2, got 1; `hazard-ms train bc"):
+        weights.load(path, FIRE, measures=True)
+    shape = Shape(((20.0, 600.0),), measures=True)
+    packed, told = weights.contents(SetPolicy(shape), FIRE, {})
+    path.write_bytes(packed)
+    path.with_suffix(".json").write_text(told)
+    assert weights.load(path, FIRE, measures=True).shape == shape
+    with pytest.raises(ValueError, match="features_version must be 1, got 2"):
+        weights.load(path, FIRE)
+    path.with_suffix(".json").write_text(told.replace('"measures": true', '"measures": false'))
+    with pytest.raises(ValueError, match="measures of its shape must be True, got False"):
+        weights.load(path, FIRE, measures=True)
+
+
 @pytest.mark.parametrize(
     ("change", "told"),
     [

@@ -78,6 +78,7 @@ class Region:
     aisle: float = 0.9  # width of the passages [m]
     targets: int = 15  # number of things that can blow away [docs/benchmark.md 1]
     wind: tuple[float, float] = WINDS  # slowest and fastest [m/s]
+    parked: bool = False  # whether the carts stand side by side at the edge, as in a bay, or anywhere
 
 
 def dashes(
@@ -221,7 +222,7 @@ PARK = Region(
 
 PARKING_HARD = replace(PARKING, name="parking_hard", targets=20, wind=STRONGER_WINDS["hard"])
 # Those of the gale: the same four, and two that no training scene is like
-GALE = tuple(replace(region, name=f"{region.name}_gale") for region in (STREET, CROSSING, PARKING, PARK))
+GALE = tuple(replace(r, name=f"{r.name}_gale", parked=True) for r in (STREET, CROSSING, PARKING, PARK))
 MARKET = Region(
     "market_gale",
     "pavement",
@@ -234,6 +235,7 @@ MARKET = Region(
         Some(("bench", "picnic_table", "planter", "tree"), (3.0, 4.5, 13.0, 10.5), (2, 4)),
         Some(SMALL, (1.0, 1.0, 15.0, 15.0), (1, 3)),
     ),
+    parked=True,
 )
 YARD = Region(
     "yard_gale",
@@ -245,6 +247,7 @@ YARD = Region(
         Some(("car", "shed"), (3.0, 2.0, 13.0, 3.2), (1, 2), (90.0, 270.0), 2.0),
         Some(("planter", "trash_bin", "traffic_cone", "bollard"), (2.0, 5.0, 14.0, 11.0), (3, 6)),
     ),
+    parked=True,
 )
 
 REGIONS: dict[str, Region] = {r.name: r for r in (STREET, CROSSING, PARKING, PARK, PARKING_HARD, *GALE, MARKET, YARD)}

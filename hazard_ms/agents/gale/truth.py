@@ -160,11 +160,14 @@ class GaleTruth:
 
         def after(push: Push) -> float:
             then = Outset((float(push.robot[0]), float(push.robot[1])), None, now.outset.frame + round(push.frames))
-            late = self._problem(now._replace(outset=then), {push.cart: push.place})
-            return (1.0 - problem.fading * push.frames) * solve(late, MOST_LABELS, BEAM).value
+            late = self._problem(now._replace(outset=then, fading=0.0), {push.cart: push.place})
+            return solve(late, MOST_LABELS, BEAM).value
+
+        def plain() -> float:  # that skills fail delays rescues with a push and without it alike
+            return solve(dataclasses.replace(problem, fading=0.0), MOST_LABELS, BEAM).value
 
         names = [decision.names[target] for target in now.targets.tolist()]
-        action = pushing.choose(decision, names, lambda: solve(problem, MOST_LABELS, BEAM).value, after)
+        action = pushing.choose(decision, names, plain, after)
         self.note = pushing.note
         return action
 

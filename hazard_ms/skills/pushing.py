@@ -35,6 +35,7 @@ OWN = 0.65  # around the middle of the cart, in which what the map shows is the 
 STEP = 0.1  # between the points of a way of a cart [m] [ours]
 SIGHT = 5  # points ahead of where it is for which the base makes [ours]
 WINDOW = 8  # points ahead among which the cart is looked for: it cannot skip a bend [ours]
+CLOSE = 0.05  # distance from the end of its way at which a cart is there [m] [ours]
 STRAYED = 0.5  # distance from its way at which a cart no longer follows it [m] [ours]
 DRAWS = 1.0  # by which the way to push may be shorter before it draws [m] [ours: it then is where the cart was to go]
 
@@ -200,7 +201,7 @@ def _walk(stage: Stage, spot: Place, frames: int) -> Skill:
 
 def _take(stage: Stage, cart: int, way: Place, grip: Hitch, sign: float, frames: int) -> Skill:
     """Drive with the cart along the `way` of its middle, with the cart before the base, or, backwards, behind it."""
-    watch, at = Watch(), 0
+    watch, at, best = Watch(), 0, np.inf
     lead = np.diff(way[-2:], axis=0)[0] if len(way) > 1 else np.zeros(2)
     onward = way[-1] + lead / max(float(np.hypot(*lead)), 1e-6) * STEP * np.arange(1, 40)[:, None]
     whole = np.vstack([way, onward])
@@ -209,9 +210,10 @@ def _take(stage: Stage, cart: int, way: Place, grip: Hitch, sign: float, frames:
         middle = stage.position(cart)[:2]
         gaps = np.hypot(*(way[at : at + WINDOW] - middle).T)
         at += int(gaps.argmin())
-        left = STEP * (len(way) - 1 - at)
-        if left <= 0.0:
+        left = STEP * (len(way) - 1 - at) + float(np.hypot(*(way[-1] - middle))) * (at == len(way) - 1)
+        if at == len(way) - 1 and (left < CLOSE or left > best):  # it is there, or as near as it gets
             return Result(True, frames=used)
+        best = left if at == len(way) - 1 else np.inf
         if grip.slip() > SLIPPED or gaps.min() > STRAYED:
             return Result(False, failures.BLOCKED, used)
         between = round(float(np.hypot(middle[0] - x, middle[1] - y)) / STEP) if sign < 0.0 else 0

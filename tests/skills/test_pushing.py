@@ -91,7 +91,6 @@ def test_it_goes_round_what_the_map_shows(env: SkillEnv) -> None:
     along = (at[:-1] + xs * np.diff(at, axis=0)).reshape(-1, 2)
     beside = along[(along[:, 0] > 8.8) & (along[:, 0] < 9.2)]
     assert len(beside) and (np.abs(beside[:, 1] - 6.0) > 1.9).all()
-    assert cart_ways(env.seen, np.array([5.0, 6.0]), [np.array([9.0, 6.0])], 0.2) == [None]
 
 
 def test_it_draws_a_cart_from_before_it_and_pushes_it_from_behind(env: SkillEnv) -> None:
@@ -100,7 +99,7 @@ def test_it_draws_a_cart_from_before_it_and_pushes_it_from_behind(env: SkillEnv)
         assert pushed(env, goal).ok
         robot = np.array(env.stage.robot.base()[:2])
         beyond = (robot - place(env)[:2]) @ (np.array(goal) - (5.0, 6.0))
-        assert (beyond > 0.0) is first, goal
+        assert bool(beyond > 0.0) is first, goal
 
 
 def test_a_cart_that_is_there_is_left_alone(env: SkillEnv) -> None:

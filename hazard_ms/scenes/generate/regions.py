@@ -1,8 +1,7 @@
 """The regions of the wind task as data: ground, and rules that say where houses, plants and street furniture belong.
 
-Everything is written for a square of REGION_SIZE metres seen from the south: roads run along x, houses stand to the
-north. A scene turns it by quarter turns. Areas are (left, lower, right, upper) in metres, yaws in degrees; furniture
-faces -y of its own frame.
+Everything is written for a square of REGION_SIZE metres seen from the south: roads run along x, houses are north.
+A scene turns it by quarter turns. Areas are (left, lower, right, upper) in metres, yaws in degrees; furniture faces -y.
 """
 
 from __future__ import annotations
@@ -221,7 +220,6 @@ PARK = Region(
 )
 
 PARKING_HARD = replace(PARKING, name="parking_hard", targets=20, wind=STRONGER_WINDS["hard"])
-# Those of the gale: the same four, and two that no training scene is like
 GALE = tuple(replace(r, name=f"{r.name}_gale", parked=True) for r in (STREET, CROSSING, PARKING, PARK))
 MARKET = Region(
     "market_gale",
@@ -235,7 +233,6 @@ MARKET = Region(
         Some(("bench", "picnic_table", "planter", "tree"), (3.0, 4.5, 13.0, 10.5), (2, 4)),
         Some(SMALL, (1.0, 1.0, 15.0, 15.0), (1, 3)),
     ),
-    parked=True,
 )
 YARD = Region(
     "yard_gale",
@@ -247,7 +244,6 @@ YARD = Region(
         Some(("car", "shed"), (3.0, 2.0, 13.0, 3.2), (1, 2), (90.0, 270.0), 2.0),
         Some(("planter", "trash_bin", "traffic_cone", "bollard"), (2.0, 5.0, 14.0, 11.0), (3, 6)),
     ),
-    parked=True,
 )
-
+MARKET, YARD = (replace(region, parked=True) for region in (MARKET, YARD))
 REGIONS: dict[str, Region] = {r.name: r for r in (STREET, CROSSING, PARKING, PARK, PARKING_HARD, *GALE, MARKET, YARD)}

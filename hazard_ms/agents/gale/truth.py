@@ -149,7 +149,7 @@ class GaleTruth:
     ) -> Action | None:
         """The next action that pushes a cart or, with something in the hand, puts it into the lee; None: neither.
 
-        `problem` is the one that `problem` gave last; the rest is as for `put_away`.
+        `problem` is the one that `problem` gave last; `carts`, [M], and the rest are as for `put_away`.
         """
         if decision.held is not None:
             return self.put_away(decision, carts, failures)

@@ -13,6 +13,7 @@ import numpy as np
 
 from hazard_ms.agents.attempts import Attempts, Enclosure, Repeats
 from hazard_ms.agents.base import PrivilegedAgent
+from hazard_ms.agents.gale.carts import PUSH
 from hazard_ms.agents.gale.truth import GaleTruth, hazard_of
 from hazard_ms.agents.mitigating.doing import Mitigator
 from hazard_ms.agents.search.landmark_search import LandmarkSearch
@@ -23,7 +24,6 @@ from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import PlannedRescue, Problem, soonest
 from hazard_ms.sketch.recording import pushes
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
-from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
@@ -80,7 +80,7 @@ class Oracle(PrivilegedAgent):
         """The next action: the first step of the best plan from here on."""
         assert self._truth is not None
         if self._before is None:  # not earlier: who records the episode begins with the map of an honest agent
-            self._truth.furnish()
+            decision = self._truth.furnish(decision)
         if self._mitigator is not None:
             self._scene = self._mitigator.scene(self._scene, decision.agent_position)
         if self._mitigator is None or not self._mitigator.took(decision):
@@ -114,14 +114,16 @@ class Oracle(PrivilegedAgent):
         if problem is None or (step := self._next_rescue(decision, truth, targets, problem)) is None:
             return self._otherwise(decision, truth)
         self._search.leave()
+        measure = self._gale and self._gale.measure(decision, problem, self._carts, self._attempts.failures)
+        if self._gale and measure:
+            return self._say(self._gale.note, measure)
         holding = decision.held is not None
-        if holding and (lee := self._into_lee(decision)) is not None:
-            return lee
         index = self._cart(decision, step.cart) if holding else self._arrived_at(decision, truth, step.target)
         name = self._goal = decision.names[index]
         if self._is_near(decision, truth, index):
             return Action(DROP if holding else PICK_UP, name)
-        met = self._future(truth).position_at(step.met)[index]
+        future = truth.future() if self._gale is None else self._gale.future(truth.record())
+        met = future.position_at(step.met)[index]
         moves = float(np.linalg.norm(met - truth.position(index))) > MOVED
         truth.aim = {index: met} if moves and decision.walked_up_to != name else {}
         one_step = Action(WALK_ONE_STEP, name)
@@ -173,13 +175,6 @@ class Oracle(PrivilegedAgent):
         """The carts that did not fail too often, by index along B."""
         return [int(c) for c in self._carts if self._considered(decision.names[c], int(c), truth, CART_FAILURES)]
 
-    def _into_lee(self, decision: Decision) -> Action | None:
-        put = self._gale and self._gale.put_away(decision, self._carts, self._attempts.failures)
-        return self._say(self._gale.note, put) if self._gale and put else None
-
-    def _future(self, truth: Truth) -> Timeline:
-        return truth.future() if self._gale is None else self._gale.future(truth.record())
-
     def _cart(self, decision: Decision, planned: int) -> int:
         """The cart that it is on its way to, so that it does not waver, else the planned one; indices along B."""
         under_way = [c for c in self._carts if decision.names[c] == self._goal]
@@ -224,7 +219,11 @@ class Oracle(PrivilegedAgent):
         if decision.last_result.ok and not (stuck and decision.walked_up_to is not None and truth.aim):
             return
         moved = float(np.hypot(*np.subtract(decision.agent_position, start)))
-        if action.target is None or (action.verb in (WALK_TO, WALK_ONE_STEP) and moved > PROGRESS):
+        if (
+            action.target is None
+            or action.verb == PUSH
+            or (action.verb in (WALK_TO, WALK_ONE_STEP) and moved > PROGRESS)
+        ):
             return
         self._attempts.failures[action.target] = self._attempts.failures.get(action.target, 0) + 1
         if decision.last_result.reason == UNREACHABLE and not decision.last_result.frames:

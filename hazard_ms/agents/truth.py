@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
@@ -108,14 +109,18 @@ class Truth:
         plain = scene.ways.frames(np.array([here]), goals, edge=edges)
         return detours(decision.map, here, goals.astype(float), ARRIVED + edges, radius, plain)
 
-    def furnish(self) -> None:
-        """Enter furniture and walls into the map.
+    def furnish(self, decision: Decision) -> Decision:
+        """Enter furniture and walls into the map, and return the decision; in a gale with the map as it is then.
 
         With `only_known`, floor stays unexplored until it is seen, so that there is something to search.
         """
         seen, spec = self.env.seen, self.env.base.specs[0]
         height, within = told(seen, spec, self.env.base.actors[0][len(spec.bodies) :])
         seen.tell(height, height >= WALKABLE if self._only_known else within)
+        if not self.furniture:
+            return decision
+        self.reveal()
+        return dataclasses.replace(decision, map=seen.frozen())
 
     def reveal(self) -> None:
         """Enter into the map where targets and containers really are, or where `aim` says."""

@@ -36,7 +36,7 @@ class Probe:
         self.decision: Decision = self.env.reset(seed=seed)[0]
         brief, base = self.env.brief(), self.env.base
         truth = Truth(self.env, False)
-        truth.furnish()
+        truth.furnish(self.decision)
         truth.reveal()
         self.mitigator = Mitigator(truth, brief)
         self.scene = RescueScene(base.specs[0], brief.robot, base.agent.build.radius, brief.max_frames)

@@ -112,9 +112,9 @@ register_mitigation(
 )
 register_mitigation(
     "push",
-    MODULE + "carts:push_cart",
-    MODULE + "carts:far_carts",
-    "pushes a cart to the nearest thing that is still to be rescued, with an empty hand",
+    MODULE + "carts:push_to",
+    MODULE + "carts:far_things",
+    "pushes the cart that is nearest to the robot to a thing that is still to be rescued, with an empty hand",
     reasons=("not_movable",),
 )
 register_mitigation(

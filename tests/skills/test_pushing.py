@@ -12,7 +12,8 @@ import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.skills import failures
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.executor import SkillEnv
-from hazard_ms.skills.pushing import THERE, push
+from hazard_ms.skills.mitigations.carts import SHORT
+from hazard_ms.skills.pushing import THERE, cart_ways, push
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec, Task
 from hazard_ms.tasks.gale import hazard_gale
 from hazard_ms.tasks.wind import hazard_wind
@@ -71,10 +72,34 @@ def test_a_cart_goes_where_it_is_pushed(env: SkillEnv, goal: tuple[float, float]
 
 
 def test_it_stops_where_the_cart_is_held_fast(env: SkillEnv) -> None:
-    """The wall's near side is at 8.8 m; the cart is 0.93 m long, so its middle gets to 8.33 m at most."""
-    result = pushed(env, (9.5, 6.0))
+    """The wall, which is wiped off the map, is at 8.8 m; the cart is 0.93 m long: its middle gets to 8.33 m at most."""
+    env.reset(seed=0)
+    env.seen.clear(np.stack(np.meshgrid(np.arange(8.0, 10.0, 0.05), np.arange(3.0, 9.0, 0.05)), -1).reshape(-1, 2))
+    result = env.run(push(env.stage, env.labeller.index("cart_1"), (9.5, 6.0)))
     assert (result.ok, result.reason) == (False, failures.BLOCKED)
     assert 8.0 < place(env)[0] < 8.40
+
+
+def test_it_goes_round_what_the_map_shows(env: SkillEnv) -> None:
+    """Beyond the wall, 3 m wide from 8.8 to 9.2 m: its end is at 7.5 m, where the cart needs 0.5 m more."""
+    env.reset(seed=0)
+    env.seen.tell(np.zeros_like(env.seen.height), np.ones_like(env.seen.explored))
+    path = cart_ways(env.seen, np.array([5.0, 6.0]), [np.array([10.5, 6.0])], 0.2)[0]
+    assert path is not None and 6.2 < path.length < 8.0  # through (9, 8) it is 2 x 4.5 m less what two corners save
+    at = np.vstack([[5.0, 6.0], path.points])
+    xs = np.linspace(0.0, 1.0, 50)[:, None, None]
+    along = (at[:-1] + xs * np.diff(at, axis=0)).reshape(-1, 2)
+    beside = along[(along[:, 0] > 8.8) & (along[:, 0] < 9.2)]
+    assert len(beside) and (np.abs(beside[:, 1] - 6.0) > 1.9).all()
+
+
+def test_it_draws_a_cart_from_before_it_and_pushes_it_from_behind(env: SkillEnv) -> None:
+    """The robot is 2 m west of the cart: to the west it draws and is there first, to the east the cart is."""
+    for goal, first in (((3.0, 6.0), True), ((7.0, 6.0), False)):
+        assert pushed(env, goal).ok
+        robot = np.array(env.stage.robot.base()[:2])
+        beyond = (robot - place(env)[:2]) @ (np.array(goal) - (5.0, 6.0))
+        assert bool(beyond > 0.0) is first, goal
 
 
 def test_a_cart_that_is_there_is_left_alone(env: SkillEnv) -> None:
@@ -126,12 +151,12 @@ def test_carts_that_stand_fast_are_not_pushed() -> None:
 
 
 def test_agents_push_a_cart_to_what_they_must_rescue(env: SkillEnv) -> None:
-    """It is left a metre short of the thing; where nothing is far from it no push is offered."""
+    """It is left 1.6 m short of the thing; where nothing is far from it no push is offered."""
     decision, _ = env.reset(seed=0)
     assert not [a for a in decision.available if a.verb == "push"]  # the bottle lies in the cart
 
 
-def test_a_push_is_offered_and_ends_beside_the_thing() -> None:
+def test_a_push_is_offered_and_ends_near_the_thing() -> None:
     far = dataclasses.replace(LOT.bodies[0], position=(7.5, 7.2, 0.0))
     spec = dataclasses.replace(LOT, name="test/far", bodies=(far,))
     with registered_task("HazardFarLot-v1", lot(hazard_gale, spec)):
@@ -139,10 +164,9 @@ def test_a_push_is_offered_and_ends_beside_the_thing() -> None:
         try:
             decision, _ = env.reset(seed=0)
             (action,) = [a for a in decision.available if a.verb == "push"]
-            assert action.target == "cart_1"
+            assert action.target == "bottle_1"
             *_, info = env.step(action)
             assert info["result"].ok, info["result"]
-            way = np.array([2.5, 1.2])  # from the cart to the bottle
-            assert np.hypot(*(place(env)[:2] - ((5.0, 6.0) + way * (1.0 - 1.0 / np.hypot(*way))))) <= THERE + 0.1
+            assert 1.0 < np.hypot(*(place(env)[:2] - (7.5, 7.2))) <= SHORT + THERE
         finally:
             env.close()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gymnasium as gym
+import numpy as np
 import pytest
 import torch
 
@@ -11,6 +12,7 @@ from hazard_ms.evaluation.attempts import Recorded
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.runner import play
 from hazard_ms.registry import TASKS
+from hazard_ms.scenes import splits
 from hazard_ms.scenes.splits import scene
 from hazard_ms.tasks import task_of
 
@@ -56,3 +58,12 @@ def test_what_lies_where_it_was_put_when_time_is_up_is_rescued() -> None:
     assert result.lost.targets > 0.0
     assert result.tally.value_rescued + result.lost.targets == pytest.approx(result.tally.value_total)
     assert all(fate.frame == 0 for fate in result.targets if fate.rescued)
+
+
+def test_carts_stand_in_a_bay() -> None:
+    """Three in a row, 1.6 m from each other and 2 m from an edge (docs/benchmark.md 1.1)."""
+    for name in splits.all_scene_names("gale")[::14]:
+        places = np.array([cart.position[:2] for cart in splits.scene(name).containers])
+        assert np.hypot(*np.diff(places, axis=0).T) == pytest.approx([1.6, 1.6], abs=1e-3), name
+        edges = np.minimum(places, 16.0 - places)
+        assert any(edges[:, axis] == pytest.approx(2.0, abs=1e-3) for axis in (0, 1)), name

@@ -12,17 +12,20 @@ import dataclasses
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.agents.gale.carts import BEAM, MOST_LABELS, Push, Pushing
 from hazard_ms.agents.gale.course import Array, Course, kept
 from hazard_ms.agents.gale.sites import DETOUR, Sites, sites
 from hazard_ms.agents.gale.stops import PUT_DOWN, SEEKING, put_away
 from hazard_ms.agents.gale.weather import Weather
 from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.search.walks import TURNING
+from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, Action, Decision
 from hazard_ms.skills.motor.navigation import FLOOR
+from hazard_ms.skills.motor.walking import ARRIVED
 
 BESIDE = 0.1  # what a rescue counts of its value beside what it averts [ours]
 LIKELY = 0.8  # chance of staying from which a place in the lee is one to rescue to [ours]
@@ -38,8 +41,9 @@ ROLLING = ("bottle", "soda_can")  # what rolls off where it was put down: into c
 class GaleAims:
     """The aim in one episode."""
 
-    def __init__(self, brief: Brief) -> None:
-        """Begin an episode of a task in which a gale blows."""
+    def __init__(self, brief: Brief, mitigate: bool = True) -> None:
+        """Begin an episode of a task in which a gale blows; `mitigate`: whether it uses the lee, and pushes carts."""
+        self._mitigate, self._pushing = mitigate, Pushing()
         self._weather, self._radius = Weather(brief), brief.radius
         (self._withstands,) = (h.withstands for h in brief.hazards if _carries_off(h.withstands, brief))
         self._seconds = brief.frame_seconds
@@ -72,16 +76,49 @@ class GaleAims:
         for number in range(len(ahead.targets), len(values)):
             values[number] *= SHARE
         problem = dataclasses.replace(ahead.problem, values=values)
-        if decision.held is None and ahead.carts:
+        if decision.held is None and ahead.carts and self._mitigate:
             lee = self._sites(decision, ahead, courses)
             drop = [*ahead.problem.drop, *([PUT_DOWN + SEEKING] * len(lee.places))]
             problem = dataclasses.replace(problem, travel=self._travel(decision, ahead, lee), drop=drop)
         return dataclasses.replace(ahead, problem=problem)
 
+    def push(self, decision: Decision, ahead: Outlook) -> Action | None:
+        """The push of a cart to begin with, for what `aimed` gave; None where rescues alone are better."""
+        if not self._mitigate or not self._weather.known or not ahead.carts or decision.held is not None:
+            return None
+        count = len(ahead.carts)
+        table, drop = StaticTravel(ahead.frames, count), list(ahead.problem.drop)[:count]
+        plain = dataclasses.replace(ahead.problem, travel=table, drop=drop)
+        wanted = [name for name, worth in zip(ahead.targets, plain.values, strict=False) if worth > 0.0]
+
+        def after(push: Push) -> float:
+            late = dataclasses.replace(
+                plain, travel=self._with_cart_at(decision, ahead, push), frame=plain.frame + push.frames
+            )
+            return (1.0 - plain.fading * push.frames) * solve(late, MOST_LABELS, BEAM).value
+
+        action = self._pushing.choose(decision, wanted, lambda: solve(plain, MOST_LABELS, BEAM).value, after)
+        self.note = self._pushing.note if action is not None else self.note
+        return action
+
+    def _with_cart_at(self, decision: Decision, ahead: Outlook, push: Push) -> StaticTravel:
+        """The travel of an outlook, without the lee, after a push."""
+        goals = len(ahead.targets) + len(ahead.lookouts)
+        names = [*ahead.targets, *(mark.name for mark in ahead.lookouts), *ahead.carts]
+        places, moved = self._places(decision, names), goals + ahead.carts.index(decision.names[push.cart])
+        table = ahead.frames.copy()
+        for row, start in ((moved, push.place), (len(names), push.robot)):
+            far = np.maximum(np.hypot(*(places - start).T) - ARRIVED, 0.0)
+            table[row, :-1] = WALK * DETOUR * far + TURNING
+        table[:-1, moved] = table[moved, :-1]
+        table[-1, moved] = TURNING
+        np.fill_diagonal(table, 0.0)
+        return StaticTravel(table, len(ahead.carts))
+
     def put_away(self, decision: Decision, cart: float) -> Action | None:
         """The next action that puts the held thing into the lee; None where a cart, in `cart` frames, is better."""
         held = decision.held
-        if held is None or not self._weather.known or decision.target(held).category in ROLLING:
+        if held is None or not self._mitigate or not self._weather.known or decision.target(held).category in ROLLING:
             return None
         courses, category = self._weather.courses(), decision.target(held).category
 
@@ -156,9 +193,9 @@ class GaleAims:
         return np.array(things, np.float64).reshape(-1, 2)
 
 
-def aims_of(brief: Brief) -> GaleAims | None:
-    """The aims of an episode; None where no gale blows."""
-    return GaleAims(brief) if any(_carries_off(h.withstands, brief) for h in brief.hazards) else None
+def aims_of(brief: Brief, mitigate: bool = True) -> GaleAims | None:
+    """The aims of an episode, `mitigate` as for GaleAims; None where no gale blows."""
+    return GaleAims(brief, mitigate) if any(_carries_off(h.withstands, brief) for h in brief.hazards) else None
 
 
 def _carries_off(withstands: object, brief: Brief) -> bool:

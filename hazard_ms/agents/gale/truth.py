@@ -9,17 +9,19 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.agents.gale.carts import BEAM, MOST_LABELS, Push, Pushing
 from hazard_ms.agents.gale.course import Array, Course, Front, Lees, kept
 from hazard_ms.agents.gale.sites import DETOUR, OnGround, Sites, sites
 from hazard_ms.agents.gale.stops import PUT_DOWN, SEEKING, put_away
 from hazard_ms.hazards.places import MOVED
 from hazard_ms.hazards.wind.endurance import endurance
 from hazard_ms.hazards.wind.gale import WINDS, Gale
+from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import MovingTravel, straight_line
 from hazard_ms.sketch.rescue_problem import TURNING, Outset, RescueScene
@@ -36,6 +38,19 @@ EVERY = 2  # of the cells of the floor, along each side, in which a site is look
 ROLLING = ("bottle", "soda_can")  # what rolls off where it was put down: into carts alone [ours]
 
 
+class _Told(NamedTuple):
+    """The arguments of `GaleTruth.problem`."""
+
+    record: Timeline
+    targets: NDArray[np.int64]
+    values: Array
+    carts: NDArray[np.int64]
+    outset: Outset
+    delays: Array
+    fading: float
+    spread: float
+
+
 def hazard_of(base: Any) -> Gale | None:
     """The gale of the running environment `base`; None where none blows."""
     return next((hazard for hazard in base.task.hazards if isinstance(hazard, Gale)), None)
@@ -45,16 +60,18 @@ class GaleTruth:
     """The true course of the gale in a running environment, whose robot plans as `scene` says."""
 
     def __init__(self, base: Any, hazard: Gale, scene: RescueScene, mitigate: bool) -> None:
-        """`mitigate`: whether things may be put into the lee."""
+        """`mitigate`: whether things may be put into the lee, and carts be pushed."""
         self._base, self._hazard, self._scene, self._mitigate = base, hazard, scene, mitigate
         self._state = base.episode.states[hazard.name]
         self._seconds = float(base.control_timestep)
         self.note = ""  # on what `put_away` chose
         self._course = course_of(hazard, self._state, base.world, scene.limit * self._seconds)
         self._withstands = withstands(self._state, base.world)
+        self._pushing = Pushing() if mitigate else None
         self._start = self._state.place[0].cpu().numpy().copy()
         ways = scene.ways
         cells = np.argwhere(ways.free)
+        self._ground_at, self._ground_pressure = -1, np.zeros(0)  # frame of the pressures on the ground [m^2/s^2]
         self._ground = ways.origin + (cells[(cells % EVERY == 0).all(1)][:, ::-1] + 0.5) * ways.cell
 
     def at_stake(self, record: Timeline) -> NDArray[np.bool_]:
@@ -98,9 +115,17 @@ class GaleTruth:
 
         Sites in the lee follow the carts. Other arguments are those of `RescueScene.problem`.
         """
+        self._told = _Told(record, targets, values, carts, outset, delays, fading, spread)
+        return self._problem(self._told, {})
+
+    def _problem(self, told: _Told, moved: Mapping[int, Array]) -> Problem:
+        """The problem that was `told`, with some carts, by index along B, at other places [m], [2]."""
+        record, targets, values, carts, outset, delays, fading, spread = told
         future, scene = self.future(record), self._scene
         ways = future.positions(targets)[..., :2].astype(np.float64)
         rest = self._base.world.position[0, carts.tolist(), :2].cpu().numpy().astype(np.float64)
+        for row, cart in enumerate(carts.tolist()):
+            rest[row] = moved.get(cart, rest[row])
         lee = self._sites(targets, ways[0])
         walk = straight_line(WALK * DETOUR)
         moving = MovingTravel(future.frames, ways, np.asarray(outset.place), walk, np.vstack([rest, lee.places]))
@@ -118,6 +143,33 @@ class GaleTruth:
             spread=spread,
             holding=holding,
         )
+
+    def measure(
+        self, decision: Decision, problem: Problem, carts: NDArray[np.int64], failures: Mapping[str, int]
+    ) -> Action | None:
+        """The next action that pushes a cart or, with something in the hand, puts it into the lee; None: neither.
+
+        `problem` is the one that `problem` gave last; `carts`, [M], and the rest are as for `put_away`.
+        """
+        if decision.held is not None:
+            return self.put_away(decision, carts, failures)
+        return None if self._pushing is None else self._push(decision, problem, self._pushing)
+
+    def _push(self, decision: Decision, problem: Problem, pushing: Pushing) -> Action | None:
+        now = self._told
+
+        def after(push: Push) -> float:
+            then = Outset((float(push.robot[0]), float(push.robot[1])), None, now.outset.frame + round(push.frames))
+            late = self._problem(now._replace(outset=then, fading=0.0), {push.cart: push.place})
+            return solve(late, MOST_LABELS, BEAM).value
+
+        def plain() -> float:  # that skills fail delays rescues with a push and without it alike
+            return solve(dataclasses.replace(problem, fading=0.0), MOST_LABELS, BEAM).value
+
+        names = [decision.names[target] for target in now.targets.tolist()]
+        action = pushing.choose(decision, names, plain, after)
+        self.note = pushing.note
+        return action
 
     def put_away(self, decision: Decision, carts: NDArray[np.int64], failures: Mapping[str, int]) -> Action | None:
         """The next action that puts the held thing into the lee.
@@ -150,7 +202,11 @@ class GaleTruth:
 
     def _sites(self, targets: NDArray[np.int64], goals: Array) -> Sites:
         """Sites on the ground near the places of `targets` now, `goals` [m], [T, 2]."""
-        pressure = self._pressure(np.hstack([self._ground, np.full((len(self._ground), 1), LOW)]))
+        now = int(self._base.world.frame[0])
+        if self._ground_at != now:
+            raised = np.hstack([self._ground, np.full((len(self._ground), 1), LOW)])
+            self._ground_at, self._ground_pressure = now, self._pressure(raised)
+        pressure = self._ground_pressure
         good = np.stack([kept(pressure, self._withstands[t]) & self._may_lie(t) for t in targets.tolist()])
         return sites(self._ground, good, goals)
 

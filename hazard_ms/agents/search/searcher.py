@@ -56,7 +56,7 @@ class Searcher(Agent):
         self._brief, self._memory = brief, Memory(brief.random_seed, self._weights.belief > 0.0)
         acts = self._mitigate and brief.several_rooms and brief.averted and brief.mitigations
         self._mitigator = Mitigator(brief, self._memory) if acts else None
-        self._gale = aims_of(brief)
+        self._gale = aims_of(brief, self._mitigate)
         self._repeats = Repeats(bool(brief.mitigations))
         self._goal: tuple[str, frozenset[str]] | None = None  # where it goes to search, and the targets known then
 
@@ -107,6 +107,8 @@ class Searcher(Agent):
             ahead = self._gale.aimed(decision, ahead)
             if (lee := self._gale.put_away(decision, ahead.to_cart(self._memory.failures))) is not None:
                 return self._say(self._gale.note, lee)
+            if (push := self._gale.push(decision, ahead)) is not None:
+                return self._say(self._gale.note, push)
         begin = None if decision.held is not None and not ahead.carts else self.first(ahead)
         if begin is None:
             return self._without_plan(decision, ahead)

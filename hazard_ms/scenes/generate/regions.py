@@ -1,8 +1,7 @@
 """The regions of the wind task as data: ground, and rules that say where houses, plants and street furniture belong.
 
-Everything is written for a square of REGION_SIZE metres seen from the south: roads run along x, houses stand to the
-north. A scene turns it by quarter turns. Areas are (left, lower, right, upper) in metres, yaws in degrees; furniture
-faces -y of its own frame.
+Everything is written for a square of REGION_SIZE metres seen from the south: roads run along x, houses are north.
+A scene turns it by quarter turns. Areas are (left, lower, right, upper) in metres, yaws in degrees; furniture faces -y.
 """
 
 from __future__ import annotations
@@ -78,6 +77,7 @@ class Region:
     aisle: float = 0.9  # width of the passages [m]
     targets: int = 15  # number of things that can blow away [docs/benchmark.md 1]
     wind: tuple[float, float] = WINDS  # slowest and fastest [m/s]
+    parked: bool = False  # whether the carts stand side by side at the edge, as in a bay, or anywhere
 
 
 def dashes(
@@ -220,8 +220,7 @@ PARK = Region(
 )
 
 PARKING_HARD = replace(PARKING, name="parking_hard", targets=20, wind=STRONGER_WINDS["hard"])
-# Those of the gale: the same four, and two that no training scene is like
-GALE = tuple(replace(region, name=f"{region.name}_gale") for region in (STREET, CROSSING, PARKING, PARK))
+GALE = tuple(replace(r, name=f"{r.name}_gale", parked=True) for r in (STREET, CROSSING, PARKING, PARK))
 MARKET = Region(
     "market_gale",
     "pavement",
@@ -246,5 +245,5 @@ YARD = Region(
         Some(("planter", "trash_bin", "traffic_cone", "bollard"), (2.0, 5.0, 14.0, 11.0), (3, 6)),
     ),
 )
-
+MARKET, YARD = (replace(region, parked=True) for region in (MARKET, YARD))
 REGIONS: dict[str, Region] = {r.name: r for r in (STREET, CROSSING, PARKING, PARK, PARKING_HARD, *GALE, MARKET, YARD)}

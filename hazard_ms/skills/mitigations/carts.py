@@ -1,48 +1,53 @@
-"""The mitigation `push`: a cart is pushed to where something is still to be rescued, so that the ways to it are short.
+"""The mitigation `push`: the cart at hand is taken to a thing to rescue, so that the ways to it are short.
 
-How it is pushed is `hazard_ms.skills.pushing`.
+How that is done is `hazard_ms.skills.pushing`.
 """
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Sequence
 
+import numpy as np
+
+from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.pushing import push
 
-SHORT = 1.0  # distance from the thing at which the cart is left: the robot gets between them [m] [ours]
-WORTH = 2.0  # distance from a cart to the nearest thing to rescue from which on a push makes sense [m] [ours]
+# distance from the thing at which the middle of the cart is left [m] [ours: a robot that draws it is between them]
+SHORT = 1.6
+WORTH = 2.5  # distance from the cart to a thing to rescue from which on a push makes sense [m] [ours]
 
 
-def far_carts(stage: Stage) -> tuple[str, ...]:
-    """Names of known carts from which the nearest thing to rescue is far, while the hand is empty."""
-    if stage.held >= 0:
+def far_things(stage: Stage) -> tuple[str, ...]:
+    """Names of known things to rescue that are far from the cart at hand, while the hand is empty."""
+    cart = None if stage.held >= 0 else _at_hand(stage)
+    if cart is None:
         return ()
-    there = [name for name in stage.labeller.containers if stage.labeller.index(name) in stage.seen.objects]
-    return tuple(name for name in there if (way := _way(stage, name)) is not None and np.hypot(*way) > WORTH)
+    place, seen = stage.seen.objects[cart].position[:2], stage.seen.objects
+    left = [t for t in stage.labeller.targets() if not t.rescued and t.index in seen]
+    return tuple(t.name for t in left if np.hypot(*(seen[t.index].position[:2] - place)) > WORTH)
 
 
-def push_cart(stage: Stage, name: str) -> Skill:
-    """Push the cart called `name` towards the nearest known thing that is still to be rescued."""
+def push_to(stage: Stage, name: str) -> Skill:
+    """Take the known cart that is nearest to the robot to the thing called `name`."""
     if stage.held >= 0:
         return Result(False, failures.ALREADY_HOLDING)
-    index, way = stage.labeller.index(name), _way(stage, name)
-    if way is None:
+    cart, thing = _at_hand(stage), stage.seen.objects.get(stage.labeller.index(name))
+    if cart is None or thing is None:
         return Result(False, failures.UNKNOWN)
-    length = float(np.hypot(*way))
-    goal = stage.seen.objects[index].position[:2] + way * max(0.0, 1.0 - SHORT / max(length, SHORT))
-    result: Result = yield from push(stage, index, (float(goal[0]), float(goal[1])))
+    result: Result = yield from push(stage, cart, (float(thing.position[0]), float(thing.position[1])), SHORT)
     return result
 
 
-def _way(stage: Stage, name: str) -> NDArray[np.float64] | None:
-    """From the thing called `name` to the nearest known one to rescue [m], [2], world frame; None if none is known."""
-    cart = stage.seen.objects.get(stage.labeller.index(name))
-    left = [t.index for t in stage.labeller.targets() if not (t.rescued or t.held) and t.index in stage.seen.objects]
-    if cart is None or not left:
-        return None
-    ways = np.array([stage.seen.objects[index].position[:2] - cart.position[:2] for index in left], np.float64)
-    return np.asarray(ways[int(np.hypot(*ways.T).argmin())])
+def nearest_cart(seen: SemanticMap, carts: Sequence[int], place: tuple[float, float]) -> int | None:
+    """The one of `carts`, by index in `seen`, that is nearest to a `place` [m]; None where none is known."""
+    known = [index for index in carts if index in seen.objects]
+    away = [float(np.hypot(*(seen.objects[index].position[:2] - place))) for index in known]
+    return known[int(np.argmin(away))] if known else None
+
+
+def _at_hand(stage: Stage) -> int | None:
+    carts = [stage.labeller.index(name) for name in stage.labeller.containers]
+    return nearest_cart(stage.seen, carts, stage.robot.base()[:2])

@@ -21,7 +21,7 @@ LIMIT = 3000
 @pytest.fixture
 def base() -> Iterator[Any]:
     env = gym.make("HazardGale-v1", obs_mode="none", render_backend="none", control_mode="pd_joint_pos", split="test")
-    env.reset(seed=2)
+    env.reset(seed=4)
     yield env.unwrapped
     env.close()
 
@@ -40,7 +40,7 @@ def record(base: Any, blown: list[int]) -> Timeline:
     whole: Any = dict.fromkeys(("levels", "damaged_at", "safe_at", "flame_birth", "flame_place"), np.zeros(0))
     moves = np.array(blown, np.int16)
     names = base.world.names[0]
-    return Timeline("", "", "", "", 2, 0, 10, names, start, moves, offsets, **whole)
+    return Timeline("", "", "", "", 4, 0, 10, names, start, moves, offsets, **whole)
 
 
 def of_category(base: Any, category: str) -> int:

@@ -1,8 +1,8 @@
 """Homes and streets in which decisions count: `./run python results/homes.py [TASK...] [SCENES]`; resumes.
 
-Every agent plays the first scenes, 4 by default, of the split `test` of each task with measures. Writes homes.md and
-homes.csv beside this file; episodes in homes.csv are not played again: those that a change would touch are to be
-deleted there. With `tables` alone it plays nothing.
+Every agent plays so many scenes, 4 by default, of the split `test` of each task with measures, from number FIRST on.
+Writes homes.md and homes.csv beside this file; episodes in homes.csv are not played again: those that a change would
+touch are to be deleted there. With `tables` alone it plays nothing.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from results.tables import COMMAND, HERE, machine, results_in, words
 RAW, FILE = HERE.parent / "build" / "homes", HERE / "homes.csv"
 TASKS = {"house fire": "HazardHouseFire-v1", "house flood": "HazardHouseFlood-v1", "gale": "HazardGale-v1"}
 SCENES = 4
+FIRST = 10  # what happened in those before was read while the agents were made
 PLAIN = "oracle:mitigate=false"
 AGENTS = ("random", "rule", "greedy", "mcts", "planner", PLAIN, "oracle")
 # (the one that should be above, the other): docs/benchmark.md
@@ -36,7 +37,8 @@ COLUMNS = ("task", "agent", "seed", "scene", "averted", "averted_of_all", "value
 Row = dict[str, str]
 HEAD = """# Homes and gales
 
-Made by `./run python results/homes.py`. First scenes of the split `test`, Fetch, presets `paper`, one episode a scene.
+Made by `./run python results/homes.py`. Scenes of the split `test` from number {first} on, Fetch, presets `paper`, one
+episode a scene; decisions in those before were read while the agents were made.
 `averted` is the share of the targets' value that would be lost if nobody acted and is not lost at the end, in percent,
 with 95 % bootstrap intervals over scenes; differences are paired by scene. `{plain}` is the oracle that
 takes no measures. homes.csv has every episode. Written at
@@ -56,11 +58,11 @@ SHARES = """
 
 
 def play(task: str, scenes: int) -> None:
-    """Play what is missing of the first `scenes` of a task, one scene after the other."""
+    """Play what is missing of so many `scenes` of a task from FIRST on, one scene after the other."""
     folder = RAW / task.replace(" ", "_")
     options = ["-e", TASKS[task], "-o", str(folder), "--split", "test", "--timeout", "1800"]
     there = {(row["agent"], int(row["seed"])) for row in rows() if row["task"] == task}
-    for seed in range(scenes):
+    for seed in range(FIRST, FIRST + scenes):
         agents = [agent for agent in AGENTS if (agent, seed) not in there]
         if not agents:
             continue
@@ -126,7 +128,7 @@ def main(wanted: list[str]) -> None:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
         writer.writerows(every)
-    text = HEAD.format(machine=machine(), plain=PLAIN) + tables(every)
+    text = HEAD.format(machine=machine(), plain=PLAIN, first=FIRST) + tables(every)
     (HERE / "homes.md").write_text(text, encoding="utf-8")
     print(text)
 

@@ -12,7 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tests.env.episode_hashes import PRESETS, RECORD, SEEDS, TASKS, key
+from tests.env.episode_hashes import PRESETS, SEEDS, TASKS, recorded
 
 ROOT = Path(__file__).parents[2]
 NUMPY_TO_AVX = "X86_V3 X86_V4 AVX512_ICL AVX512_SPR"
@@ -42,15 +42,9 @@ def forced(variables: dict[str, str], env_id: str, physics: str, seeds: tuple[in
     return found
 
 
-def recorded(env_id: str, physics: str, seeds: tuple[int, ...]) -> dict[str, str]:
-    """By seed: the hash in the record."""
-    row = json.loads(RECORD.read_text())["hashes"][key(env_id, physics)]
-    return {str(seed): row[str(seed)] for seed in seeds}
-
-
 def equal(variables: dict[str, str], env_id: str, physics: str, seeds: tuple[int, ...]) -> int:
     """The number of episodes that are equal to the record."""
-    expected = recorded(env_id, physics, seeds)
+    expected = recorded(env_id, physics)
     return sum(expected[seed] == found for seed, found in forced(variables, env_id, physics, seeds).items())
 
 

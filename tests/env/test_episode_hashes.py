@@ -7,7 +7,7 @@ import json
 import gymnasium as gym
 import pytest
 
-from tests.env.episode_hashes import PRESETS, RECORD, SEEDS, STEPS, TASKS, episode_hash, hashes, key, machine
+from tests.env.episode_hashes import PRESETS, RECORD, SEEDS, STEPS, TASKS, episode_hash, hashes, key, machine, recorded
 
 record = json.loads(RECORD.read_text())
 
@@ -19,8 +19,8 @@ record = json.loads(RECORD.read_text())
 @pytest.mark.parametrize("env_id", TASKS)
 def test_episodes_are_what_they_were(env_id: str, physics: str, pytestconfig: pytest.Config) -> None:
     seeds = SEEDS if pytestconfig.getoption("--long") else SEEDS[:1]
-    recorded = record["hashes"][key(env_id, physics)]
-    assert hashes(env_id, physics, seeds) == {str(seed): recorded[str(seed)] for seed in seeds}
+    expected = recorded(env_id, physics)
+    assert hashes(env_id, physics, seeds) == {str(seed): expected[str(seed)] for seed in seeds}
 
 
 def test_a_hash_notices_one_millimetre() -> None:

@@ -227,8 +227,7 @@ def _behind(path: Path, base: tuple[float, float, float]) -> float | None:
     ahead = (path.points - (x, y)) @ np.array(
         [[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]]
     ).T
-    straight = bool((np.abs(ahead[:, 1]) < STRAIGHT).all() and ahead[-1, 0] < 0.0)
-    return float(-ahead[-1, 0]) if straight else None
+    return float(-ahead[-1, 0]) if (np.abs(ahead[:, 1]) < STRAIGHT).all() and ahead[-1, 0] < 0.0 else None
 
 
 def _obstructed(stage: Stage, leaf: Leaf, first: float, last: float) -> bool:

@@ -1,4 +1,4 @@
-"""Where a robot stands to take the handle of a door: within the arm's reach, and out of the leaf's way if it can."""
+"""Chooses the place from which a robot takes the handle of a door: in reach, and out of the leaf's way if it can."""
 
 from __future__ import annotations
 

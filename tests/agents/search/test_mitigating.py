@@ -208,17 +208,17 @@ def cases() -> Sequence[tuple[str, Brief]]:
 
 
 def wet(frame: int = 560) -> Decision:
-    """Water from the west wall, which rises by 0.5 mm a frame, has come to x = 1.3 m; the door is at x = 2 m."""
+    """Water from the west wall, which rises by 1 cm in 60 frames, has come to x = 1.3 m; the door is at x = 2 m."""
     given = decision(frame=frame)
     seen = given.map
     y, x = np.nonzero(seen.explored)
     way = seen.centre_of(y, x)[:, 0] - WEST
-    seen.levels[0, y, x] = np.maximum(0.0005 * frame - SLOPE * way, 0.0)
+    seen.levels[0, y, x] = np.maximum(0.01 / 60 * frame - SLOPE * way, 0.0)
     return replace(given, available=(*given.available, SHUT), tools=())
 
 
 def test_it_shuts_the_door_on_water() -> None:
-    """The books are soaked from frame 940 on: there is time to rescue one or two of them, or to shut the door."""
+    """The books are soaked from frame 1,100 on: there is time to rescue one or two of them, or to shut the door."""
     told = home("HazardHouseFlood-v1")
     player = begun("planner", told)
     assert player.act(wet()) == SHUT and "shut door_0" in str(player.note)

@@ -90,11 +90,16 @@ def test_the_task_is_told_in_the_words_of_the_simulator(env: Any) -> None:
 
 @pytest.mark.parametrize("task", TASKS)
 def test_spaces_are_those_of_the_simulator(task: str) -> None:
-    """Which has 15 numbers for each target and 10 of the whole with one hazard, and 2 and 1 more with each further."""
+    """Which has 15 numbers for each target and 10 of the whole with one hazard, and 2 and 1 more with each further.
+
+    Where fires can be put out there are 8 for each of 6 fires and 7 of the tool, and an option for each.
+    """
     made = SketchSkills(task=task)
     hazards = len(made.settings.ranges)
     size = 32 * (13 + 2 * hazards) + 3 * 5 + 8 * 5 + 9 + hazards
-    assert made.observation_space.shape == (size,) and made.action_space == gym.spaces.Discrete(COUNT)
+    numbers, options = (6 * 8 + 7, 6 + 1) if task == "HazardHouseFire-v1" else (0, 0)
+    assert made.observation_space.shape == (size + numbers,)
+    assert made.action_space == gym.spaces.Discrete(COUNT + options)
 
 
 @pytest.mark.parametrize(

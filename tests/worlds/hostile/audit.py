@@ -21,6 +21,7 @@ def watch(folder: Path, module: str) -> list[str]:
     `module`: the name of one that the files name, and that must not be imported.
     """
     found: list[str] = []
+    sys.dont_write_bytecode = True  # modules that are imported only now
     top = os.path.realpath(folder)
 
     def outside(path: Any) -> bool:

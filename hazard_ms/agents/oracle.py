@@ -72,7 +72,7 @@ class Oracle(PrivilegedAgent):
         gale = hazard_of(base)
         self._gale = None if gale is None else GaleTruth(base, gale, self._scene, self._mitigates)
         self._truth.furniture = gale is not None
-        fights = self._mitigates and brief.mitigations and gale is None
+        fights = self._mitigates and brief.mitigations and not pushes(base.task.hazards)
         self._mitigator = Mitigator(self._truth, brief) if fights else None
         self._enclosure, self._repeats = Enclosure(), Repeats(bool(brief.mitigations))
 

@@ -1,9 +1,12 @@
 """Measures the frames that mitigations take in a test home: a door shut, an extinguisher fetched, fires fought.
 
     python -m hazard_ms.bench.mitigations [SEED [FRAME]]
+    python -m hazard_ms.bench.mitigations doors [HOMES]
 
-prints one line for each action: its frames, the flames and burning things before and after it, and the frames of jet
-that are left. The fires are fought from FRAME on, by default 400.
+The first prints one line for each action: its frames, the flames and burning things before and after it, and the frames
+of jet that are left. The fires are fought from FRAME on, by default 400. The second shuts the three doors nearest to
+the robot in each of the first HOMES of `train`, by default 8, each from the start of an episode, and prints the frames
+that it takes beyond the planned way.
 """
 
 from __future__ import annotations
@@ -25,14 +28,19 @@ from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.skills.executor import SkillEnv
 
 TASK, SIZE = "HazardHouseFire-v1", 128  # and the edge of the pictures [pixels]
+NEAREST, HOMES = 3, 8  # doors that are shut in a home, and homes
 
 
 class Probe:
     """Does one measure after another in a home, and prints what each takes."""
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int, split: str = "test") -> None:
         camera = {"width": SIZE, "height": SIZE}
-        self.env = SkillEnv.make(TASK, split="test", sensor_configs=camera, effects="off")
+        self.env = SkillEnv.make(TASK, split=split, sensor_configs=camera, effects="off")
+        self.begin(seed)
+
+    def begin(self, seed: int) -> None:
+        """Begin the episode of a seed anew."""
         self.decision: Decision = self.env.reset(seed=seed)[0]
         brief, base = self.env.brief(), self.env.base
         truth = Truth(self.env, False)
@@ -67,8 +75,30 @@ class Probe:
         return {seat.number: seat.burning for seat in prospects.seats_of(self.env.base)}
 
 
+def shut_doors(homes: int) -> None:
+    """Shut doors in so many homes of `train`, and print the frames that each takes beyond the way to it."""
+    probe, beyond, tried = Probe(0, "train"), list[float](), 0
+    for seed in range(homes):
+        for number in range(NEAREST):
+            probe.begin(seed)
+            base, here = probe.env.base, np.array(probe.decision.agent_position)
+            doors = prospects.doors(base, here[None])
+            if number >= len(doors):
+                break
+            way, tried = probe.way(doors[number]), tried + 1
+            probe.do(doors[number])
+            if float(base.world.openings.share[0, doors[number].numbers[0]]) <= 0.0:
+                beyond.append(probe.env.frame - way)
+    mean = f", on average {np.mean(beyond):.0f} frames beyond the way to them" if beyond else ""
+    print(f"{len(beyond)} of {tried} doors in {homes} homes were shut{mean}")
+    probe.env.close()
+
+
 def main(arguments: Sequence[str]) -> None:
-    """Measure in the home of the seed that is given first, and fight from the frame that is given second."""
+    """Measure what the arguments name, by default a door and fires in home 0. Raises ValueError for no number."""
+    if arguments[:1] == ["doors"]:
+        shut_doors(int(arguments[1]) if len(arguments) > 1 else HOMES)
+        return
     seed, start = int(arguments[0]) if arguments else 0, int(arguments[1]) if len(arguments) > 1 else 400
     probe = Probe(seed)
     env, here = probe.env, np.array(probe.decision.agent_position)

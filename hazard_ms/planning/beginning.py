@@ -55,15 +55,17 @@ def best_course(
     most_labels: int = MOST_LABELS,
     beam: int = BEAM,
     beside: float = BESIDE,
+    margin: float = 0.0,
 ) -> Course:
     """The course that averts most: up to `most` measures, then rescues.
 
     `problem` has the targets' own values; its travel must be a StaticTravel, as that of rooms. What is in the hand is
-    put away first. `most_labels` and `beam` are those of `solve`, `beside` that of `averting`. Raises ValueError for
-    another travel, and for measures of another number of targets, or of nodes.
+    put away first. `most_labels` and `beam` are those of `solve`, `beside` that of `averting`; rescues alone must be
+    better by `margin` than what begins with measures. Raises ValueError for another travel, and for measures of
+    another number of targets, or of nodes.
     """
     search = _Search(problem, measures, most_labels, beam, beside)
-    return search.best(most)
+    return search.best(most, margin)
 
 
 class _Beginning(NamedTuple):
@@ -95,14 +97,16 @@ class _Search:
         self._problem, self._travel, self._measures = problem, travel, measures
         self._effort, self._beside = (most_labels, beam), beside
 
-    def best(self, most: int) -> Course:
-        """The best course that forward selection finds."""
+    def best(self, most: int, margin: float) -> Course:
+        """The best course that forward selection finds; rescues alone count less by `margin`."""
         ready = replace(self._problem, frame=self._problem.frame + self._delay(self._measures.in_hand))
         plan = solve(averting(ready, self._beside), *self._effort)
         self._plain = plan.value + kept(ready)
-        found = [Course(None, (), plan, self._plain, self._plain)]
-        found += [self._selected(root, found[0], most) for root in self._roots(plan)]
-        return max(found, key=lambda course: course.value)
+        alone = Course(None, (), plan, self._plain, self._plain)
+        least = alone._replace(value=self._plain - margin)
+        found = [least, *(self._selected(root, least, most) for root in self._roots(plan))]
+        best = max(found, key=lambda course: course.value)
+        return best if best.steps else alone
 
     def _selected(self, root: _Beginning, found: Course, most: int) -> Course:
         """The best course found by appending measures to `root`; `found` where none exceeds it."""

@@ -11,6 +11,7 @@ from hazard_ms.agents.greedy import Greedy
 from hazard_ms.agents.planner import Planner
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Result
+from hazard_ms.skills.failures import MAX_FRAMES
 from tests.worlds.playground import Playground, brief, play
 
 
@@ -179,3 +180,23 @@ def test_after_a_failed_pick_up_it_looks_and_walks_up_to_the_thing_before_the_ne
     taken = play(Planner(), ground, most=5)
     pick, walk = Action(PICK_UP, "a"), Action(WALK_TO, "a")
     assert taken == [Action(EXPLORE), pick, Action(EXPLORE), walk, pick]
+
+
+@pytest.mark.parametrize("late, first", [(20.0, "left"), (75.0, "right")])
+def test_in_a_home_it_does_not_turn_round_for_a_little(late: float, first: str) -> None:
+    """On its way it goes on, though the other thing is nearer now, unless that burns before it could be second."""
+    ground = Playground({"left": (-2.8, 0.0), "right": (2.8, 0.0)}, {"left": 5.2, "right": 5.0})
+    home = replace(brief(), several_rooms=True)
+    player, fresh = Planner(loyalty=0.0, fading=1.0), Planner(loyalty=0.0, fading=1.0)
+    player.reset(home)
+    ground.do(player.act(ground.decision()))
+    assert player.act(ground.decision()) == Action(WALK_TO, "left")
+    ground.places["right"] = (2.4, 0.0)
+    ground.look()
+    ground.remember(0, heated(ground.map.objects[0], 20.0, 20.0))
+    ground.remember(1, heated(ground.map.objects[1], 20.0, late))
+    cut_short = Action(WALK_TO, "left"), Result(False, MAX_FRAMES, 100)
+    now = replace(ground.decision(), frame=100, last_action=cut_short[0], last_result=cut_short[1])
+    assert player.act(now) == Action(WALK_TO, first)
+    fresh.reset(home)
+    assert fresh.act(now) == Action(WALK_TO, "right")

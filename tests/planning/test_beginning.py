@@ -55,6 +55,20 @@ def test_a_door_is_shut_first_where_that_saves_more_than_it_delays() -> None:
     assert late.steps == () and late.value == late.plain == course.plain
 
 
+def test_rescues_alone_must_be_better_by_the_margin() -> None:
+    """The door that comes too late is shut all the same where rescues alone are better by less than the margin."""
+    travel, ways = on_a_line([2.0, -2.0], [-1.0])
+    given = problem(travel, [10.0, 8.0], [300.0, 400.0])
+    late = Measures([Measure("shut", 301.0, [INF, INF])], **ways)
+    # one is rescued first, at 250, then the door is shut by 851: 10.0 + 5.0 is 0.4 less than rescues alone have
+    for margin, steps in ((0.3, 0), (0.5, 1)):
+        course = best_course(given, late, margin=margin)
+        assert len(course.steps) == steps
+        assert course.plain == pytest.approx(9.0 + 10.0 * 0.6 + 8.0 * 0.05)
+        assert course.value <= course.plain
+        assert steps or course.value == course.plain
+
+
 def test_what_was_damaged_before_the_measure_is_done_stays_damaged() -> None:
     """The door is shut at 150: it saves what burns at 150, not what burned at 149."""
     travel, ways = on_a_line([2.0, -2.0], [-1.0])

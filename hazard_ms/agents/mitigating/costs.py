@@ -2,7 +2,7 @@
 
 Measured with Fetch in house_test_1/00, 01 and 03 by `python -m hazard_ms.bench.mitigations`: an extinguisher put down
 66 to 112 frames; seats of fire 20 to 35 frames of jet for each flame that burns when the jet is opened. A door: 205
-frames beyond the way to it, the mean of 23 doors in eight homes of `train`; that command shuts one door of a home.
+frames beyond the way to it, the mean of 23 doors in eight homes of `train` (the same with `doors`).
 """
 
 from __future__ import annotations

@@ -130,7 +130,7 @@ def _patrols(
         action = Action(EXPLORE) if mark.name == HERE else Action(WALK_TO, mark.name)
         for fetch in able:
             uses = min(JET * flames, fetch.charge)
-            frames = skill_frames(brief.robot).explore + min(expected, 1.0) * (FACED + LONGER * uses)
+            frames = min(expected, 1.0) * (FACED + LONGER * uses)  # the look itself finds targets, too
             used = uses * expected
             made.append(Candidate(what, action, mark.place, ARRIVED, frames, nothing, *guards, fetch.name, used))
     return made

@@ -17,6 +17,7 @@ from scipy import ndimage
 
 from hazard_ms.agents.search.fire_watch import WARM, things_of, warm_floor
 from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
+from hazard_ms.agents.search.stands import in_sight
 from hazard_ms.planning.creeping_fire import CELL, STEP, Flames, Things, burning_from, found
 from hazard_ms.skills.decision import Decision
 
@@ -25,7 +26,9 @@ FARTHEST = 20  # cells that a fire creeps in 3,000 frames (docs/physics.md 1.1) 
 LIKELY, WHOLE = 0.05, 0.4  # chance from which a cell is part of a fire, and of all its cells that make one [ours]
 APART = 3  # cells between two fires [ours]
 FIRES_APART = 2.0  # distance between places that were put out from which they are of two fires [m] [ours]
-PUT_OUT = 1.2  # distance from where a thing was put out within which older warmth tells nothing [m] [ours]
+PUT_OUT = 1.2  # distance from where nothing burned within which older warmth tells nothing [m] [ours]
+# the same in sight of where a fire was put out: a fire warms most of its room, and no room begins with two [ours]
+ROOM = 3.5
 
 Array = NDArray[np.float64]
 
@@ -80,8 +83,7 @@ class HouseFire:
         warm = np.isfinite(levels) & (levels >= WARM)
         for out in self._out:
             points = decision.map.centre_of(*np.nonzero(warm))
-            old = (np.hypot(*(points - out.place).T) < PUT_OUT) & (decision.map.told_at[warm] <= out.frame)
-            warm[warm] = ~old
+            warm[warm] = ~(_around(decision, out, points) & (decision.map.told_at[warm] <= out.frame))
         indices, things = things_of(decision)
         burning = float((things.temperature >= 600.0).sum())
         seen = float(warm.sum()), float(levels[warm].sum()), float(len(indices)), burning
@@ -98,8 +100,8 @@ class HouseFire:
         temperature = things.temperature.copy()
         seen = np.array([decision.map.objects[index].frame for index in decision.map.objects], np.float64)
         for out in self._out:
-            near = np.hypot(*(things.base[:, :2] - out.place).T) < PUT_OUT
-            temperature[near & (seen <= out.frame)] = np.minimum(temperature, 100.0)[near & (seen <= out.frame)]
+            old = _around(decision, out, things.base[:, :2]) & (seen <= out.frame)
+            temperature[old] = np.minimum(temperature[old], 100.0)
         return replace(things, temperature=temperature, whole_at=seen)
 
     def _found(self, decision: Decision, levels: NDArray, warm: NDArray[np.bool_]) -> Flames | None:
@@ -156,3 +158,9 @@ class HouseFire:
         left = replace(flames, chance=chance)
         caught = burning_from(left, self._things, start, self._end, FUTURES, draws, self._plan.clear)
         return dict(zip(self._indices, np.median(caught - STEP, axis=0).tolist(), strict=True))
+
+
+def _around(decision: Decision, out: Out, points: Array) -> NDArray[np.bool_]:
+    """Which of the `points` [m], [P, 2], are of what is out: [P]."""
+    near = np.hypot(*(points - out.place).T) < PUT_OUT
+    return near | in_sight(decision.map, out.place, points, ROOM) if out.burned else near

@@ -7,6 +7,7 @@ the same order. Where two cells lead to a third one at costs that are equal to t
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -207,13 +208,14 @@ def straighten(cells: NDArray[np.int64], cost: NDArray[np.float64]) -> NDArray[n
 
     `cells` are those of the path, (y, x) [-], [P, 2]; the ones that are kept [-], [K, 2], begin and end it.
     """
-    steps = np.hypot(*np.diff(cells, axis=0).T) * (cost[tuple(cells[1:].T)] + cost[tuple(cells[:-1].T)]) / 2
+    along = cost[tuple(cells.T)]
+    steps = np.hypot(*np.diff(cells, axis=0).T) * (along[1:] + along[:-1]) / 2
     spent = np.concatenate([[0.0], np.cumsum(steps)])
     kept, at = [0], 0
     while at < len(cells) - 1:
-        ahead = len(cells) - 1
+        ahead, dearest = len(cells) - 1, np.maximum.accumulate(along[at:])
         while ahead > at + 1 and not _clear(
-            cells[at], cells[ahead], cost, cost[tuple(cells[at : ahead + 1].T)].max(), spent[ahead] - spent[at]
+            cells[at], cells[ahead], cost, dearest[ahead - at], spent[ahead] - spent[at]
         ):
             ahead -= 1
         kept.append(ahead)
@@ -223,7 +225,13 @@ def straighten(cells: NDArray[np.int64], cost: NDArray[np.float64]) -> NDArray[n
 
 def _clear(a: NDArray[np.int64], b: NDArray[np.int64], cost: NDArray[np.float64], dearest: float, most: float) -> bool:
     """Whether the line from `a` to `b` costs at most `most` and crosses no cell dearer than `dearest`."""
-    steps = int(np.abs(b - a).max()) * 2 + 1
-    line = np.rint(a + (b - a) * np.linspace(0.0, 1.0, steps)[:, None]).astype(int)
-    crossed = cost[tuple(line.T)]
-    return bool(crossed.max() <= dearest and crossed.mean() * np.hypot(*(b - a)) <= most * (1.0 + 1e-9))
+    y, x = (b - a).tolist()
+    line = np.rint(a + (b - a) * _shares(max(abs(y), abs(x)) * 2 + 1)).astype(int)
+    crossed = cost[line[:, 0], line[:, 1]]
+    return bool(crossed.max() <= dearest and crossed.mean() * np.hypot(y, x) <= most * (1.0 + 1e-9))
+
+
+@lru_cache(maxsize=1024)
+def _shares(count: int) -> NDArray[np.float64]:
+    """So many shares from 0 to 1, equally far apart: [C, 1]."""
+    return np.linspace(0.0, 1.0, count)[:, None]

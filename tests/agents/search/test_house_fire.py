@@ -71,3 +71,15 @@ def test_without_its_only_fire_nothing_burns_and_what_was_put_out_is_out_until_i
     assert fire.seats == ()
     fire.look(burning(seen_at=150, frame=150), 0)
     assert len(fire.seats) == 1
+
+
+def test_where_a_fire_was_put_out_the_warmth_of_its_room_is_old_but_not_that_of_others() -> None:
+    """A flame 2 m from a fire that was put out was warmth of that, unless a wall stands between, or nothing burned."""
+    put_out = {"same room": ((3.0, 0.0), True), "behind the wall": ((1.0, 2.0), True), "none": ((3.0, 0.0), False)}
+    left = {}
+    for name, (place, burned) in put_out.items():
+        fire = HouseFire(0)
+        fire.put_out(place, 100, burned)
+        fire.look(burning(frame=120), 0)
+        left[name] = len(fire.seats)
+    assert left == {"same room": 0, "behind the wall": 1, "none": 1}

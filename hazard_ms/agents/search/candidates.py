@@ -30,6 +30,7 @@ from hazard_ms.spec.extinguishers import EXTINGUISHERS
 EXTINGUISH, SHUT = "extinguish", "shut"
 HOT = 100.0  # level from which a thing can be named to the skill: boiling water [C]
 AROUND = 1.8  # distance from a thing within which the skill finds flames, less the error of where they are [m] [ours]
+PART_OF_FIRE = 0.3  # share of a fire's flames that is around what it can be named by [ours]
 JET = 15.0  # frames of the jet that a flame takes while they are few [measured: 13 to 14 for 4 and 5 flames]
 FACED, LONGER = 40.0, 1.5  # frames until the jet is open, and of a fire for each of the jet [ours]
 PIN = 60.0  # frames of pulling the pin, once [hazard_ms.skills.mitigations.extinguish: 2 s]
@@ -154,17 +155,17 @@ def _fetch(brief: Brief, decision: Decision, tool: Tool, ahead: Outlook) -> Cand
 
 
 def _named(decision: Decision, memory: Memory, seat: Seat, number: int) -> str | None:
-    """The thing by which a fire can be named, nearest to its flames: one that is hot, else any; None: none is near."""
-    best, name = (True, AROUND), None
+    """The thing by which a fire can be named: with most of its flames around it, rather a hot one; None where none is."""
+    best, name = (PART_OF_FIRE, False), None
     for index, seen in decision.map.objects.items():
         thing = decision.names[index]
         if len(seen.levels) <= number or thing == decision.held:
             continue
         if memory.failures.get(str(Action(EXTINGUISH, thing)), 0) >= TRIES:
             continue
-        away = float(np.hypot(*(seat.flames_at - seen.position[:2]).T).min())
-        if away < AROUND and (seen.levels[number] < HOT, away) < best:
-            best, name = (bool(seen.levels[number] < HOT), away), thing
+        around = round(memory.house.share_around(seat, seen.position[:2].astype(np.float64), AROUND), 1)
+        if (around, bool(seen.levels[number] >= HOT)) > best:
+            best, name = (around, bool(seen.levels[number] >= HOT)), thing
     return name
 
 

@@ -50,6 +50,7 @@ class Seat:
     seen: float  # frame of that
     cells: NDArray[np.bool_]  # of the window of all flames, [Y, X]
     flames_at: Array  # where there may be flames [m], [F, 2]
+    shares: Array  # of its flames that are expected at each of these, [F]
 
 
 class HouseFire:
@@ -131,8 +132,14 @@ class HouseFire:
             places = flames.corner + CELL * np.stack([x, y], -1)
             middle = (places * share[y, x, None]).sum(0) / share.sum()
             seen = float(flames.since[y, x].max())
-            made.append(Seat((float(middle[0]), float(middle[1])), float(share.sum()), seen, cells, places))
+            at = float(middle[0]), float(middle[1])
+            made.append(Seat(at, float(share.sum()), seen, cells, places, share[y, x] / share.sum()))
         return tuple(made)
+
+    def share_around(self, seat: Seat, place: Array, far: float) -> float:
+        """The share of the flames of a `seat` within `far` [m] of a `place` [m], [2], with no wall between."""
+        near = np.hypot(*(seat.flames_at - place).T) < far
+        return float(seat.shares[near][self._plan.clear(seat.flames_at[near], place[None])[:, 0]].sum())
 
     def whole_until(self, without: Sequence[int] = ()) -> dict[int, float]:
         """The frame until which each known thing stays whole in half of the futures, by index; inf for all along.

@@ -59,9 +59,11 @@ class Mitigator:
         if not result.ok and result.reason != NOT_BURNING:
             return
         seen = decision.map.objects.get(decision.index(last.target))
-        for place in (self._aim, None if seen is None else seen.position[:2].tolist()):
-            if place is not None:
-                self._memory.house.put_out((place[0], place[1]), decision.frame, result.ok and place is self._aim)
+        if result.ok and self._aim is not None:
+            self._memory.house.put_out(self._aim, decision.frame, True)
+        if seen is not None:  # where nothing burned around a thing the fire may still be, but not there
+            x, y, _ = seen.position.tolist()
+            self._memory.house.put_out((x, y), decision.frame, False)
         self._begun = None
 
     def action(self, decision: Decision, ahead: Outlook) -> Action | None:

@@ -17,7 +17,7 @@ from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision, Result, Tool
-from hazard_ms.skills.failures import MAX_FRAMES, NO_PATH
+from hazard_ms.skills.failures import MAX_FRAMES, NO_PATH, NOT_BURNING
 from tests.agents.search.test_floor_plan import DOOR, two_rooms
 from tests.agents.search.test_house_water import SLOPE, WEST
 from tests.worlds.playground import brief
@@ -191,6 +191,26 @@ def test_a_fire_by_which_nothing_is_hot_yet_is_named_by_what_is_near() -> None:
     held = on_fire(decision(take, NAMES[1], 130), ((3.2, 0.0),))
     assert max(seen.levels[0] for seen in held.map.objects.values()) < 100.0
     assert player.act(held).verb == "extinguish"
+
+
+def test_a_fire_is_not_named_by_what_is_hot_behind_a_wall() -> None:
+    """The jet is for flames in sight of the thing that is named: so by the box beside them, not by the hot book."""
+    player, take = begun("planner", home()), (Action(PICK_UP, NAMES[1]), Result(True, frames=50))
+    held = on_fire(decision(take, NAMES[1], 130), ((3.2, 0.0),))
+    book = replace(held.map.objects[3], position=np.array([1.5, 0.0, 0.05], np.float32), levels=(150.0,))
+    held.map.objects = {**held.map.objects, 3: book}
+    assert player.act(held) == Action("extinguish", "box_1")
+
+
+def test_what_did_not_burn_there_may_burn_beside_it() -> None:
+    """Where nothing burned around a thing the fire is not given up: it may be a little farther off."""
+    player, take = begun("planner", home()), (Action(PICK_UP, NAMES[1]), Result(True, frames=50))
+    held = on_fire(decision(take, NAMES[1], 130), ((3.2, 0.0),))
+    first = player.act(held)
+    refused = on_fire(decision((first, Result(False, NOT_BURNING)), NAMES[1], 130), ((3.2, 0.0),))
+    refused.map.told_at[:] = 100
+    again = player.act(refused)
+    assert first.verb == again.verb == "extinguish" and len(player._memory.house.seats) == 1  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize("task", ["HazardHouseFire-v1", "HazardHouseFlood-v1"])

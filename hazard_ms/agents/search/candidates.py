@@ -155,7 +155,7 @@ def _fetch(brief: Brief, decision: Decision, tool: Tool, ahead: Outlook) -> Cand
 
 
 def _named(decision: Decision, memory: Memory, seat: Seat, number: int) -> str | None:
-    """The thing by which a fire can be named: with most of its flames around it, rather a hot one; None where none is."""
+    """The thing by which a fire can be named: with most of its flames around it, if possible a hot one; None for none."""
     best, name = (PART_OF_FIRE, False), None
     for index, seen in decision.map.objects.items():
         thing = decision.names[index]

@@ -30,6 +30,7 @@ from hazard_ms.spec.extinguishers import EXTINGUISHERS
 EXTINGUISH, SHUT = "extinguish", "shut"
 HOT = 100.0  # level from which a thing can be named to the skill: boiling water [C]
 AROUND = 1.8  # distance from a thing within which the skill finds flames, less the error of where they are [m] [ours]
+SEEN_FROM = 3.5  # distance up to which things beside a fire come into sight [m] [ours]: a room
 PART_OF_FIRE = 0.3  # share of a fire's flames that is around what it can be named by [ours]
 JET = 15.0  # frames of the jet that a flame takes while they are few [measured: 13 to 14 for 4 and 5 flames]
 FACED, LONGER = 40.0, 1.5  # frames until the jet is open, and of a fire for each of the jet [ours]
@@ -96,15 +97,16 @@ def _fires(
     made: list[Candidate] = []
     for k, seat in enumerate(memory.house.seats if fetches else ()):
         name = _named(decision, memory, seat, number)
-        if name is None:
+        action = _nearer(decision, memory, seat) if name is None else Action(EXTINGUISH, name)
+        if action is None:
             continue
         spares = _whole(brief, decision, memory.house, ahead, without=(k,))
         flames = max(seat.flames, 1.0) * 2.0 ** ((decision.frame - seat.seen) / DOUBLING)
         for fetch in fetches:
-            uses, action = min(JET * flames, fetch.charge), Action(EXTINGUISH, name)
+            uses = min(JET * flames, fetch.charge)
             if JET * flames > LARGE * fetch.charge:
                 continue  # far more than it can put out
-            what = f"put out the fire at {name}"
+            what = f"put out the fire at {action.target}"
             guards = f"fire {k}", UNSEEN_SHARE * ahead.unseen, BURNT_BY
             frames = FACED + LONGER * uses
             made.append(Candidate(what, action, seat.place, JET_WAY, frames, spares, *guards, fetch.name, uses))
@@ -155,7 +157,7 @@ def _fetch(brief: Brief, decision: Decision, tool: Tool, ahead: Outlook) -> Cand
 
 
 def _named(decision: Decision, memory: Memory, seat: Seat, number: int) -> str | None:
-    """The thing by which a fire can be named: with most of its flames around it, if possible a hot one; None for none."""
+    """The thing to name for putting out a fire: with most of its flames around it, if possible a hot one; else None."""
     best, name = (PART_OF_FIRE, False), None
     for index, seen in decision.map.objects.items():
         thing = decision.names[index]
@@ -167,6 +169,16 @@ def _named(decision: Decision, memory: Memory, seat: Seat, number: int) -> str |
         if (around, bool(seen.levels[number] >= HOT)) > best:
             best, name = (around, bool(seen.levels[number] >= HOT)), thing
     return name
+
+
+def _nearer(decision: Decision, memory: Memory, seat: Seat) -> Action | None:
+    """A walk to what is nearest to a fire that nothing can be named for yet, to look around; None where nothing is."""
+    things = {decision.names[index]: seen.position for index, seen in decision.map.objects.items()}
+    things |= {o.name: np.array(o.position) for o in decision.openings if o.kind != "window"}
+    things.pop(str(decision.held), None)
+    left = [name for name in things if not memory.visits.get(name) and memory.failures.get(name, 0) < TRIES]
+    ways = [float(np.hypot(*(things[name][:2] - seat.place))) for name in left]
+    return Action(WALK_TO, left[int(np.argmin(ways))]) if ways and min(ways) < SEEN_FROM else None
 
 
 def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, number: int) -> list[Candidate]:

@@ -194,12 +194,14 @@ def test_a_fire_by_which_nothing_is_hot_yet_is_named_by_what_is_near() -> None:
 
 
 def test_a_fire_is_not_named_by_what_is_hot_behind_a_wall() -> None:
-    """The jet is for flames in sight of the thing that is named: so by the box beside them, not by the hot book."""
+    """The jet is for flames in sight of the thing that is named: so by the book beside them, not by the hot one."""
     player, take = begun("planner", home()), (Action(PICK_UP, NAMES[1]), Result(True, frames=50))
-    held = on_fire(decision(take, NAMES[1], 130), ((3.2, 0.0),))
-    book = replace(held.map.objects[3], position=np.array([1.5, 0.0, 0.05], np.float32), levels=(150.0,))
-    held.map.objects = {**held.map.objects, 3: book}
-    assert player.act(held) == Action("extinguish", "box_1")
+    held = on_fire(decision(take, NAMES[1], 130), ((3.2, -1.5),))
+    rows = held.map.objects
+    hot = replace(rows[3], position=np.array([1.7, -1.5, 0.05], np.float32), levels=(150.0,))
+    beside = replace(rows[4], position=np.array([4.7, -1.5, 0.05], np.float32))
+    held.map.objects = {**rows, 3: hot, 4: beside}
+    assert player.act(held) == Action("extinguish", "book_3")
 
 
 def test_what_did_not_burn_there_may_burn_beside_it() -> None:
@@ -211,6 +213,29 @@ def test_what_did_not_burn_there_may_burn_beside_it() -> None:
     refused.map.told_at[:] = 100
     again = player.act(refused)
     assert first.verb == again.verb == "extinguish" and len(player._memory.house.seats) == 1  # type: ignore[attr-defined]
+
+
+def test_it_goes_nearer_to_a_fire_that_nothing_is_known_beside_and_looks_around() -> None:
+    """A flame in the corner of the room, 1.84 m from anything known: the walk is to the nearest thing."""
+    player, take = begun("planner", home()), (Action(PICK_UP, NAMES[1]), Result(True, frames=50))
+    flame = ((5.7, -2.7),)
+    held = on_fire(decision(take, NAMES[1], 130), flame)
+    went = player.act(held)
+    nearest = min(range(len(NAMES)), key=lambda k: np.hypot(*np.subtract(PLACES[k], flame[0])))
+    assert went == Action(WALK_TO, NAMES[nearest]) and "put out the fire at" in str(player.note)
+    there = on_fire(decision((went, Result(True, frames=50)), NAMES[1], 180), flame)
+    assert player.act(there) == Action(EXPLORE)
+
+
+def test_a_look_that_was_begun_is_gone_on_with(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On its way to one place it does not turn round to another one that promises a little more for its distance."""
+    marks = [Lookout("box_1", (4.2, 1.0), 0.1), Lookout("book_1", (5.0, 1.0), 0.1)]
+    monkeypatch.setattr(candidates, "fire_lookouts", lambda *told: tuple(marks))
+    player, take = begun("planner", home()), (Action(PICK_UP, NAMES[1]), Result(True, frames=50))
+    went = player.act(decision(take, NAMES[1], 130))
+    marks.reverse()
+    assert went == Action(WALK_TO, "box_1")
+    assert player.act(decision((went, Result(False, MAX_FRAMES, 100)), NAMES[1], 230)) == went
 
 
 @pytest.mark.parametrize("task", ["HazardHouseFire-v1", "HazardHouseFlood-v1"])

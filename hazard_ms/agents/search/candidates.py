@@ -33,7 +33,10 @@ AROUND = 1.8  # distance from a thing within which the skill finds flames, less 
 SEEN_FROM = 3.5  # distance up to which things beside a fire come into sight [m] [ours]: a room
 PART_OF_FIRE = 0.3  # share of a fire's flames that is around what it can be named by [ours]
 JET = 15.0  # frames of the jet that a flame takes while they are few [measured: 13 to 14 for 4 and 5 flames]
-FACED, LONGER = 40.0, 1.5  # frames until the jet is open, and of a fire for each of the jet [ours]
+FACED, LONGER = 40.0, 1.5  # frames until the jet is open, and of a young fire for each of the jet [ours]
+# flames of a fire that takes twice as long as the jet: it grows, and is walked around [measured in homes 8 to 11 of
+# `train`: 35 to 50 frames for 4 flames, 72, 102 and 128 for 11, 6 and 12, over 450 and 750 for 11 and 15]
+TWICE_AS_LONG = 10.0
 PIN = 60.0  # frames of pulling the pin, once [hazard_ms.skills.mitigations.extinguish: 2 s]
 DOUBLING = 280.0  # frames in which flames become twice as many: 41 after 1,500 frames [measured]
 SHUTTING = 200.0  # frames of shutting a door from before it [ours]
@@ -94,21 +97,22 @@ def _fires(
 ) -> list[Candidate]:
     fetches = [_fetch(brief, decision, tool, ahead) for tool in decision.tools if _usable(decision, tool, put_down)]
     fetches = [one for one in fetches if memory.failures.get(str(one.action.target), 0) < TRIES]
-    made: list[Candidate] = []
+    made, grown = list[Candidate](), 2.0 ** (decision.frame / DOUBLING)
     for k, seat in enumerate(memory.house.seats if fetches else ()):
         name = _named(decision, memory, seat, number)
         action = _nearer(decision, memory, seat) if name is None else Action(EXTINGUISH, name)
         if action is None:
             continue
         spares = _whole(brief, decision, memory.house, ahead, without=(k,))
-        flames = max(seat.flames, 1.0) * 2.0 ** ((decision.frame - seat.seen) / DOUBLING)
+        seen = max(seat.flames, 1.0) * 2.0 ** ((decision.frame - seat.seen) / DOUBLING)
+        flames = float(np.sqrt(seen * max(seen, grown)))  # a map shows a part of a fire
         for fetch in fetches:
             uses = min(JET * flames, fetch.charge)
             if JET * flames > LARGE * fetch.charge:
                 continue  # far more than it can put out
             what = f"put out the fire at {action.target}"
             guards = f"fire {k}", UNSEEN_SHARE * ahead.unseen, BURNT_BY
-            frames = FACED + LONGER * uses
+            frames = FACED + uses * (1.0 + flames / TWICE_AS_LONG)
             made.append(Candidate(what, action, seat.place, JET_WAY, frames, spares, *guards, fetch.name, uses))
     return [*fetches, *made, *_patrols(brief, decision, memory, ahead, fetches)]
 

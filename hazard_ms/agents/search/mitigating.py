@@ -34,7 +34,7 @@ MOST_LABELS, BEAM = 400, 20  # of the search for the rescues after measures [our
 PUT_DOWN = 80.0  # frames of putting down a tool [measured: 66 to 112]
 # share of the value of targets by which rescues alone must be better for a charged tool to be put down: it is often
 # wanted again a little later, which takes 250 frames [ours]
-HOLDS_ON = 0.03
+HOLDS_ON = 0.01
 SAME_PLACE = 1.5  # distance within which a fire, or a door, is the one that was there [m] [ours]
 
 

@@ -104,7 +104,8 @@ class Mitigator:
         end = next(step for step in steps if step.charge == 0.0)
         if end.action.verb in LOOKS:  # looks are listed by what they show for their distance: the best one first
             looks = [one for one in found if one.action.verb in LOOKS and one.tool == end.tool]
-            looks = [one for one in looks if self._begun and one.action == self._begun.action] or looks
+            if looks[0].action.verb != EXPLORE:  # what takes no walk is never on another way
+                looks = [one for one in looks if self._begun and one.action == self._begun.action] or looks
             steps = [looks[0] if step is end else step for step in steps]
             end = looks[0]
         self._begun = end

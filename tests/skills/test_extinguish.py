@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ import torch
 from hazard_ms.hazards.fire.fire_state import BURNING
 from hazard_ms.skills import failures
 from hazard_ms.skills.decision import Action
-from hazard_ms.skills.mitigations.extinguish import charge, hot_things
+from hazard_ms.skills.mitigations.extinguish import _covered, charge, hot_things
 from hazard_ms.skills.mitigations.offers import offered, tools
 from hazard_ms.spec import AgentStart, Body, Opening
 from hazard_ms.spec.extinguishers import EXTINGUISHERS
@@ -197,3 +198,32 @@ def test_a_tool_that_is_let_go_over_the_bag_is_not_rescued() -> None:
             rooms.base.advance(rooms.stage.act(shut=False))
         b = rooms.index("powder_0")
         assert rooms.stage.held == -1 and not bool(rooms.world.safe[0, b] | rooms.world.away[0, b])
+
+
+def test_flames_in_sight_come_before_those_that_it_must_walk_to() -> None:
+    """Two boxes burn in the next room: the nearer one is hidden, and the jet gets to the other through the door."""
+    boxes = (box((4.6, 2.0, 0.0)), box((4.0, 0.9, 0.0), "box_1"))
+    opened = replace(DOOR, open=1.0)
+    with two_rooms(spec(door=opened, start=START, bodies=(bottle_of("powder_0", 3.3), *boxes))) as rooms:
+        armed(rooms)
+        ignite(rooms, "box_1")
+        start, begun, advance = np.array(rooms.stage.robot.base()[:2]), list[float](), rooms.base.advance
+
+        def advanced(low_level: Any) -> Any:
+            if not begun and bool(rooms.world.jet.flowing[0]):
+                begun.append(float(np.hypot(*(np.array(rooms.stage.robot.base()[:2]) - start))))
+            return advance(low_level)
+
+        rooms.base.advance = advanced
+        assert acted(rooms, PUT_OUT).ok
+        del rooms.base.advance
+        assert begun[0] < 0.1 and not burns(rooms) and not burns(rooms, "box_1")
+
+
+def test_it_aims_where_most_flames_are_in_the_jet() -> None:
+    """Of three flames in a line across the jet it is the middle one."""
+    with two_rooms(scene()) as rooms:
+        armed(rooms)
+        nozzle, row = np.array([0.0, 0.0, 0.8]), [np.array([3.0, y, 0.0]) for y in (-0.3, 0.0, 0.3)]
+        covered = [_covered(rooms.stage, nozzle, flame, [*row, np.array([9.0, 0.0, -0.8])]) for flame in row]
+        assert covered == [2, 3, 2]  # 0.3 m in 3.1 m are 0.097 of the 0.12 rad of powder; 9 m are beyond its reach

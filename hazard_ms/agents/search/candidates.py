@@ -33,10 +33,7 @@ AROUND = 1.8  # distance from a thing within which the skill finds flames, less 
 SEEN_FROM = 3.5  # distance up to which things beside a fire come into sight [m] [ours]: a room
 PART_OF_FIRE = 0.3  # share of a fire's flames that is around what it can be named by [ours]
 JET = 15.0  # frames of the jet that a flame takes while they are few [measured: 13 to 14 for 4 and 5 flames]
-FACED, LONGER = 40.0, 1.5  # frames until the jet is open, and of a young fire for each of the jet [ours]
-# flames of a fire that takes twice as long as the jet: it grows, and is walked around [measured in homes 8 to 11 of
-# `train`: 35 to 50 frames for 4 flames, 72, 102 and 128 for 11, 6 and 12, over 450 and 750 for 11 and 15]
-TWICE_AS_LONG = 10.0
+FACED, LONGER = 40.0, 1.5  # frames until the jet is open, and of a fire for each of the jet [ours]
 PIN = 60.0  # frames of pulling the pin, once [hazard_ms.skills.mitigations.extinguish: 2 s]
 DOUBLING = 280.0  # frames in which flames become twice as many: 41 after 1,500 frames [measured]
 SHUTTING = 200.0  # frames of shutting a door from before it [ours]
@@ -76,6 +73,7 @@ class Candidate:
     uses: float = 0.0  # frames of the tool's charge
     charge: float = 0.0  # frames that the tool lasts that it fetches
     stays: Sequence[float] | None = None  # frame until which each known target stays where it is then; None: as it is
+    stand: tuple[float, float] | None = None  # from which it is done, where that is known [m]
     closes: tuple[int, ...] = ()  # known targets that cannot be fetched any more
 
 
@@ -104,6 +102,7 @@ def _fires(
         if action is None:
             continue
         spares = _whole(brief, decision, memory.house, ahead, without=(k,))
+        stand = memory.house.stand(seat, decision.agent_position, JET_WAY)
         seen = max(seat.flames, 1.0) * 2.0 ** ((decision.frame - seat.seen) / DOUBLING)
         flames = float(np.sqrt(seen * max(seen, grown)))  # a map shows a part of a fire
         for fetch in fetches:
@@ -112,8 +111,10 @@ def _fires(
                 continue  # far more than it can put out
             what = f"put out the fire at {action.target}"
             guards = f"fire {k}", UNSEEN_SHARE * ahead.unseen, BURNT_BY
-            frames = FACED + uses * (1.0 + flames / TWICE_AS_LONG)
-            made.append(Candidate(what, action, seat.place, JET_WAY, frames, spares, *guards, fetch.name, uses))
+            frames = FACED + LONGER * uses
+            made.append(
+                Candidate(what, action, seat.place, JET_WAY, frames, spares, *guards, fetch.name, uses, stand=stand)
+            )
     return [*fetches, *made, *_patrols(brief, decision, memory, ahead, fetches)]
 
 

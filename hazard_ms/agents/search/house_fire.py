@@ -29,6 +29,7 @@ FIRES_APART = 2.0  # distance between places that were put out from which they a
 PUT_OUT = 1.2  # distance from where nothing burned within which older warmth tells nothing [m] [ours]
 # the same in sight of where a fire was put out: a fire warms most of its room, and no room begins with two [ours]
 ROOM = 3.5
+GRID = 0.2  # between the places from which a fire may be fought [m] [ours]
 
 Array = NDArray[np.float64]
 
@@ -63,6 +64,7 @@ class HouseFire:
         self._out: tuple[Out, ...] = ()
         self._known: dict[tuple[int, ...], dict[int, float]] = {}
         self._flames: Flames | None = None
+        self._ways: dict[tuple[float, float], Array] = {}
         self.seats: tuple[Seat, ...] = ()
 
     def put_out(self, place: tuple[float, float], frame: int, burned: bool = True) -> None:
@@ -92,6 +94,7 @@ class HouseFire:
             return
         self._seen, self._known = seen, {}
         self._indices, self._things = indices, self._cooled(decision, things)
+        self._ways = {}
         self._plan, self._end = FloorPlan(decision.map, shut_doors(decision.openings)), decision.max_frames
         self._flames = self._found(decision, levels, warm)
         self.seats = self._seats()
@@ -140,6 +143,20 @@ class HouseFire:
         """The share of the flames of a `seat` within `far` [m] of a `place` [m], [2], with no wall between."""
         near = np.hypot(*(seat.flames_at - place).T) < far
         return float(seat.shares[near][self._plan.clear(seat.flames_at[near], place[None])[:, 0]].sum())
+
+    def stand(self, seat: Seat, here: tuple[float, float], far: float) -> tuple[float, float] | None:
+        """The place [m] with the shortest way past walls from `here` [m] from which a `seat` is in sight.
+
+        It is within `far` [m] of the seat; None where there is none on the floor that was seen.
+        """
+        if here not in self._ways:
+            self._ways = {here: self._plan.ways_from(here)}
+        y, x = np.mgrid[-far : far + GRID : GRID, -far : far + GRID : GRID]
+        points = np.array(seat.place) + np.stack([x, y], -1)[np.hypot(x, y) <= far]
+        lengths = self._plan.at(self._ways[here], points)
+        lengths[~self._plan.clear(points, np.array([seat.place]))[:, 0]] = np.inf
+        best = int(np.argmin(lengths))
+        return (float(points[best, 0]), float(points[best, 1])) if np.isfinite(lengths[best]) else None
 
     def whole_until(self, without: Sequence[int] = ()) -> dict[int, float]:
         """The frame until which each known thing stays whole in half of the futures, by index; inf for all along.

@@ -35,6 +35,7 @@ PUT_DOWN = 80.0  # frames of putting down a tool [measured: 66 to 112]
 # share of the value of targets by which rescues alone must be better for a charged tool to be put down: it is often
 # wanted again a little later, which takes 250 frames [ours]
 HOLDS_ON = 0.01
+ENOUGH = 0.3  # distance from where a fire is fought at which a walk there ends [hazard_ms.skills.mitigations.views]
 SAME_PLACE = 1.5  # distance within which a fire, or a door, is the one that was there [m] [ours]
 
 
@@ -221,8 +222,8 @@ def _measures(
     frames = frames_between(
         decision.map,
         decision.agent_position,
-        np.array([*places, *(one.place for one in found)], np.float64).reshape(-1, 2),
-        np.array([*near, *(one.near for one in found)], np.float64),
+        np.array([*places, *(one.stand or one.place for one in found)], np.float64).reshape(-1, 2),
+        np.array([*near, *(ENOUGH if one.stand else one.near for one in found)], np.float64),
         radius,
     )
     first, start = goals, goals + len(found)

@@ -1,7 +1,8 @@
 """The skill `extinguish`: the jet of the extinguisher in the hand, aimed at what burns of a thing and around it.
 
-The robot walks to the nearest place from which the jet gets to the flames past all walls (views.py), and aims at the
-flame nearest to it until none is left within AROUND of the thing, on its side of walls. What the jet does there is for
+The robot aims at the flames that the jet gets to from where it stands, where most are in it first, until none is left
+within AROUND of the thing, on its side of walls. Where it gets to none, the robot walks towards the nearest place with
+a view of the nearest flame (views.py), until it gets to any. What the jet does there is for
 the fire to say (hazard_ms.hazards.fire.dousing, .realistic.extinguishing). The pin is pulled once, before the first
 discharge. Limits: it starts to discharge at once when it aims; the hand stays where it carries; things do not shade
 each other.
@@ -9,7 +10,8 @@ each other.
 
 from __future__ import annotations
 
-from typing import Protocol, cast
+from collections.abc import Generator, Sequence
+from typing import Any, Protocol, cast
 
 import numpy as np
 import torch
@@ -26,6 +28,7 @@ from hazard_ms.skills.motor.motion import turn_to, turned, wrap
 from hazard_ms.skills.motor.walking import known
 from hazard_ms.spec.extinguishers import EXTINGUISHERS
 
+Array = NDArray[np.float64]
 AROUND = 2.0  # of the thing, within which flames on the floor are put out with it [m] [ours]
 SHARES = (0.75, 0.5, 0.3)  # of the jet's reach: distances from which it is tried [ours]
 WITHIN = 0.95  # share of the reach from which the jet is opened [ours]
@@ -85,8 +88,7 @@ def extinguish(stage: Stage, name: str) -> Skill:
         return Result(False, failures.UNKNOWN)
     used, given_up, fought = 0, False, False
     while True:
-        aim = _nearest_flame(stage, index)
-        if aim is None:
+        if not len(_flames(stage, index)):
             return Result(True, frames=used) if fought else Result(False, failures.NOT_BURNING, used)
         if used >= FRAMES:
             return Result(False, failures.MAX_FRAMES, used)
@@ -94,10 +96,12 @@ def extinguish(stage: Stage, name: str) -> Skill:
             return Result(False, failures.EMPTY, used)
         if given_up:
             return Result(False, failures.STILL_BURNING, used)
-        came = yield from _into_range(stage, aim, FRAMES - used)
+        came, aim = yield from _into_range(stage, index, FRAMES - used)
         used += came.frames
         if not came.ok:
             return Result(False, came.reason, used)
+        if aim is None:
+            continue  # it has burnt out on the way
         if not fought and _pinned(stage):
             for _ in range(round(PIN_TIME / stage.env.control_timestep)):
                 yield stage.act()
@@ -108,12 +112,10 @@ def extinguish(stage: Stage, name: str) -> Skill:
         given_up = not sprayed.ok and sprayed.reason == failures.STILL_BURNING
 
 
-def _nearest_flame(stage: Stage, index: int) -> NDArray[np.float64] | None:
-    """The place [m], [3], of what burns at the thing `index` or around it, nearest to the hand; None for nothing."""
+def _by_distance(stage: Stage, index: int) -> list[Array]:
+    """The places [m], [3], of what burns at the thing `index` or around it, those nearest to the hand first."""
     burning = _flames(stage, index)
-    if not len(burning):
-        return None
-    return np.asarray(burning[int(np.linalg.norm(burning - stage.robot.hand(), axis=1).argmin())])
+    return list(burning[np.argsort(np.linalg.norm(burning - stage.robot.hand(), axis=1), kind="stable")])
 
 
 def _flames(stage: Stage, index: int) -> NDArray[np.float64]:
@@ -144,35 +146,63 @@ def _too_hot(stage: Stage) -> bool:
     return bool(_episode(stage).forbidden(place)[0, 0])
 
 
-def _into_range(stage: Stage, aim: NDArray[np.float64], frames: int) -> Skill:
-    """Walk to the nearest place from which the jet gets to `aim`, [3] [m], and turn to it, in at most `frames`."""
-    used, tried = 0, set[Place]()
+def _into_range(stage: Stage, index: int, frames: int) -> Generator[Any, Any, tuple[Result, Array | None]]:
+    """Get into range of a flame around the thing `index`, and turn to it, in at most `frames`: its place [m], [3].
+
+    None where nothing burns there any more.
+    """
+    used, tried, missed = 0, set[Place](), list[Array]()
     reach = EXTINGUISHERS[extinguisher_in_hand(stage)].reach
 
-    def stop() -> bool:
-        """Whether the jet gets there once the robot has turned."""
-        here, carried = np.array([stage.robot.base()[:2]]), _carried(stage)
-        near = float(np.linalg.norm(facing(here, aim, carried)[0] - aim)) <= WITHIN * reach
-        return near and bool(sees(stage, here, aim, carried)[0]) or _too_hot(stage)
+    def ready() -> Array | None:
+        """The flame to aim at from here once it has turned: with the most others in the jet, then the nearest."""
+        here, carried, burning = np.array([stage.robot.base()[:2]]), _carried(stage), _by_distance(stage, index)
+        nozzles = [facing(here, flame, carried)[0] for flame in burning]
+        rows = [
+            (nozzle, flame)
+            for nozzle, flame in zip(nozzles, burning, strict=True)
+            if float(np.linalg.norm(nozzle - flame)) <= WITHIN * reach
+            and not any(np.abs(flame - other).max() < SAME for other in missed)
+            and bool(sees(stage, here, flame, carried)[0])
+        ]
+        return max(rows, key=lambda row: _covered(stage, *row, burning))[1] if rows else None
 
-    while not _in_sight(stage, aim):
+    while burning := _by_distance(stage, index):
         if _too_hot(stage):
-            return Result(False, failures.TOO_HOT, used)
-        if tried or not stop():
-            stand = nearest_view(stage, aim, [share * reach for share in SHARES], _carried(stage), tried)
-            if stand is None:
-                return Result(False, failures.NO_LINE_OF_SIGHT, used)
-            tried.add(stand)
-            walked = yield from approach(stage, np.array(stand), CLOSE, ENOUGH, stop, frames - used)
-            used += walked.frames
-            if walked.reason == failures.MAX_FRAMES:
-                return Result(False, walked.reason, used)
-        facing_it = yield from turn_to(stage, aim, max(0, frames - used))
-        used += facing_it.frames
-        if not facing_it.ok:
-            return Result(False, facing_it.reason, used)
-        tried.add(stage.robot.base()[:2])
-    return Result(True, frames=used)
+            return Result(False, failures.TOO_HOT, used), None
+        aim = ready()
+        if aim is not None and _in_sight(stage, aim):
+            return Result(True, frames=used), aim
+        if aim is not None:
+            faced = yield from turn_to(stage, aim, max(0, frames - used))
+            used += faced.frames
+            if not faced.ok:
+                return Result(False, faced.reason, used), None
+            if not _in_sight(stage, aim):
+                missed.append(aim)
+            continue
+        stand = nearest_view(stage, burning[0], [share * reach for share in SHARES], _carried(stage), tried)
+        if stand is None:
+            return Result(False, failures.NO_LINE_OF_SIGHT, used), None
+        tried.add(stand)
+        missed.clear()
+
+        def arrived() -> bool:
+            return ready() is not None or _too_hot(stage)
+
+        walked = yield from approach(stage, np.array(stand), CLOSE, ENOUGH, arrived, frames - used)
+        used += walked.frames
+        if walked.reason == failures.MAX_FRAMES:
+            return Result(False, walked.reason, used), None
+    return Result(True, frames=used), None
+
+
+def _covered(stage: Stage, nozzle: Array, aim: Array, burning: Sequence[Array]) -> int:
+    """The number of flames `burning` [m], [3] each, in the jet from a `nozzle` [m], [3], to `aim` [m], [3]."""
+    kind = EXTINGUISHERS[extinguisher_in_hand(stage)]
+    ways, along = np.stack(burning) - nozzle, (aim - nozzle) / np.linalg.norm(aim - nozzle)
+    lengths = np.linalg.norm(ways, axis=1)
+    return int(((ways @ along >= np.cos(kind.angle) * lengths) & (lengths <= kind.reach)).sum())
 
 
 def _spray(stage: Stage, index: int, aim: NDArray[np.float64]) -> Skill:

@@ -83,3 +83,14 @@ def test_where_a_fire_was_put_out_the_warmth_of_its_room_is_old_but_not_that_of_
         fire.look(burning(frame=120), 0)
         left[name] = len(fire.seats)
     assert left == {"same room": 0, "behind the wall": 1, "none": 1}
+
+
+def test_a_fire_is_fought_from_where_it_is_in_sight() -> None:
+    """From the western room the way leads to the doorway, not to the wall, from which it is nearer to the flame."""
+    fire, free = HouseFire(0), HouseFire(0)
+    fire.look(burning(), 0)
+    free.look(burning(wall=False), 0)
+    behind, beside = (h.stand(h.seats[0], (0.5, 2.0), 2.5) for h in (fire, free))
+    assert behind is not None and beside is not None
+    assert beside[0] < 1.0 and abs(beside[1] - 2.0) < 0.5
+    assert behind[0] > 1.9 and np.hypot(behind[0] - FLAME[0], behind[1] - FLAME[1]) <= 2.5

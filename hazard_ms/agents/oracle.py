@@ -39,6 +39,7 @@ CART_FAILURES = 3  # after which a cart is no longer used [ours]
 FADING = 2e-4  # share of a target's value that is at risk in each frame until it is safe: skills fail [ours]
 MOVED = 0.2  # a thing that will be met farther than this from where it is now is moving [m] [ours]
 LOYALTY = 20.0  # frames that it deducts for the target that it is on its way to, so that it does not waver [ours]
+LOYALTY_ADRIFT = 200.0  # the same in floods of homes, where what drifts past bars ways for a while [ours]
 ROUNDS = 2  # number of times that it tries again what it had given up [ours]
 MOST_LABELS = 20_000  # of the exact search: rarely needed [ours]
 BEAM = 2_000  # labels of a layer beyond that [ours]
@@ -72,8 +73,8 @@ class Oracle(PrivilegedAgent):
         gale = hazard_of(base)
         self._gale = None if gale is None else GaleTruth(base, gale, self._scene, self._mitigates)
         self._truth.furniture = gale is not None
-        fights = self._mitigates and brief.mitigations and not pushes(base.task.hazards)
-        self._mitigator = Mitigator(self._truth, brief) if fights else None
+        self._loyalty = LOYALTY_ADRIFT if brief.several_rooms and pushes(base.task.hazards) else LOYALTY
+        self._mitigator = Mitigator(self._truth, brief) if self._mitigates and brief.mitigations and not gale else None
         self._enclosure, self._repeats = Enclosure(), Repeats(bool(brief.mitigations))
 
     def act(self, decision: Decision) -> Action:
@@ -146,7 +147,7 @@ class Oracle(PrivilegedAgent):
             np.array(self._usable(decision, truth), np.int64),
             Outset(here, decision.agent_heading, decision.frame, held),
             truth.detours(decision, self._scene, [t.index for t in targets])
-            - [LOYALTY * (t.name == self._goal) for t in targets],
+            - [self._loyalty * (t.name == self._goal) for t in targets],
             FADING,
             SPREAD,
         )

@@ -162,8 +162,7 @@ class _Search:
         gone = self._measures.in_hand == number or any(step.measure == number for step in now.steps)
         if gone or (measure.needs is not None and measure.uses > now.charge):
             return None
-        way = self._measures.between[now.steps[-1].measure] if now.steps else self._measures.to[now.node]
-        begins = now.frame + float(way[number])
+        begins = now.frame + float(self._ways(now)[number])
         done = begins + measure.frames
         if not done <= self._problem.limit:
             return None
@@ -180,6 +179,13 @@ class _Search:
             charge=measure.charge if fetches else now.charge - measure.uses,
         )
 
+    def _ways(self, now: _Beginning) -> NDArray[np.float64]:
+        """Frames of the ways to each measure after a beginning, [K]."""
+        if not now.steps:
+            return self._measures.to[now.node]
+        changed = self._measures.changed(tuple(step.measure for step in now.steps))
+        return self._measures.between[now.steps[-1].measure] if changed is None else changed.between
+
     def _completed(self, beginning: _Beginning, least: float) -> Course | None:
         """The course with the best rescues after a beginning; None unless its value exceeds `least`."""
         left, sure = self._rest(beginning), 0.0
@@ -190,6 +196,12 @@ class _Search:
         aimed = self._faded(averting(left, self._beside))
         if sure + upper_bound(aimed) <= least + ROUNDING:
             return None
+        # not earlier: it takes longer to tell the ways past shut doors than to see that a course is not worth it
+        changed = self._measures.changed(tuple(step.measure for step in beginning.steps))
+        if changed is not None:
+            aimed = replace(aimed, travel=self._travel.starting(changed.onward, changed.table))
+            if sure + upper_bound(aimed) <= least + ROUNDING:
+                return None
         plan = solve(aimed, *self._effort)
         value = sure + plan.value
         return Course(beginning.before, beginning.steps, plan, value, self._plain) if value > least + ROUNDING else None

@@ -6,8 +6,9 @@ away, and afterwards targets stay whole for longer. `hazard_ms.planning.beginnin
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,13 +43,23 @@ class Measure:
             refuse_unless_frames(np.array(getattr(self, name), np.float64), name)
 
 
+class Changed(NamedTuple):
+    """The frames of ways of K measures and N - 1 targets and carts once some measures are done; inf: no way."""
+
+    between: NDArray[np.float64]  # from where the last of them ends to each measure, [K]
+    onward: NDArray[np.float64]  # from there to each target and cart, [N - 1]
+    table: NDArray[np.float64]  # from the target or cart of the row to that of the column, [N - 1, N - 1]
+
+
 @dataclass(frozen=True, eq=False)
 class Measures:
     """K measures and the frames of ways to and from them, beside a problem of N - 1 targets and carts, and the start.
 
     `to` has ways from the targets, the carts and the start, in this order, to each measure, [N, K]; `between` those
     from the measure of the row to that of the column, [K, K]; `onward` those from each measure to the targets and
-    carts, [K, N - 1]; inf: no way. Raises ValueError for other shapes, and for tools that no measure fetches.
+    carts, [K, N - 1]; inf: no way. `changed` gives the ways once measures are done, by their numbers in their order,
+    where these change them as shut doors do, which makes no way shorter; None where they do not. Raises ValueError for
+    other shapes, and for tools that no measure fetches.
     """
 
     measures: Sequence[Measure]
@@ -57,6 +68,7 @@ class Measures:
     onward: NDArray[np.float64]  # [K, N - 1]
     in_hand: int | None = None  # number of the measure that has fetched the tool in the hand, with the charge left
     put_down: float = 0.0  # frames in which a tool is put down
+    changed: Callable[[tuple[int, ...]], Changed | None] = lambda done: None
 
     def __post_init__(self) -> None:
         count = len(self.measures)

@@ -70,15 +70,18 @@ class StaticTravel(Travel):
         """Frames from a spot to each cart, [C]."""
         return self._rows[spot[0]][self.targets : self.targets + self.carts]
 
-    def starting(self, frames: ArrayLike) -> StaticTravel:
+    def starting(self, frames: ArrayLike, between: ArrayLike | None = None) -> StaticTravel:
         """The same travel from another start, from which ways to the targets and carts take `frames`, [M + C].
 
-        Raises ValueError for another number of frames.
+        `between`: frames of ways among these, [M + C, M + C], if they are others now. Raises ValueError for another
+        number of frames.
         """
         row = np.array(frames, np.float64)
         if row.shape != (len(self._table) - 1,):
             raise ValueError(f"frames must have shape ({len(self._table) - 1},), got {row.shape}")
         table = self._table.copy()
+        if between is not None:
+            table[:-1, :-1] = between
         table[-1], table[:, -1] = [*row, 0.0], np.inf  # nobody goes back to a start
         return StaticTravel(table, self.carts)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hazard_ms.planning.beginning import Course, best_course
-from hazard_ms.planning.measures import Measure, Measures
+from hazard_ms.planning.measures import Changed, Measure, Measures
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import MovingTravel, StaticTravel, straight_line
 
@@ -242,3 +242,21 @@ def test_what_does_not_fit_is_refused() -> None:
     moving = MovingTravel([0], np.zeros((1, 2, 1)), [0.0], straight_line(62.0))
     with pytest.raises(ValueError, match="must be static, got MovingTravel"):
         best_course(dataclasses.replace(given, travel=moving), Measures([Measure("a", 1.0, [INF] * 2)], **ways))
+
+
+def test_a_shut_door_bars_the_ways_to_the_next_door_and_to_targets() -> None:
+    """Both doors are done by 350, and what is 1 m to the west is fetched by 700; if the first bars it, by nobody."""
+    travel, ways = on_a_line([3.0, 4.0, -1.0], [1.0, 2.0])
+    given = problem(travel, [10.0, 9.0, 9.0], [350.0, 350.0, 750.0], limit=800.0)
+    shut = [Measure("door 0", 50.0, [INF, 0.0, 0.0]), Measure("door 1", 50.0, [0.0, INF, 0.0])]
+    free = best_course(given, Measures(shut, **ways))
+    assert sorted(names(free, Measures(shut, **ways))) == ["door 0", "door 1"]
+    asked: list[tuple[int, ...]] = []
+
+    def changed(done: tuple[int, ...]) -> Changed:
+        asked.append(done)
+        return Changed(np.full(2, INF), np.full(3, INF), np.where(np.eye(3) > 0, 0.0, INF))
+
+    course = best_course(given, Measures(shut, **ways, changed=changed))
+    assert len(course.steps) <= 1 and not (course.steps and course.plan.rescues)
+    assert asked and course.value < free.value

@@ -15,9 +15,10 @@ from hazard_ms.skills import failures
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.decision import Action
 from hazard_ms.skills.mitigations.doors import open_ones, shut_ones
+from hazard_ms.skills.mitigations.handles import home_side
 from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.grasping import GRASP_REACH
-from hazard_ms.spec import AgentStart, Body, Fixture, Opening
+from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition
 from tests.worlds.two_rooms import DOOR, FAR, HALL, HINGE, ONE, SIZE, TwoRooms, spec, two_rooms
 
 OPEN, SHUT = Action("open", "door_0"), Action("shut", "door_0")
@@ -171,3 +172,17 @@ def test_a_walk_leads_into_an_open_doorway_and_up_to_a_shut_door(share: float, n
                 break
         x, y, _ = rooms.stage.robot.base()
         assert result.ok and nearest <= np.hypot(x - 3.5, y - 2.0) <= farthest + 0.05
+
+
+@pytest.mark.parametrize(("start", "side"), [((1.5, 3.4), -1.0), ((1.5, 1.0), 1.0), ((5.5, 3.4), -1.0)])
+def test_a_door_is_shut_from_the_side_from_which_the_robot_comes(start: tuple[float, float], side: float) -> None:
+    """From the north-west the way leads round by the north-east and the south-east: it does not shut itself in."""
+    south = dataclasses.replace(AJAR, centre=1.3)
+    ways = (Opening("doorway", "middle", 3.3, 0.9, 2.05), Opening("doorway", "across", 5.3, 0.9, 2.05))
+    scene = spec(door=south, start=AgentStart(start, 0.0), openings=ways)
+    room = dataclasses.replace(scene.room, partitions=(*scene.room.partitions, Partition("across", "x", 2.6)))
+    with two_rooms(dataclasses.replace(scene, room=room)) as rooms:
+        leaf = Leaf(rooms.world, 0)
+        assert home_side(rooms.stage, leaf) == side
+        assert turning(rooms, SHUT)[0].ok  # type: ignore[attr-defined]
+        assert np.sign(leaf.side(*rooms.stage.robot.base()[:2])) == side

@@ -8,6 +8,7 @@ import numpy as np
 import torch
 
 from hazard_ms.agents.mitigating.choice import Chooser, Key
+from hazard_ms.agents.mitigating.clutter import reached
 from hazard_ms.agents.mitigating.prospects import FETCH, Array, Prospect, as_now, seats_of
 from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.problem import Problem
@@ -17,11 +18,12 @@ from hazard_ms.sketch.futures.surroundings import charge_of, hidden, inner_doors
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action, Decision
-from hazard_ms.skills.failures import UNFINISHED
+from hazard_ms.skills.failures import NO_PATH, UNFINISHED
 from hazard_ms.skills.mitigations.extinguish import AROUND
 
 EXTINGUISH, SHUT_DOOR, OPEN_DOOR = "extinguish", "shut", "open"
 AGAIN = 200  # frames after which measures are weighed again although nothing was done [ours]
+PUT_OFF = 300  # frames for which a door is left alone to which there was no way [ours]
 TRIES = 3  # failures after which something is given up [ours]
 
 
@@ -34,6 +36,7 @@ class Mitigator:
         self._chooser = Chooser(self._base)
         self._queue: list[Prospect] = []  # what was chosen and is not yet done
         self._failures: dict[Key, int] = {}
+        self._put_off: dict[Key, int] = {}  # the frames before which some things are not tried again
         self._last: Action | None = None  # its own last action
         self._weighed = -AGAIN  # frame at which it last weighed measures
         self._shares: tuple[float, ...] = ()
@@ -60,7 +63,11 @@ class Mitigator:
         if not result.ok and result.reason not in UNFINISHED and self._queue:
             key = self._queue[0].kind, self._queue[0].numbers
             self._failures[key] = self._failures.get(key, 0) + 1
-            if self._failures[key] >= TRIES:
+            # what drifts about may free the way again, but all that waits for the door is lost meanwhile
+            barred = key[0] == SHUT and result.reason == NO_PATH
+            if barred:
+                self._put_off[key] = decision.frame + PUT_OFF
+            if barred or self._failures[key] >= TRIES:
                 self._end()
         return True
 
@@ -122,6 +129,8 @@ class Mitigator:
 
     def _choose(self, decision: Decision, problem: Problem, targets: Sequence[int], scene: RescueScene) -> None:
         failed = {key for key, times in self._failures.items() if times >= TRIES}
+        failed |= {key for key, frame in self._put_off.items() if decision.frame < frame}
+        failed |= self._out_of_reach(decision)
         held = -1 if decision.held is None else decision.index(decision.held)
         course, made = self._chooser.course(problem, targets, scene, decision.agent_position, held, failed)
         if course is None or course.before is not None:
@@ -129,6 +138,15 @@ class Mitigator:
         self._queue = [made[step.measure] for step in course.steps]
         names = ", ".join(f"{p.kind} {'+'.join(map(str, p.numbers))}" for p in self._queue)
         self.note = f"{names}: averts {course.value:g} instead of {course.plain:g}"
+
+    def _out_of_reach(self, decision: Decision) -> set[Key]:
+        """The doors to which no way leads now."""
+        inner = inner_doors(self._base.world)
+        if not inner:
+            return set()
+        places, radius = np.stack(list(inner.values())), self._base.agent.build.radius
+        found = reached(self._truth.env.seen, self._base.world, decision.agent_position, places, radius)
+        return {(SHUT, (number,)) for number, there in zip(inner, found, strict=True) if not there}
 
     def _end(self) -> None:
         """Give up what was chosen, or be done with it."""
@@ -143,8 +161,8 @@ class Mitigator:
             action = self._step(decision, self._queue[0])
             if action is not None:
                 return action
-            if self._queue:
-                del self._queue[0]
+            if self._queue and self._queue.pop(0).kind == SHUT:
+                self._queue.clear()  # what is next depends on the side on which it stands, and on what drifts there now
             if not self._queue:
                 self._end()
         return None

@@ -22,7 +22,7 @@ from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.mitigations.approach import approach
-from hazard_ms.skills.mitigations.handles import ASIDE, CLOSE, ENOUGH, Place, stand
+from hazard_ms.skills.mitigations.handles import ASIDE, CLOSE, ENOUGH, Place, home_side, stand
 from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, follow, go, lacking, never, posture_for
 from hazard_ms.skills.motor.grasping import APPROACH_FRAMES
@@ -80,7 +80,7 @@ def _turn(stage: Stage, name: str, opening: bool) -> Skill:
         return Result(False, failures.NO_LEAF)
     leaf = Leaf(stage.world, known.number)
     goal = hinges.angle(_most(known.kind)) if opening else 0.0
-    home = leaf.side(*stage.robot.base()[:2])
+    home = home_side(stage, leaf)
     taken = yield from _get_hold(stage, leaf, goal, home)
     reason, used = taken.reason, taken.frames
     if _settled(leaf, goal):

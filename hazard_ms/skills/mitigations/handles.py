@@ -22,6 +22,7 @@ STEPPING = (
     1.2  # metres of way that take as long as folding the arm and stepping out of the leaf's way [ours: 80 frames]
 )
 BEFORE = 0.1  # distance from the wall of what must be in view of a shut door: its handle [m] [ours]
+BESIDE = 0.7  # distance from a door of the places on both sides to which ways are compared [m] [ours]
 CLOSE, ENOUGH = 0.05, 0.1  # distance from a place at which one stands on it, and with an obstacle on it [m] [ours]
 
 
@@ -60,6 +61,22 @@ def stand(stage: Stage, leaf: Leaf, goal: float, home: float, without: Collectio
     lengths = cost + [_length(ways, goal_at, (x, y)) for goal_at in goals]
     best = int(np.argmin(lengths))
     return goals[best] if np.isfinite(lengths[best]) else None
+
+
+def home_side(stage: Stage, leaf: Leaf) -> float:
+    """The side of the `leaf` from which the robot comes, as the sign of Leaf.side.
+
+    It is the side to which its way is shorter, whichever of them the robot lies on if the wall went on for ever: who
+    comes from another room on the same side of a hall has to go through the door to get to that side of it.
+    """
+    seen, (x, y, _) = stage.seen, stage.robot.base()
+    start, along, out = hinges.hinge(leaf.room, leaf.o)
+    middle = start + along * leaf.o.width / 2
+    goals = [(float(px), float(py)) for px, py in (middle + BESIDE * out, middle - BESIDE * out)]
+    ways = Ways(stage.obstacles(), seen.explored, seen.cell, seen.origin, (x, y), goals, stage.robot.build.radius)
+    paths = [ways.path(goal, CLOSE, BESIDE / 2) for goal in goals]
+    one, other = (p.length + p.short if p is not None and p.short <= BESIDE / 2 else np.inf for p in paths)
+    return float(np.sign(other - one)) if one != other else leaf.side(x, y)
 
 
 def _length(ways: Ways, place: Place, here: Place) -> float:

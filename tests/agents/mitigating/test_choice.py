@@ -1,0 +1,30 @@
+"""In water a course must avert more than in fire, since what drifts makes it last longer than planned."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hazard_ms.agents.mitigating.choice import LEAST_GAIN, LEAST_IN_WATER, Chooser
+from hazard_ms.planning.beginning import Course, Step
+from hazard_ms.planning.problem import Plan, Problem
+from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.spec import Task
+from hazard_ms.tasks.house import hazard_house_fire, hazard_house_flood
+
+AT_RISK = Problem(StaticTravel(np.ones((3, 3))), [60.0, 40.0], [500.0, np.inf], [50.0] * 2, [4.0] * 2, limit=1000.0)
+PLAN = Plan((), 0.0, 0.0, True, 0.0, 1)
+
+
+@pytest.mark.parametrize(("task", "share"), [(hazard_house_fire(), LEAST_GAIN), (hazard_house_flood(), LEAST_IN_WATER)])
+def test_a_course_must_avert_a_share_of_what_is_at_risk(task: Task, share: float) -> None:
+    """60 are at risk: what is never damaged does not count."""
+    base: Any = SimpleNamespace(task=task)
+    steps = (Step(0, 100.0, 300.0),)
+    for more, worth in ((0.9, False), (1.1, True)):
+        course = Course(None, steps, PLAN, 20.0 + more * share * 60.0, 20.0)
+        assert Chooser(base)._is_worth_it(course, AT_RISK) == worth
+    assert not Chooser(base)._is_worth_it(Course(None, (), PLAN, 99.0, 0.0), AT_RISK)

@@ -123,7 +123,8 @@ class Offers:
             made.append(Measure(self.words(p), p.frames, spared, needs, p.jet, p.charge, there, tuple(behind)))
         ways = ways_between(scene, np.array(state.place), goals, edges, self.made)
         held = [k for k, p in enumerate(self.made) if p.kind == FETCH and p.numbers[0] == state.tool]
-        return Measures(made, **ways, in_hand=held[0] if held else None, put_down=costs.PUT_DOWN)
+        between = (ways["to"], ways["between"], ways["onward"])
+        return Measures(made, *between, in_hand=held[0] if held else None, put_down=costs.PUT_DOWN)
 
 
 def _events(end: Prospect, done: float) -> list[Intervention]:

@@ -225,6 +225,7 @@ def _measures(
         np.array([*places, *(one.stand or one.place for one in found)], np.float64).reshape(-1, 2),
         np.array([*near, *(ENOUGH if one.stand else one.near for one in found)], np.float64),
         radius,
+        walls=True,
     )
     first, start = goals, goals + len(found)
     fetched = {one.name: k for k, one in enumerate(found) if one.charge > 0.0}

@@ -137,7 +137,7 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
         else ()
     )
     targets = [*held, *seen]
-    frames = _frames(decision, memory, targets, places, carts, weights.loyalty, brief.radius)
+    frames = _frames(decision, memory, targets, places, carts, weights.loyalty, brief)
     works = [1.0 if t in held else times.works * memory.chance(decision, t.name) for t in targets]
     real = [*(1.0 for _ in held), *(1.0 - doubt for doubt in doubts)]  # what is none of them is refused at once
     picks = [chance * _pick(times, work) for work, chance in zip(works, real, strict=True)]
@@ -203,7 +203,7 @@ def _frames(
     places: Sequence[Lookout],
     carts: Sequence[str],
     loyalty: float,
-    radius: float,
+    brief: Brief,
 ) -> NDArray[np.float64]:
     """Frames between the targets, the places to search, the carts and, last, where the agent stands, [N, N]."""
     here = np.asarray(decision.agent_position, np.float64)
@@ -220,7 +220,7 @@ def _frames(
     if not names:
         return np.zeros((1, 1))
     start = decision.agent_position
-    frames = frames_between(decision.map, start, np.array(goals), np.array(near), radius)
+    frames = frames_between(decision.map, start, np.array(goals), np.array(near), brief.radius, brief.several_rooms)
     for number, name in enumerate(names):
         if decision.last_action in (Action(WALK_TO, name), Action(WALK_ONE_STEP, name)):
             frames[-1, number] *= 1.0 - loyalty

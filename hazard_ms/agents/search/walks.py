@@ -10,6 +10,7 @@ from scipy.sparse import csgraph
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.motor.navigation import AT_MOST, BORDER, OBSTACLE_COST, SHORT, known_floor
+from hazard_ms.skills.sightlines import behind
 
 Array = NDArray[np.float64]
 STEPS = 1.05  # length of a way by steps to the eight neighbours, over that of straight pieces: mean of all directions
@@ -19,15 +20,17 @@ LONGEST_DETOUR = 400.0  # frames that count where there is no way now: what floa
 MOST_CELLS = 16_000  # of a grid that is searched cell by cell; larger ones by squares of four [ours]
 
 
-def frames_between(seen: SemanticMap, start: tuple[float, float], goals: Array, near: Array, radius: float) -> Array:
+def frames_between(
+    seen: SemanticMap, start: tuple[float, float], goals: Array, near: Array, radius: float, walls: bool = False
+) -> Array:
     """Frames of the walks between G `goals` [m], [G, 2], and the `start` [m], [G + 1, G + 1], the start last.
 
-    A walk ends within `near` [m], [G], of a goal, or a little short of it; inf where there is no way. `radius` of the
-    robot [m]. Floor that was never seen counts as free.
+    A walk ends within `near` [m], [G], of a goal, or a little short of it, where `walls` count on its side of them; inf
+    where there is no way. `radius` of the robot [m]. Floor that was never seen counts as free.
     """
     grid = _Grid(seen, np.vstack([goals, start]), radius)
     here = grid.nearest_free(np.asarray(start))
-    ends = [*grid.ends(goals, near, here), here]
+    ends = [*grid.ends(goals, near, here, seen if walls else None), here]
     lengths = grid.lengths(ends)
     frames = WALK / STEPS * lengths + TURNING
     np.fill_diagonal(frames, 0.0)
@@ -70,14 +73,21 @@ class _Grid:
         far = np.hypot(*(self._centres - place).T)
         return int(np.argmin(np.where(self._free, far, far + OBSTACLE_COST)))
 
-    def ends(self, goals: Array, near: Array, start: int) -> list[int]:
-        """The cells where walks from the cell `start` to within `near` [m], [G], of `goals` [m], [G, 2], end; or -1."""
+    def ends(self, goals: Array, near: Array, start: int, walls: SemanticMap | None) -> list[int]:
+        """The cells where walks from the cell `start` to within `near` [m], [G], of `goals` [m], [G, 2], end; or -1.
+
+        None ends behind one of the `walls` of a map from its goal, if there is one.
+        """
         spent = csgraph.dijkstra(self._graph, indices=start)
         spent = np.where(self._free & (spent < OBSTACLE_COST * self._cell / 2), spent, np.inf)
         cells = []
         for goal, enough in zip(goals, near, strict=True):
             missed = np.maximum(np.hypot(*(self._centres - goal).T) - enough, 0.0)
             paid = np.where(missed <= AT_MOST, spent + SHORT * missed, np.inf)
+            if walls is not None:
+                some = np.flatnonzero(np.isfinite(paid))
+                at = float(goal[0]), float(goal[1])
+                paid[some[behind(walls.height, walls.cell, walls.origin, self._centres[some], at)]] = np.inf
             best = int(np.argmin(paid))
             cells.append(best if np.isfinite(paid[best]) else -1)
         return cells

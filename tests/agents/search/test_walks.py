@@ -48,6 +48,16 @@ def test_a_walk_goes_around_a_wall() -> None:
     assert way == pytest.approx(2 * np.hypot(1.5, 2.15 + RADIUS) - 0.5, rel=0.12)
 
 
+def test_where_walls_count_a_walk_ends_on_the_side_of_its_goal() -> None:
+    """A thing 0.4 m behind a wall is within 1 m from before it; its own side is reached over the wall's end at 2 m."""
+    seen, start, goal = open_floor(), (-1.5, 0.0), np.array([(0.5, 0.0)])
+    build(seen, (-0.1, -3.0), (0.1, 2.0), 1.9)
+    near, far = (frames_between(seen, start, goal, np.ones(1), RADIUS, walls)[1, 0] for walls in (False, True))
+    assert (near - TURNING) / WALK == pytest.approx(1.0, abs=0.25)
+    over = np.hypot(1.5, 2.15 + RADIUS) + np.hypot(0.5, 2.15 + RADIUS) - 1.0
+    assert (far - TURNING) / WALK == pytest.approx(over, rel=0.15)
+
+
 def test_there_is_no_way_into_a_closed_room() -> None:
     seen = open_floor()
     for low, high in (((1, -1), (1.2, 1)), ((3, -1), (3.2, 1)), ((1, -1.2), (3.2, -1)), ((1, 1), (3.2, 1.2))):

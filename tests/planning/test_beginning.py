@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hazard_ms.planning.beginning import Course, best_course
-from hazard_ms.planning.measures import Changed, Measure, Measures
+from hazard_ms.planning.measures import Measure, Measures
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import MovingTravel, StaticTravel, straight_line
 
@@ -53,20 +53,6 @@ def test_a_door_is_shut_first_where_that_saves_more_than_it_delays() -> None:
     assert [(r.target, r.safe) for r in course.plan.rescues] == [(1, 300.0), (0, 750.0)]
     late = best_course(given, Measures([Measure("shut", 301.0, [INF, INF])], **ways))
     assert late.steps == () and late.value == late.plain == course.plain
-
-
-def test_rescues_alone_must_be_better_by_the_margin() -> None:
-    """The door that comes too late is shut all the same where rescues alone are better by less than the margin."""
-    travel, ways = on_a_line([2.0, -2.0], [-1.0])
-    given = problem(travel, [10.0, 8.0], [300.0, 400.0])
-    late = Measures([Measure("shut", 301.0, [INF, INF])], **ways)
-    # one is rescued first, at 250, then the door is shut by 851: 10.0 + 5.0 is 0.4 less than rescues alone have
-    for margin, steps in ((0.3, 0), (0.5, 1)):
-        course = best_course(given, late, margin=margin)
-        assert len(course.steps) == steps
-        assert course.plain == pytest.approx(9.0 + 10.0 * 0.6 + 8.0 * 0.05)
-        assert course.value <= course.plain
-        assert steps or course.value == course.plain
 
 
 def test_what_was_damaged_before_the_measure_is_done_stays_damaged() -> None:
@@ -242,21 +228,3 @@ def test_what_does_not_fit_is_refused() -> None:
     moving = MovingTravel([0], np.zeros((1, 2, 1)), [0.0], straight_line(62.0))
     with pytest.raises(ValueError, match="must be static, got MovingTravel"):
         best_course(dataclasses.replace(given, travel=moving), Measures([Measure("a", 1.0, [INF] * 2)], **ways))
-
-
-def test_a_shut_door_bars_the_ways_to_the_next_door_and_to_targets() -> None:
-    """Both doors are done by 350, and what is 1 m to the west is fetched by 700; if the first bars it, by nobody."""
-    travel, ways = on_a_line([3.0, 4.0, -1.0], [1.0, 2.0])
-    given = problem(travel, [10.0, 9.0, 9.0], [350.0, 350.0, 750.0], limit=800.0)
-    shut = [Measure("door 0", 50.0, [INF, 0.0, 0.0]), Measure("door 1", 50.0, [0.0, INF, 0.0])]
-    free = best_course(given, Measures(shut, **ways))
-    assert sorted(names(free, Measures(shut, **ways))) == ["door 0", "door 1"]
-    asked: list[tuple[int, ...]] = []
-
-    def changed(done: tuple[int, ...]) -> Changed:
-        asked.append(done)
-        return Changed(np.full(2, INF), np.full(3, INF), np.where(np.eye(3) > 0, 0.0, INF))
-
-    course = best_course(given, Measures(shut, **ways, changed=changed))
-    assert len(course.steps) <= 1 and not (course.steps and course.plan.rescues)
-    assert asked and course.value < free.value

@@ -8,8 +8,8 @@ import numpy as np
 
 from hazard_ms.agents.mitigating.prospects import ANY_WAY, Array, Prospect, as_now
 from hazard_ms.planning.measures import Changed
-from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.sketch.futures.interventions import SHUT
+from hazard_ms.sketch.futures.surroundings import across
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.sketch.travel.ways import Ways
 from hazard_ms.spec import SceneSpec
@@ -22,7 +22,7 @@ def sided(spec: SceneSpec, doors: Sequence[Prospect]) -> list[Prospect]:
     """Each of `doors` twice: shut by a robot that stays on the one side of it, and on the other."""
     made = []
     for door in doors:
-        out = hinges.hinge(spec.room, spec.room.openings[door.numbers[0]])[2]
+        out = across(spec, door.numbers[0])
         for place in (door.first + BESIDE * out, door.first - BESIDE * out):
             made.append(door._replace(first=place, last=place))
     return made

@@ -8,11 +8,11 @@ import numpy as np
 import torch
 
 from hazard_ms.agents.mitigating.choice import Chooser, Key
-from hazard_ms.agents.mitigating.clutter import reached
 from hazard_ms.agents.mitigating.prospects import FETCH, Array, Prospect, as_now, seats_of
 from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.problem import Problem
 from hazard_ms.sketch.futures import seats
+from hazard_ms.sketch.futures.clutter import reached
 from hazard_ms.sketch.futures.interventions import OPEN, OUT, SHUT, fire_of
 from hazard_ms.sketch.futures.surroundings import charge_of, hidden, inner_doors
 from hazard_ms.sketch.rescue_problem import RescueScene

@@ -9,9 +9,11 @@ import torch
 from numpy.typing import NDArray
 
 from hazard_ms.simulation.jet import KINDS
+from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.simulation.walls import blocked
 from hazard_ms.simulation.world import World
 from hazard_ms.sketch.recording import Running
+from hazard_ms.spec import SceneSpec
 from hazard_ms.spec.extinguishers import EXTINGUISHERS
 
 Array = NDArray[np.float64]
@@ -32,6 +34,11 @@ def inner_doors(world: World) -> dict[int, Array]:
     there = (plan.door & ~plan.outside & plan.exists & ~broken)[0]
     middles = plan.beside[0, :, :, :2].mean(1).cpu().numpy().astype(np.float64)
     return {number: middles[number] for number in there.nonzero()[:, 0].tolist()}
+
+
+def across(spec: SceneSpec, number: int) -> Array:
+    """The unit vector, [2], at right angles to the wall of the inner door `number`, into one of its rooms."""
+    return hinges.hinge(spec.room, spec.room.openings[number])[2]
 
 
 def charge_of(base: Home, index: int) -> float:

@@ -17,7 +17,7 @@ from hazard_ms.simulation.world import World
 from hazard_ms.sketch.futures.interventions import SHUT
 from hazard_ms.skills.decision import Action, Result
 from hazard_ms.skills.failures import NO_PATH, UNREACHABLE
-from tests.agents.mitigating.test_clutter import CRATE, HERE, seen, world
+from tests.sketch.test_clutter import CRATE, HERE, seen, world
 
 DOORS = [Prospect(SHUT, (n,), np.zeros(2), np.zeros(2), 0.0, 200.0) for n in range(2)]
 KEY = (SHUT, (0,))

@@ -7,10 +7,10 @@ import dataclasses
 import numpy as np
 import torch
 
-from hazard_ms.agents.mitigating.clutter import reached
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.simulation.building import make_world
 from hazard_ms.simulation.world import World
+from hazard_ms.sketch.futures.clutter import reached
 from hazard_ms.spec import AgentStart, Body, Opening, Partition, Room, SceneSpec
 
 HERE, PLACES = (1.0, 3.0), np.array([[2.0, 3.0], [6.5, 3.0]])  # in a hall 1.3 m wide, from y = 2.4 to 3.7 m

@@ -40,3 +40,17 @@ def test_a_shut_door_bars_the_ways_to_the_next_door_and_to_targets() -> None:
     course = best_course(given, Measures(shut, **ways, changed=changed))
     assert len(course.steps) <= 1 and not (course.steps and course.plan.rescues)
     assert asked and course.value < free.value
+
+
+def test_no_second_door_is_shut_to_which_the_first_bars_the_way() -> None:
+    """The targets are reached as before, so that nothing but the way from door to door keeps it from shutting both."""
+    travel, ways = on_a_line([3.0, 4.0], [1.0, 2.0])
+    given = problem(travel, [10.0, 9.0], [250.0, 350.0])
+    shut = [Measure("door 0", 50.0, [INF, 0.0]), Measure("door 1", 50.0, [0.0, INF])]
+    table = np.array([[0.0, 100.0], [100.0, 0.0]])
+
+    def changed(done: tuple[int, ...]) -> Changed:
+        return Changed(np.full(2, INF), ways["onward"][done[-1]], table)
+
+    both, one = (best_course(given, Measures(shut, **ways, **rest)) for rest in ({}, {"changed": changed}))
+    assert (len(both.steps), len(one.steps)) == (2, 1)

@@ -165,7 +165,7 @@ def _into_range(stage: Stage, index: int, frames: int) -> Generator[Any, Any, tu
             and not any(np.abs(flame - other).max() < SAME for other in missed)
             and bool(sees(stage, here, flame, carried)[0])
         ]
-        return max(rows, key=lambda row: _covered(stage, *row, burning))[1] if rows else None
+        return max(rows, key=lambda row: _covered(stage, row[0], row[1], burning))[1] if rows else None
 
     while burning := _by_distance(stage, index):
         if _too_hot(stage):

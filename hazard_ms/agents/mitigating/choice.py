@@ -40,8 +40,8 @@ LEAST_GAIN = 0.03  # share of what the targets at risk are worth that a course m
 # The same in floods, where things drift meanwhile [measured: in two homes of `train`, courses that were to avert 0.03
 # and 0.09 more came to 0.07 less than rescues alone; one that was to avert 0.28 came to 0.20 more]
 LEAST_IN_WATER = 0.15
-# frames by which a rescue takes longer than planned in homes [measured: of 14 to 17 that are planned in three floods
-# of `train`, 7 to 9 are done by the end]; plans without them would save all, and no fire would be worth a fight
+# frames by which a rescue takes longer than planned in homes [ours: of 14 to 17 that were planned in three floods of
+# `train`, 7 to 9 were done by the end]; plans without them would save all, and no fire would be worth a fight
 UNPLANNED = 120.0
 EFFORT = (2_000, 60)  # labels of a search, and of a layer beyond [ours]
 UNEXPECTED = 1.5  # factor by which a fire takes longer than is planned, since it grows meanwhile [ours]

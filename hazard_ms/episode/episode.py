@@ -183,6 +183,8 @@ class Episode:
 
     def levels(self, points: Tensor) -> Tensor:
         """Levels of the K hazards at `points` [m], world frame, [E, P, 3]: [E, K, P], each in its hazard's unit."""
+        if not self.hazards:  # practice has none
+            return points.new_zeros(points.shape[0], 0, points.shape[1])
         return torch.stack([h.image(self.states[h.name], self.world, points) for h in self.hazards], dim=1)
 
     def flames(self) -> Flames | None:

@@ -1,0 +1,1 @@
+"""A policy of LeRobot that plays the recorded actions of an exported dataset again: for stock `lerobot-eval`."""

@@ -21,7 +21,12 @@ WRITERS: dict[str, Callable[[Source, Path], str]] = {
     "chat": chat.write,
     "tar": tar.write,
 }
-TAKEN_BY = {"obs": ("maniskill", "minari"), "states": ("maniskill",), "privileged": ("maniskill", "chat", "tar")}
+TAKEN_BY = {
+    "obs": ("maniskill", "minari"),
+    "states": ("maniskill",),
+    "privileged": ("maniskill", "chat", "tar"),
+    "language": ("lerobot",),
+}
 
 
 def export(options: ExportOptions) -> int:
@@ -34,7 +39,7 @@ def export(options: ExportOptions) -> int:
     for name, formats in TAKEN_BY.items():
         if getattr(options, name) and options.format not in formats:
             raise ValueError(f"format must be {' or '.join(formats)} for --{name}, got {options.format}")
-    source = Source(options.folder, options.obs, options.states, options.privileged, options.load)
+    source = Source(options.folder, options.obs, options.states, options.privileged, options.load, options.language)
     output = Path(os.path.abspath(options.output))
     if output.exists() and (not output.is_dir() or any(output.iterdir())):
         raise ValueError(f"output must be a new or an empty folder, got {options.output}; name another")

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hazard_ms.demonstrations.export.lerobot_card import write_card
 from hazard_ms.demonstrations.export.lerobot_film import Film, picture_info, samples
+from hazard_ms.demonstrations.export.lerobot_language import COLUMN, FEATURE, as_column, sentences
 from hazard_ms.demonstrations.export.lerobot_stats import Stats, joined, merged, stats_of
 from hazard_ms.demonstrations.export.lerobot_tables import Tables, read_columns, write_episodes, write_info, write_words
 from hazard_ms.demonstrations.export.source import Common, Source, needed
@@ -31,11 +32,12 @@ def write(source: Source, folder: Path) -> str:
     for package in ("pyarrow", "av"):
         needed(package, "lerobot")
     rate = rate_of(source.common)
-    with closing(_Writing(folder, source.common, rate)) as writing:
+    with closing(_Writing(folder, source.common, rate, source.language)) as writing:
         for one in source:
             writing.add(one)
     write_words(folder / "meta/tasks.parquet", "task_index", list(writing.tasks))
-    write_words(folder / "meta/subtasks.parquet", "subtask_index", list(writing.subtasks))
+    if not source.language:
+        write_words(folder / "meta/subtasks.parquet", "subtask_index", list(writing.subtasks))
     write_episodes(folder, writing.episodes, writing.stats)
     write_info(folder, source.common.robot, rate, writing.features(source), writing.episodes, writing.whole())
     write_card(source, rate, folder)
@@ -74,13 +76,13 @@ def rows_of(one: Demonstration, step: int) -> Columns:
 class _Writing:
     """The parts of a dataset that grow episode by episode."""
 
-    def __init__(self, folder: Path, common: Common, rate: int) -> None:
+    def __init__(self, folder: Path, common: Common, rate: int, language: bool) -> None:
         self.tasks: dict[str, int] = {}
         self.subtasks: dict[str, int] = {}
         self.episodes: list[dict[str, Any]] = []
         self.stats: list[Stats] = []
         self._folder, self._common = folder, common
-        self._step, self._rate, self._start = _step(common), rate, 0
+        self._step, self._rate, self._start, self._language = _step(common), rate, 0, language
         self._tables = Tables(folder)
         self._film = Film(folder, HEAD, rate) if common.pictures else None
         self._columns: Columns = {}  # of the last episode
@@ -90,9 +92,14 @@ class _Writing:
         """Add an episode. Raises ValueError for one with fewer pictures than rows."""
         columns, number = rows_of(one, self._step), len(self.episodes)
         count = len(columns["action"])
-        words = [self.subtasks.setdefault(text, len(self.subtasks)) for text in one.meta["subtasks"]]
-        columns["subtask_index"] = np.array(words)[columns["subtask_index"]]
         columns["timestamp"] = (np.arange(count) / self._rate).astype(np.float32)  # [s]
+        spoken: Columns = {}
+        if self._language:
+            told = sentences(columns.pop("subtask_index"), columns["timestamp"], one.meta["subtasks"])
+            spoken = {COLUMN: as_column(told, count)}
+        else:
+            words = [self.subtasks.setdefault(text, len(self.subtasks)) for text in one.meta["subtasks"]]
+            columns["subtask_index"] = np.array(words)[columns["subtask_index"]]
         columns["frame_index"] = np.arange(count)
         columns["episode_index"] = np.full(count, number)
         columns["index"] = np.arange(self._start, self._start + count)
@@ -107,7 +114,7 @@ class _Writing:
             shown = samples(one, count)
             stats[HEAD] = stats_of(shown, picture=True)
             self._look = picture_info(shown, self._rate)
-        self.episodes.append(entry | self._tables.add(columns))
+        self.episodes.append(entry | self._tables.add(columns, **spoken))
         self.stats.append(stats)
         self._columns, self._start = columns, self._start + count
 
@@ -141,6 +148,7 @@ class _Writing:
             name: {"dtype": str(column.dtype), "shape": list(column.shape[1:]) or [1], "names": names.get(name)}
             for name, column in self._columns.items()
         }
+        made |= {COLUMN: FEATURE} if self._language else {}
         return {**made, **({HEAD: self._look} if self._look else {})}
 
     def close(self) -> None:

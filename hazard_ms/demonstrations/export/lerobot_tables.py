@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.demonstrations.export.lerobot_language import COLUMN
 from hazard_ms.demonstrations.export.lerobot_stats import Stats
 
 VERSION = "v3.0"
@@ -37,12 +38,15 @@ class Tables:
         self._writer: Any = None
         self._size = 0  # bytes in it
 
-    def add(self, columns: dict[str, NDArray[Any]]) -> dict[str, Any]:
-        """Append the rows of an episode, [R, ...] in each column. Returns the columns that say where they are."""
+    def add(self, columns: dict[str, NDArray[Any]], **others: Any) -> dict[str, Any]:
+        """Append the rows of an episode, [R, ...] in each column; `others` are pyarrow's own.
+
+        Returns the columns that say where they are.
+        """
         import pyarrow as pa
         import pyarrow.parquet as pq
 
-        table = pa.table({name: _arrow(column) for name, column in columns.items()})
+        table = pa.table({**{name: _arrow(column) for name, column in columns.items()}, **others})
         if self._writer is None or self._size + table.nbytes > TABLE_SIZE * MB:
             self.close()
             self._number += 1
@@ -62,7 +66,7 @@ class Tables:
 
 
 def read_columns(folder: Path) -> Iterator[tuple[str, NDArray[Any]]]:
-    """The columns of all rows of the finished dataset `folder`, [R, D], one after the other and BLOCK wide at most.
+    """The columns of numbers of all rows of the finished dataset `folder`, [R, D], one by one, BLOCK wide at most.
 
     A wider one comes in several parts under the same name, so that they need not be in memory at once.
     """
@@ -70,6 +74,8 @@ def read_columns(folder: Path) -> Iterator[tuple[str, NDArray[Any]]]:
 
     files = [pq.ParquetFile(path) for path in sorted((folder / "data").rglob("*.parquet"))]
     for field in files[0].schema_arrow:
+        if field.name == COLUMN:  # words
+            continue
         width = getattr(field.type, "list_size", 1)
         for start in range(0, width, BLOCK):
             yield field.name, np.concatenate([_part(file, field.name, width, start) for file in files])

@@ -32,5 +32,8 @@ class ExportOptions:
     privileged: bool = False
     """Write what only a privileged teacher knows, too: policies that learn from it cannot act without it. For
     maniskill, chat and tar."""
+    language: bool = False
+    """Write the skills that run as the column `language_persistent`, which LeRobot reads from 0.6 on, in place of
+    `subtask_index`; earlier ones cannot read it. For lerobot."""
     load: tuple[str, ...] = ()
     """Modules, or files NAME.py, that register what the episodes need."""

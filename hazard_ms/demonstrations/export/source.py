@@ -68,6 +68,7 @@ class Source:
     states: bool = False  # whether every state of the environment is wanted, by simulating again
     privileged: bool = False  # whether what only a privileged teacher knows is wanted
     load: tuple[str, ...] = ()  # modules that register what the episodes need
+    language: bool = False  # whether the skills that run are written as sentences that hold from a time on
 
     @cached_property
     def dataset(self) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,16 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def pytest_collection_finish() -> None:
     """Spare the garbage collector, which runs at every change of scene, all that belongs to thousands of tests."""
     gc.freeze()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def tasks_are_left_as_they_were() -> Iterator[None]:
+    """A task that a test leaves registered breaks tests of all tasks, and only where both run in one process."""
+    from hazard_ms.registry import TASKS
+
+    before = set(TASKS)
+    yield
+    assert set(TASKS) == before, "a test of this module leaves tasks registered, or takes some away"
 
 
 def rendering_backend() -> str:

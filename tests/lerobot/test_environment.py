@@ -29,6 +29,7 @@ from hazard_ms.lerobot import ENV_ID
 from hazard_ms.lerobot.environment import RobotEnv
 from hazard_ms.lerobot.hub import make_env
 from hazard_ms.lerobot.sizes import ACTIONS, FRAMES, STATES, frames_of
+from tests.worlds.registering import practising
 
 pytestmark = pytest.mark.render
 EPISODE = EpisodeOptions(agent="tests.demonstrations.test_recorder:Told", seed=11, scene="kitchen_a/03")
@@ -158,11 +159,12 @@ def test_the_sizes_that_are_told_before_there_is_an_environment(robot: str) -> N
 
 
 def test_tasks_of_practice_and_of_others_have_their_module_before_them() -> None:
-    env = gym.make(ENV_ID, task="hazard_ms.tasks.practice:HazardPickUp-v1", side=64, split="train")
-    _, info = env.reset(seed=1)
-    assert info == {"is_success": False}
-    assert env.get_wrapper_attr("task_description") == "Take the thing before you into your hand."
-    env.close()
+    with practising():
+        env = gym.make(ENV_ID, task="hazard_ms.tasks.practice:HazardPickUp-v1", side=64, split="train")
+        _, info = env.reset(seed=1)
+        assert info == {"is_success": False}
+        assert env.get_wrapper_attr("task_description") == "Take the thing before you into your hand."
+        env.close()
 
 
 def test_the_frames_of_a_second() -> None:

@@ -26,7 +26,8 @@ FORMAT = 1  # goes up when a file or an array changes its meaning
 
 MANIFEST, CARD = "manifest.jsonl", "README.md"
 FAILURES, DAMAGED = "failures", "damaged"  # folders of a dataset
-EPISODE, DECISIONS, FRAMES, VIDEO = "episode.json", "decisions.npz", "frames.npz", "head.mp4"  # files of an episode
+EPISODE, DECISIONS, FRAMES = "episode.json", "decisions.npz", "frames.npz"  # files of an episode
+FILM, HEAD = ".mp4", "head"  # how films of cameras end, after the name of the camera, and that of the head
 DEPTH, LABELS, PRIVILEGED = "depth", "labels", "privileged"  # folders of an episode
 TRUTH = "truth.npz"  # in PRIVILEGED
 RESERVED = (MANIFEST, CARD, FAILURES, DAMAGED)  # that no episode is called

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any
 
-from hazard_ms.demonstrations.layout import plain
+from hazard_ms.demonstrations.layout import HEAD, plain
 from hazard_ms.evaluation.choices import flag, offer
 from hazard_ms.evaluation.options import MOST, MOST_WORKERS, EnvOptions, EpisodeOptions
 
@@ -28,6 +28,8 @@ class RecordOptions:
     """First seed."""
     obs: Annotated[str, offer(OBSERVATIONS)] = NONE
     """Recorded besides joints, poses and actions: none, or some of state, rgb, depth, segmentation, joined by +."""
+    cameras: Annotated[str, offer(("head", "head+wrist", "head+wrist+shoulder"))] = HEAD
+    """Cameras of the robot that are filmed with rgb: that of its head, and others of it, joined by +."""
     every: int = 3
     """Frames of the episode from one picture to the next."""
     keep: float = 0.8
@@ -53,6 +55,23 @@ class RecordOptions:
         for part in self.obs.split("+"):
             one_of(part, (STATE, *PICTURES) if "+" in self.obs else (NONE, STATE, *PICTURES), "obs")
         self.env.check()
+        self._check_cameras()
+
+    def _check_cameras(self) -> None:
+        """Check the names of cameras. Raises ValueError for those that the robot lacks, and where nothing is filmed."""
+        from hazard_ms.registry import ROBOTS, load
+        from hazard_ms.spec.checks import one_of
+
+        known = (HEAD, *load(ROBOTS[self.env.robot_uids].robot).mounted_cameras)
+        for name in self.cameras.split("+"):
+            one_of(name, known, "cameras")
+        if HEAD not in self.cameras.split("+") or (self.mounted and "rgb" not in self.pictures):
+            raise ValueError(f"cameras must have {HEAD}, and others only with rgb in obs, got {self.cameras!r}")
+
+    @property
+    def mounted(self) -> tuple[str, ...]:
+        """The cameras beside that of the head, which the environment has to be asked for."""
+        return tuple(name for name in dict.fromkeys(self.cameras.split("+")) if name != HEAD)
 
     @property
     def pictures(self) -> tuple[str, ...]:
@@ -72,6 +91,7 @@ class RecordOptions:
     @property
     def recipe(self) -> dict[str, Any]:
         """The settings that all episodes of a dataset have in common."""
+        others = {"cameras": list(self.mounted)} if self.mounted else {}
         return {
             "env_id": self.env.env_id,
             "agent": self.agent,
@@ -79,6 +99,7 @@ class RecordOptions:
             "obs": "+".join([STATE] * self.state + list(self.pictures)) or NONE,
             "every": self.every if self.pictures else 0,
             "keep": self.keep,
+            **others,
         }
 
     def episode_options(self) -> list[EpisodeOptions]:

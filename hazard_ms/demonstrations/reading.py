@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from hazard_ms.demonstrations.layout import (
     DECISIONS,
     EPISODE,
+    FILM,
     FRAMES,
+    HEAD,
     MANIFEST,
     MOST_LINES,
     PRIVILEGED,
     TRUTH,
-    VIDEO,
     DamagedDatasetError,
     Entry,
     files_of,
@@ -52,7 +53,12 @@ class Demonstration:
     @property
     def video(self) -> Path | None:
         """The film of the head camera, None where no pictures were recorded."""
-        return video_in(self.folder)
+        return self.films.get(HEAD)
+
+    @property
+    def films(self) -> dict[str, Path]:
+        """The film of each camera by its name, that of the head first."""
+        return films_in(self.folder)
 
     def privileged(self) -> dict[str, NDArray[Any]]:
         """The arrays [N, ...] that only a privileged teacher knows, with positions in [m].
@@ -161,10 +167,11 @@ def described(folder: Path) -> tuple[EpisodeResult, dict[str, Any]]:
     return result, Named(str(path), meta)
 
 
-def video_in(folder: Path) -> Path | None:
-    """The film of the head camera in the folder of an episode; None where there is none, or a link."""
-    path = folder / VIDEO
-    return path if path.is_file() and not path.is_symlink() else None
+def films_in(folder: Path) -> dict[str, Path]:
+    """The films of cameras in the folder of an episode by the camera, that of the head first; no links."""
+    named = (path for path in folder.glob("*" + FILM) if path.stem.isidentifier())
+    found = [path for path in named if path.is_file() and not path.is_symlink()]
+    return {path.stem: path for path in sorted(found, key=lambda path: (path.stem != HEAD, path.stem))}
 
 
 def arrays(path: Path) -> dict[str, NDArray[Any]]:

@@ -132,7 +132,8 @@ def _recorded(job: RecordJob, say: Say) -> EpisodeResult:
     foresight = Foresight(recorder)
     with _camera(part, options) as pictures:
         watchers = [Teller(job.options, say), recorder, foresight, *pictures]
-        keywords = {"obs_mode": "state"} if options.state else {}
+        keywords: dict[str, Any] = {"obs_mode": "state"} if options.state else {}
+        keywords |= {"cameras": options.mounted} if options.mounted else {}
         result = play(job.options, watchers, teacher, reward_mode=REWARD, **keywords)
     reason, verified = why_not(result, foresight.bests[0], options.keep), False
     seconds = {**result.phase_seconds, "labels": foresight.seconds}
@@ -180,10 +181,10 @@ def _camera(part: Path, options: RecordOptions) -> Iterator[list[Watcher]]:
     if not options.pictures:
         yield []
         return
-    from hazard_ms.demonstrations.watching.camera import HeadCamera
+    from hazard_ms.demonstrations.watching.camera import Cameras
 
-    with HeadCamera(part, options.pictures, options.every) as camera:
-        yield [camera]
+    with Cameras(part, options.pictures, options.every, options.mounted) as cameras:
+        yield [cameras]
 
 
 def why_not(result: EpisodeResult, reach: float, keep: float) -> str:

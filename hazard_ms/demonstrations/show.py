@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from hazard_ms.demonstrations.layout import FAILURES, MANIFEST, Entry, datasets
-from hazard_ms.demonstrations.reading import described, video_in
+from hazard_ms.demonstrations.layout import FAILURES, HEAD, MANIFEST, Entry, datasets
+from hazard_ms.demonstrations.reading import described, films_in
 from hazard_ms.demonstrations.sound import Named
 from hazard_ms.demonstrations.stats import Stats
 from hazard_ms.evaluation import page as episode_page
@@ -92,7 +92,7 @@ def _episodes(stats: Stats, films: int) -> list[Recorded]:
     made = []
     for number, (entry, folder) in enumerate(zip(stats.entries, stats.folders, strict=True)):
         result, meta = described(folder)
-        made.append(Recorded(entry, result, meta["reach"], video_in(folder), number < films))
+        made.append(Recorded(entry, result, meta["reach"], films_in(folder).get(HEAD), number < films))
     return made
 
 

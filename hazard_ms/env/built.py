@@ -1,4 +1,4 @@
-"""The part of the environment that builds scenes, robot and senses, and lets frames pass."""
+"""The part of the environment that builds scenes, robot and senses, lets frames pass, and says what they are worth."""
 
 from __future__ import annotations
 
@@ -13,12 +13,14 @@ from mani_skill.utils.structs.types import SimConfig
 from torch import Tensor
 
 from hazard_ms.env.leaves import Leaves
+from hazard_ms.episode import rewards
 from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.grasp import Hand
 from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.base import loosened, none_set
 from hazard_ms.hazards.presets import FREQUENCIES
 from hazard_ms.registry.mitigations import tools_of
+from hazard_ms.robots.mounting import mounted
 from hazard_ms.scenes.choice import SceneChoice
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.labels import labels_of
@@ -33,7 +35,7 @@ SPACING = 60.0  # between the scenes of a batch: nothing reaches a neighbour [m]
 
 
 class BuiltEnv(BaseEnv):
-    """Builds scenes, robot and senses in the order in which ManiSkill asks for them, and lets a frame pass."""
+    """Builds scenes, robot and senses in the order in which ManiSkill asks for them; lets frames pass, rates them."""
 
     task: Task
     choice: SceneChoice
@@ -42,6 +44,7 @@ class BuiltEnv(BaseEnv):
     effects_mode: str
     lighting: str
     senses: tuple[str, ...]
+    cameras: tuple[str, ...]
     specs: tuple[SceneSpec, ...] = ()
     world: World
     episode: Episode
@@ -57,6 +60,11 @@ class BuiltEnv(BaseEnv):
     def _default_sim_config(self) -> SimConfig:
         control, physics = FREQUENCIES[self.physics]
         return SimConfig(sim_freq=physics, control_freq=control, spacing=SPACING)
+
+    @property
+    def _default_sensor_configs(self) -> list[CameraConfig]:
+        """The robot's cameras that were asked for beside that of its head, whose picture has as many pixels."""
+        return [mounted(name, self.agent) for name in self.cameras]
 
     @property
     def _default_human_render_camera_configs(self) -> CameraConfig:
@@ -141,6 +149,18 @@ class BuiltEnv(BaseEnv):
         self.episode.watch(self.agent.robot.get_qpos())
         self.episode.advance(self.control_timestep)
         self.episode.use_hand(self.agent.gripper_pose(), self.agent.grip_closed(), self.agent.bag_position)
+
+    def evaluate(self) -> dict[str, Tensor]:
+        return rewards.evaluate(self.task.goal, self.situation)
+
+    def compute_dense_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:
+        return self.task.goal.dense(self.situation)
+
+    def compute_normalized_dense_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:
+        return self.task.goal.dense(self.situation) / self.task.goal.largest
+
+    def compute_sparse_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:
+        return self.task.goal.sparse(self.situation)
 
     def _flatten_raw_obs(self, obs: Any) -> Any:
         if self.obs_mode != "state":

@@ -17,12 +17,13 @@ from torch import Tensor
 from hazard_ms.env import inputs, keywords, states
 from hazard_ms.env.built import BuiltEnv
 from hazard_ms.env.spaces import bounded
-from hazard_ms.episode import rewards, snapshot
+from hazard_ms.episode import snapshot
 from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
 from hazard_ms.registry import TASKS
 from hazard_ms.registry import affects_agent as acts_on_agent
 from hazard_ms.registry.announce import importable
+from hazard_ms.robots.mounting import check_cameras
 from hazard_ms.scenes.choice import SceneChoice, SceneTurns
 from hazard_ms.scenes.files import playing
 from hazard_ms.sensing.modes import check_senses, finite
@@ -67,6 +68,7 @@ class HazardEnv(BuiltEnv):
         effects: str = "full",
         lighting: str = "day",
         senses: Sequence[str] = (),
+        cameras: Sequence[str] = (),
         **maniskill_keywords: Any,
     ) -> None:
         """Every keyword of ManiSkill's BaseEnv works, and these.
@@ -86,6 +88,7 @@ class HazardEnv(BuiltEnv):
             effects: How hazards look: full, fast or off. Never changes physics or labels, and nor does lighting.
             lighting: day, evening, night, failing (lamps go out during the episode), random (by the seed).
             senses: Of the head camera, beyond ManiSkill's: thermal, degraded (colour and depth through smoke and rain).
+            cameras: Beside that of the head: wrist, shoulder; G1 has wrist_left, too.
             **maniskill_keywords: As in ManiSkill, but for these. num_envs: more than one needs a GPU. obs_mode: state
                 modes need no renderer. render_backend: auto (the default) picks a GPU, else the CPU, else none.
                 reconfiguration_freq: by default as `deterministic` and `scene_every` say, which it replaces.
@@ -106,6 +109,7 @@ class HazardEnv(BuiltEnv):
         self.effects_mode = checks.one_of(effects, EFFECTS, "effects")
         self.lighting = checks.one_of(lighting, LIGHTINGS, "lighting")
         self.senses = check_senses(senses, maniskill_keywords.get("obs_mode"))
+        self.cameras = check_cameras(cameras, robot_uids)
         often = checks.whole(scene_every, 0, 2**31, "scene_every")
         chosen = self.deterministic or maniskill_keywords.get("reconfiguration_freq") is not None
         self.scene_turns = SceneTurns(0 if chosen else often)
@@ -193,9 +197,6 @@ class HazardEnv(BuiltEnv):
         """The space of one environment's observations, with true bounds."""
         return bounded(to_numpy(self._init_raw_obs), self.observation_table, to_numpy(self._get_obs_state_dict({})))
 
-    def evaluate(self) -> dict[str, Tensor]:
-        return rewards.evaluate(self.task.goal, self.situation)
-
     def _get_obs_extra(self, info: dict[str, Any]) -> dict[str, Tensor]:
         return self.observer.extra(hidden=self.obs_mode_struct.use_state)
 
@@ -217,15 +218,6 @@ class HazardEnv(BuiltEnv):
     def label_table(self, env: int = 0) -> dict[int, tuple[str, str]]:
         """Segmentation ids of scene `env`: id -> (name, category). They may differ from scene to scene."""
         return self.observer.label_table(env)
-
-    def compute_dense_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:
-        return self.task.goal.dense(self.situation)
-
-    def compute_normalized_dense_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:
-        return self.task.goal.dense(self.situation) / self.task.goal.largest
-
-    def compute_sparse_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:
-        return self.task.goal.sparse(self.situation)
 
     def get_state_dict(self) -> dict[str, Any]:
         """ManiSkill's simulation and controllers, and under "hazard_ms" hazards, damage, rescue, hand and chance."""

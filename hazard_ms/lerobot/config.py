@@ -28,6 +28,7 @@ class HazardConfig(EnvConfig):
     scenes: list[str] | None = None  # files or folders of scenes in place of a split
     physics: str = "paper"
     side: int = 256  # of pictures [pixels]
+    cameras: list[str] = field(default_factory=list)  # of the robot, beside that of its head
     keywords: dict[str, Any] = field(default_factory=dict)  # others of gym.make
     features: dict[str, PolicyFeature] = field(default_factory=dict)
     features_map: dict[str, str] = field(default_factory=dict)
@@ -36,12 +37,14 @@ class HazardConfig(EnvConfig):
         """Say what policies see and do. Raises ValueError for an unknown robot, and for a rate that is none."""
         one_of(self.robot, STATES, "robot")
         frames_of(self.fps, self.physics)
+        seen = ("head", *self.cameras)
         self.features = {
-            "pixels/head": PolicyFeature(FeatureType.VISUAL, (self.side, self.side, 3)),
+            **{f"pixels/{name}": PolicyFeature(FeatureType.VISUAL, (self.side, self.side, 3)) for name in seen},
             "agent_pos": PolicyFeature(FeatureType.STATE, (STATES[self.robot],)),
             ACTION: PolicyFeature(FeatureType.ACTION, (ACTIONS[self.robot],)),
         }
-        self.features_map = {"pixels/head": f"{PICTURES}.head", "agent_pos": STATE, ACTION: ACTION}
+        self.features_map = {f"pixels/{name}": f"{PICTURES}.{name}" for name in seen}
+        self.features_map |= {"agent_pos": STATE, ACTION: ACTION}
 
     @property
     def package_name(self) -> str:
@@ -58,7 +61,7 @@ class HazardConfig(EnvConfig):
         """Keywords of gym.make."""
         every = frames_of(self.fps, self.physics)
         made: dict[str, Any] = {"task": self.task, "every": every, "side": self.side}
-        made |= {"robot_uids": self.robot, "physics": self.physics}
+        made |= {"robot_uids": self.robot, "physics": self.physics, "cameras": self.cameras}
         made |= {"split": self.split} if self.scenes is None else {"scenes": self.scenes}
         if self.episode_length is not None:
             made["max_frames"] = self.episode_length * every

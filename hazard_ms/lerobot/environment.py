@@ -4,7 +4,7 @@ A step is one frame, or `every` frames with the same action. Observations are no
 
 | key | |
 |---|---|
-| `pixels` | `head`: the picture of the head camera, [H, W, 3], uint8, as recordings have it |
+| `pixels` | `head`: the picture of the head camera, [H, W, 3], uint8, as recordings have it, and those of `cameras` |
 | `agent_pos` | [S], world frame: joints [rad, m], their velocities, base x, y [m], heading [rad], hand x, y, z [m], |
 | | and 1 if it holds something, else 0: `observation.state` of exported demonstrations |
 
@@ -60,7 +60,7 @@ class RobotEnv(gym.Env[Observation, NDArray[np.float32]]):
             control_mode: What an action means; None: as in demonstrations.
             max_frames: Greatest length of an episode [frames]; None takes that of the task. (With gymnasium's own
                 max_episode_steps a wrapper would hide the task's sentence from LeRobot.)
-            **settings: Other keywords of the task's environment (split, scenes, physics, ...).
+            **settings: Other keywords of the task's environment (split, scenes, physics, cameras, ...).
 
         Raises:
             ValueError: For unknown names, numbers out of range, and where nothing renders.
@@ -95,7 +95,8 @@ class RobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         self.action_space = self.env.get_wrapper_attr("single_action_space")
         state = gym.spaces.Box(-np.inf, np.inf, self._state().shape, np.float32)
         picture = gym.spaces.Box(0, 255, (side, side, 3), np.uint8)
-        self.observation_space = gym.spaces.Dict({"pixels": gym.spaces.Dict({HEAD: picture}), "agent_pos": state})
+        pixels = gym.spaces.Dict(dict.fromkeys((HEAD, *base.cameras), picture))
+        self.observation_space = gym.spaces.Dict({"pixels": pixels, "agent_pos": state})
 
     @property
     def task_description(self) -> str:
@@ -153,7 +154,9 @@ class RobotEnv(gym.Env[Observation, NDArray[np.float32]]):
 
     def _observation(self) -> Observation:
         rgb, _ = self._base.observer.look()
-        return {"pixels": {HEAD: rgb.cpu().numpy().copy()}, "agent_pos": self._state()}
+        seen = {HEAD: rgb, **{name: self._base.observer.picture(name) for name in self._base.cameras}}
+        pixels = {name: picture.cpu().numpy().copy() for name, picture in seen.items()}
+        return {"pixels": pixels, "agent_pos": self._state()}
 
     def _state(self) -> NDArray[np.float32]:
         """What the robot feels of itself, [S], as the module says."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from torch import Tensor
 
 from hazard_ms.robots.direct import direct, pose_of
 from hazard_ms.robots.planar import FORWARD_STEP, HEAD_FOV, TURN_STEP, PlanarRobot
+from hazard_ms.robots.robot import MountedCamera
 from hazard_ms.robots.without_visuals import without_visuals
 from hazard_ms.spec import Build
 
@@ -31,6 +33,8 @@ TURN_AROUND = np.pi  # limit given to the arm joints that turn without end [rad]
 
 ALONG = ("shoulder_lift_link", "elbow_flex_link", "wrist_flex_link")  # where the arm bends
 SHUT = 0.005  # a finger target below this is a command to shut the hand [m]
+
+DOWN_40 = (float(np.cos(np.pi / 9.0)), 0.0, float(np.sin(np.pi / 9.0)), 0.0)  # 40 degrees about y, (w, x, y, z)
 
 # Joints in SAPIEN's order: base x, y, turn; torso; head pan; shoulder pan; head tilt; shoulder lift; upper arm roll;
 # elbow; forearm roll; wrist flex; wrist roll; two fingers [m] and [rad]. Everything lies within 0.29 m of the base's
@@ -65,6 +69,14 @@ class HazardFetch(PlanarRobot, Fetch):
     ride_height = RIDE_HEIGHT
     bag = (0.05, -0.13, 0.72)  # under the tucked hand
     head_camera = "head"
+    mounted_cameras = MappingProxyType(
+        {
+            # above the gripper, as ManiSkill's "fetch_hand"
+            "wrist": MountedCamera("gripper_link", (-0.1, 0.0, 0.1), (1.0, 0.0, 0.0, 0.0), 2.0),
+            # on the left of the torso, 40 degrees down: it turns with the base alone [ours]
+            "shoulder": MountedCamera("torso_lift_link", (0.0, 0.25, 0.6), DOWN_40, np.pi / 2.0),
+        }
+    )
     skill_control_mode = "pd_joint_pos"
     tucked = TUCKED[[5, 7, 8, 9, 10, 11, 12]]
     # the elbow up at the side, in four ways, and before the body [ours: the quickest of 150 over tables of the scenes]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from hazard_ms.robots.direct import direct, pose_of
 from hazard_ms.robots.g1_controllers import LEFT, RIGHT, HandsController, HandsControllerConfig, LegsControllerConfig
 from hazard_ms.robots.g1_description import DOWN, LEG_JOINTS, g1_description
 from hazard_ms.robots.planar import FORWARD_STEP, HEAD_FOV, TURN_STEP, PlanarRobot, turned
+from hazard_ms.robots.robot import MountedCamera
 from hazard_ms.spec import Build
 
 # per frame rate [N/Hz] and [N m/Hz]; as Fetch's for its weight: 33 kg reach full speed within two to four frames
@@ -35,6 +37,7 @@ BASE_DAMPING = 2e4  # [N s/m] and [N m s/rad]; holds the base's speed while the 
 CROUCH = 0.2
 TWIST = 0.8  # most that skills turn the torso to a side [rad]; the joint could turn by 2.6
 # in the head, 30 degrees down as ManiSkill's
+DOWN_40 = (float(np.cos(np.pi / 9.0)), 0.0, float(np.sin(np.pi / 9.0)), 0.0)  # 40 degrees about y, (w, x, y, z)
 EYES = sapien.Pose([0.07, 0.0, 0.46], [np.cos(np.pi / 12), 0.0, np.sin(np.pi / 12), 0.0])
 
 BODY = ("torso_joint", "crouch_joint", "bend_joint")
@@ -93,6 +96,13 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
     ride_height = 0.0
     bag = (-0.20, 0.0, 0.64)  # behind the hips, out of the camera's sight, within reach of both hands
     head_camera = "head"
+    mounted_cameras = MappingProxyType(
+        {
+            "wrist": MountedCamera("right_palm_link", (0.0, 0.0, 0.06), (1.0, 0.0, 0.0, 0.0), 2.0),
+            "wrist_left": MountedCamera("left_palm_link", (0.0, 0.0, 0.06), (1.0, 0.0, 0.0, 0.0), 2.0),
+            "shoulder": MountedCamera("torso_link", (0.05, 0.2, 0.35), DOWN_40, np.pi / 2.0),
+        }
+    )
     skill_control_mode = "pd_joint_pos"
     tucked = TUCKED
     outstretched = STRETCHED

@@ -8,14 +8,24 @@ arrays are of the first environment, which is the one that skills run in.
 from __future__ import annotations
 
 import abc
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from torch import Tensor
 
 from hazard_ms.spec import Build
+
+
+class MountedCamera(NamedTuple):
+    """A camera on a link of a robot, which looks along the x axis of its own frame, with z up."""
+
+    link: str
+    position: tuple[float, float, float]  # in the frame of the link [m]
+    rotation: tuple[float, float, float, float]  # there, (w, x, y, z)
+    fov: float  # of its height [rad]
 
 
 class Robot(abc.ABC):
@@ -26,6 +36,8 @@ class Robot(abc.ABC):
 
     build: Build
     head_camera: str  # uid of the sensor
+    # cameras beside that of the head by name, which an environment has if it is asked for them
+    mounted_cameras: Mapping[str, MountedCamera] = MappingProxyType({})
     skill_control_mode: str  # the control mode whose actions `action` makes
     tucked: NDArray[np.float64]  # arm joints where the arm is out of the way [rad], [J]
     # arm joints that lead past furniture to where the hand is needed [rad], [J] each

@@ -134,9 +134,9 @@ class Observer:
         points = sample_points(depth, params["intrinsic_cv"], params["cam2world_gl"])
         return hazard_images(self.situation.episode.levels, points)
 
-    def _textures(self, **wanted: bool) -> dict[str, Tensor]:
+    def _textures(self, name: str = "", **wanted: bool) -> dict[str, Tensor]:
         every = dict.fromkeys(("rgb", "depth", "position", "segmentation", "normal", "albedo"), False)
-        seen = self.camera.get_obs(**{**every, **wanted})
+        seen = (self.sensors[name] if name else self.camera).get_obs(**{**every, **wanted})
         # a GPU may have drawn what a CPU simulates
         return {name: image.to(self.labels.device) for name, image in seen.items()}
 
@@ -149,6 +149,11 @@ class Observer:
         seen = self._textures(rgb=True, depth=labels is None, segmentation=labels is None)
         colour, view = self._view(seen if labels is None else labels.take(), seen["rgb"])
         return colour[0], view
+
+    def picture(self, name: str) -> Tensor:
+        """The first environment's picture of the camera `name` at the time of the last look, [H, W, 3], uint8."""
+        self.sensors[name].capture()
+        return self._textures(name, rgb=True)["rgb"][0]
 
     def glance(self) -> View:
         """The view of a look without its image, in a third of the time."""

@@ -132,6 +132,9 @@ def test_with_keep_0_only_broken_simulations_are_not_kept() -> None:
         ({"keep": 1.5}, "keep must be a share from 0 to 1, got 1.5"),
         ({"obs": "rgb+none"}, "obs must be one of state, rgb, depth, segmentation"),
         ({"every": 0}, "every must be"),
+        ({"cameras": "head+elbow", "obs": "rgb"}, "cameras must be one of head, wrist, shoulder, got 'elbow'"),
+        ({"cameras": "wrist", "obs": "rgb"}, "cameras must have head, and others only with rgb in obs, got 'wrist'"),
+        ({"cameras": "head+wrist", "obs": "depth"}, "others only with rgb in obs, got 'head.wrist'"),
         ({"env": EnvOptions("HazardFlod-v1")}, "did you mean 'HazardFlood-v1'"),
     ],
 )

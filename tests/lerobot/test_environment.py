@@ -34,14 +34,17 @@ from tests.worlds.registering import practising
 pytestmark = pytest.mark.render
 EPISODE = EpisodeOptions(agent="tests.demonstrations.test_recorder:Told", seed=11, scene="kitchen_a/03")
 EXAMPLE = Path(__file__).parents[2] / "examples" / "lerobot" / "env.py"
+CAMERAS = ("head", "wrist", "shoulder")
 MOST_OFF = 6.0  # of a film's colours, which are compressed, in the mean [levels]
 
 
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A short recording with a picture of every frame, as a LeRobot dataset."""
+    """A short recording with pictures of every frame, as a LeRobot dataset."""
     output = tmp_path_factory.mktemp("demos")
-    options = RecordOptions(agent=EPISODE.agent, keep=0.0, verify=False, every=1, obs="rgb", output=output)
+    options = RecordOptions(
+        agent=EPISODE.agent, keep=0.0, verify=False, every=1, obs="rgb", cameras="+".join(CAMERAS), output=output
+    )
     options.dataset.mkdir(parents=True)
     outcome = attempt(RecordJob(EPISODE, 60.0, record=options), lambda word: None)
     assert not outcome.error
@@ -61,20 +64,26 @@ def env() -> Iterator[RobotEnv]:
 def test_the_actions_of_a_dataset_give_its_states_and_pictures_again(exported: Path) -> None:
     rows = pq.read_table(exported / "data").to_pydict()
     (episode,) = pq.read_table(exported / "meta/episodes").to_pylist()
-    with av.open(str(next((exported / "videos").rglob("*.mp4")))) as film:
-        shown = [picture.to_ndarray(format="rgb24").astype(float) for picture in film.decode(video=0)]
-    env = gym.make(ENV_ID, task=episode["env_id"], **json.loads(episode["settings"]))
+    films = {}
+    for camera in CAMERAS:
+        with av.open(str(next((exported / "videos" / f"observation.images.{camera}").rglob("*.mp4")))) as film:
+            films[camera] = [picture.to_ndarray(format="rgb24").astype(float) for picture in film.decode(video=0)]
+    env = gym.make(ENV_ID, task=episode["env_id"], cameras=CAMERAS[1:], **json.loads(episode["settings"]))
     seen, _ = env.reset(seed=episode["seed"], options={"scene": episode["scene"], "lerobot_new_rollout": True})
-    moved = np.zeros_like(seen["agent_pos"])
-    assert len(rows["action"]) == len(shown) > 20
-    for state, action, picture in zip(rows["observation.state"], rows["action"], shown, strict=True):
+    moved, apart = np.zeros_like(seen["agent_pos"]), list[float]()
+    assert [len(shown) for shown in films.values()] == [len(rows["action"])] * 3 and len(rows["action"]) > 20
+    for number, (state, action) in enumerate(zip(rows["observation.state"], rows["action"], strict=True)):
         np.testing.assert_array_equal(seen["agent_pos"], np.array(state, np.float32))
-        assert np.abs(seen["pixels"]["head"] - picture).mean() < MOST_OFF
+        assert set(seen["pixels"]) == set(CAMERAS)
+        for camera, shown in films.items():
+            assert np.abs(seen["pixels"][camera] - shown[number]).mean() < MOST_OFF, camera
+            apart.append(np.abs(seen["pixels"][camera] - films["head"][number]).mean())
         before = seen["agent_pos"]
         seen, reward, terminated, truncated, info = env.step(np.array(action, np.float32))
         moved = np.maximum(moved, np.abs(seen["agent_pos"] - before))
         assert not terminated and not truncated and info["is_success"] is False
     assert moved.max() > 0.01  # it did something
+    assert min(apart[1::3] + apart[2::3]) > 2.0 * MOST_OFF  # cameras see other things than that of the head
     words = pq.read_table(exported / "meta/tasks.parquet").to_pydict()
     assert env.get_wrapper_attr("task_description") in [text for column in words.values() for text in column]
     env.close()

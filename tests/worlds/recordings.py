@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.demonstrations import claims, store
-from hazard_ms.demonstrations.layout import DECISIONS, FRAMES, PRIVILEGED, TRUTH, VIDEO, Entry
+from hazard_ms.demonstrations.layout import DECISIONS, FRAMES, PRIVILEGED, TRUTH, Entry
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import EpisodeResult
 from tests.worlds.results import result_of
@@ -50,7 +50,7 @@ def stored(
         store.put_arrays(part / FRAMES, {"action": rng.random((3, 2), np.float32)})
         store.put_arrays(part / PRIVILEGED / TRUTH, {"best": np.ones(2, np.float32)})
         if film:
-            (part / VIDEO).write_bytes(film)
+            (part / "head.mp4").write_bytes(film)
         meta = {"recipe": recipe, "reason": reason, "reach": 1.0, "control_mode": "pd_joint_pos", "privileged": True}
         store.describe(part, result, meta)
         entry = dataclasses.replace(store.entry_of(part), verified=True, seconds={"physics": float(os.getpid())})

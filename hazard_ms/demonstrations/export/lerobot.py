@@ -18,7 +18,7 @@ from hazard_ms.demonstrations.export.lerobot_tables import Tables, read_columns,
 from hazard_ms.demonstrations.export.source import Common, Source, needed
 from hazard_ms.demonstrations.reading import Demonstration
 
-HEAD = "observation.images.head"
+PICTURES = "observation.images."  # before the name of a camera
 STATE_NAMES = ("base.x", "base.y", "base.heading", "hand.x", "hand.y", "hand.z", "hand.holding")  # after the joints
 Columns = dict[str, NDArray[Any]]
 
@@ -84,9 +84,9 @@ class _Writing:
         self._folder, self._common = folder, common
         self._step, self._rate, self._start, self._language = _step(common), rate, 0, language
         self._tables = Tables(folder)
-        self._film = Film(folder, HEAD, rate) if common.pictures else None
+        self._films = {camera: Film(folder, PICTURES + camera, rate) for camera in common.cameras}
         self._columns: Columns = {}  # of the last episode
-        self._look: dict[str, Any] = {}  # of its pictures
+        self._looks: dict[str, Any] = {}  # of its pictures, by camera
 
     def add(self, one: Demonstration) -> None:
         """Add an episode. Raises ValueError for one with fewer pictures than rows."""
@@ -109,11 +109,11 @@ class _Writing:
         entry |= self._origin(one)
         entry |= {"dataset_from_index": self._start, "dataset_to_index": self._start + count}
         stats = {name: stats_of(column.reshape(count, -1)) for name, column in columns.items()}
-        if self._film is not None:
-            entry |= self._film.add(one, count)
-            shown = samples(one, count)
-            stats[HEAD] = stats_of(shown, picture=True)
-            self._look = picture_info(shown, self._rate)
+        for camera, film in self._films.items():
+            entry |= film.add(one.films[camera], count)
+            shown = samples(one.films[camera], count)
+            stats[PICTURES + camera] = stats_of(shown, picture=True)
+            self._looks[PICTURES + camera] = picture_info(shown, self._rate)
         self.episodes.append(entry | self._tables.add(columns, **spoken))
         self.stats.append(stats)
         self._columns, self._start = columns, self._start + count
@@ -135,7 +135,7 @@ class _Writing:
         for name, column in read_columns(self._folder):
             parts.setdefault(name, []).append(stats_of(column))
         made = {name: joined(found) for name, found in parts.items()}
-        return {**made, HEAD: merged([stats[HEAD] for stats in self.stats])} if self._look else made
+        return made | {key: merged([stats[key] for stats in self.stats]) for key in self._looks}
 
     def features(self, source: Source) -> dict[str, Any]:
         """The description of each column in info.json."""
@@ -149,15 +149,15 @@ class _Writing:
             for name, column in self._columns.items()
         }
         made |= {COLUMN: FEATURE} if self._language else {}
-        return {**made, **({HEAD: self._look} if self._look else {})}
+        return {**made, **self._looks}
 
     def close(self) -> None:
         """Finish the files that are being written."""
         self._tables.close()
-        if self._film is not None:
-            self._film.close()
+        for film in self._films.values():
+            film.close()
 
 
 def _step(common: Common) -> int:
     """Frames from one row to the next."""
-    return common.every if common.pictures else 1
+    return common.every if common.cameras else 1

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.demonstrations.export.lerobot_tables import CHUNK, FILM_SIZE, MB, place
-from hazard_ms.demonstrations.reading import Demonstration
 
 CODEC = "h264"  # of recordings
 LARGEST, MOST_PIXELS = 256_000_000, 1024 * 1024  # of a film [bytes], of a picture [-] [ours]
@@ -30,20 +29,20 @@ class Film:
         self._file: Any = None
         self._size = self._shown = 0  # bytes and pictures in it
 
-    def add(self, one: Demonstration, count: int) -> dict[str, Any]:
-        """Append the first `count` pictures of an episode. Returns the columns that say where they are.
+    def add(self, path: Path, count: int) -> dict[str, Any]:
+        """Append the first `count` pictures of the film `path`. Returns the columns that say where they are.
 
-        Raises ValueError for an episode with fewer pictures, and for films that cannot follow each other.
+        Raises ValueError for one with fewer pictures, and for films that cannot follow each other.
         """
-        with _opened(one) as (film, stream):
+        with _opened(path) as (film, stream):
             packets = [packet for packet in film.demux(stream) if packet.size][:count]
             if len(packets) < count or any(packet.pts != packet.dts for packet in packets):
-                raise ValueError(f"{one.video} must hold {count} pictures in their order, got {len(packets)}")
+                raise ValueError(f"{path} must hold {count} pictures in their order, got {len(packets)}")
             size = sum(packet.size for packet in packets)
             if self._file is None or self._size + size > FILM_SIZE * MB:
                 self._begin(stream)
             if stream.codec_context.extradata != self._header:
-                raise ValueError(f"{one.video} must be encoded as the films before, got another header")
+                raise ValueError(f"{path} must be encoded as the films before, got another header")
             start = self._shown
             for packet in packets:
                 packet.stream, packet.time_base = self._stream, Fraction(1, self._rate)
@@ -79,13 +78,13 @@ class Film:
             self._file = None
 
 
-def samples(one: Demonstration, count: int) -> NDArray[np.uint8]:
-    """Some of the first `count` pictures of an episode, evenly spaced, [N, H, W, 3].
+def samples(path: Path, count: int) -> NDArray[np.uint8]:
+    """Some of the first `count` pictures of the film `path`, evenly spaced, [N, H, W, 3].
 
-    Raises ValueError for an episode without a film, and for one that is damaged or too large.
+    Raises ValueError for one that is damaged or too large.
     """
     chosen = set(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).round().astype(int).tolist())
-    with _opened(one) as (film, stream):
+    with _opened(path) as (film, stream):
         shown = enumerate(itertools.islice(film.decode(stream), count))
         return np.stack([picture.to_ndarray(format="rgb24") for number, picture in shown if number in chosen])
 
@@ -111,22 +110,20 @@ def picture_info(shown: NDArray[np.uint8], rate: int) -> dict[str, Any]:
 
 
 @contextmanager
-def _opened(one: Demonstration) -> Iterator[tuple[Any, Any]]:
-    """The film of an episode, open, and its pictures. Raises ValueError for films that the recorder does not make."""
+def _opened(path: Path) -> Iterator[tuple[Any, Any]]:
+    """The film `path`, open, and its pictures. Raises ValueError for films that the recorder does not make."""
     import av
 
-    if one.video is None:
-        raise ValueError(f"{one.folder} must hold a film of the head camera as the others do, got none")
-    if (size := one.video.stat().st_size) > LARGEST:
-        raise ValueError(f"{one.video} must have at most {LARGEST} bytes, got {size}")
+    if (size := path.stat().st_size) > LARGEST:
+        raise ValueError(f"{path} must have at most {LARGEST} bytes, got {size}")
     try:
-        with av.open(str(one.video), format="mp4") as film:  # which opens no other file, as playlists would
+        with av.open(str(path), format="mp4") as film:  # which opens no other file, as playlists would
             stream = film.streams.video[0]
             codec = stream.codec_context
             if codec.name != CODEC or codec.width * codec.height > MOST_PIXELS:
                 told = f"{codec.name}, {codec.width} x {codec.height}"
-                raise ValueError(f"{one.video} must be {CODEC} of at most {MOST_PIXELS} pixels, got {told}")
+                raise ValueError(f"{path} must be {CODEC} of at most {MOST_PIXELS} pixels, got {told}")
             codec.options = {"max_pixels": str(MOST_PIXELS)}  # also for pictures that are larger than the film says
             yield film, stream
     except (av.FFmpegError, IndexError) as error:
-        raise ValueError(f"{one.video} must be a film of the head camera, got {error!s:.200}") from None
+        raise ValueError(f"{path} must be a film of a camera, got {error!s:.200}") from None

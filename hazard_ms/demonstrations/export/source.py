@@ -35,8 +35,8 @@ class Common:
     reward_mode: str
     obs: str  # what was recorded of the observations, as `hazard-ms demos record --obs` takes it
     fps: float  # frames per second of simulated time
-    every: int  # frames from one picture of the head camera to the next
-    pictures: bool  # whether there is a film of the head camera
+    every: int  # frames from one picture to the next
+    cameras: tuple[str, ...]  # of which there are films, that of the head first
     max_frames: int  # of an episode
 
     @property
@@ -53,7 +53,7 @@ class Common:
             env_id=episode.env_id,
             agent=episode.agent,
             settings=episode_of(episode).settings,
-            pictures=one.video is not None,
+            cameras=tuple(one.films),
             max_frames=episode.max_frames,
             **meta,
         )

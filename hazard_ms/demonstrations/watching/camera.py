@@ -1,4 +1,4 @@
-"""A watcher that takes the pictures of the head camera: a film, and depth and labels as images."""
+"""A watcher that takes the pictures of a robot's cameras: a film of each, and depth and labels that its head sees."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from types import TracebackType
 
 import cv2
 import numpy as np
+from torch import Tensor
 
-from hazard_ms.demonstrations.layout import DEPTH, LABEL_SHIFT, LABELS, NO_LABEL, VIDEO
+from hazard_ms.demonstrations.layout import DEPTH, FILM, HEAD, LABEL_SHIFT, LABELS, NO_LABEL
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.machine.files import drafts
 from hazard_ms.machine.video import Video
@@ -27,14 +28,17 @@ CLOSED = ("-preset", "veryfast", "-crf", "18", "-g", "30", "-bf", "0", "-flags",
 EXACT = ("-fflags", "+bitexact", "-map_metadata", "-1")
 
 
-class HeadCamera(Watcher):
+class Cameras(Watcher):
     """Takes a picture at the start of an episode and after every so many frames. A context manager."""
 
-    def __init__(self, part: Path, kinds: tuple[str, ...], every: int) -> None:
-        """Write into the folder `part`; `kinds`: some of rgb, depth, segmentation; `every`: frames between pictures."""
-        self._part, self._kinds, self._every = part, kinds, every
+    def __init__(self, part: Path, kinds: tuple[str, ...], every: int, mounted: tuple[str, ...] = ()) -> None:
+        """Write into the folder `part`, at every so many frames.
+
+        `kinds`: some of rgb, depth, segmentation; `mounted`: cameras beside that of the head, which give rgb alone.
+        """
+        self._part, self._kinds, self._every, self._mounted = part, kinds, every, mounted
         self._stack = contextlib.ExitStack()
-        self._video: Video | None = None
+        self._films: dict[str, Video] = {}
 
     def begin(self, env: SkillEnv, decision: Decision) -> None:
         """Take the first picture."""
@@ -53,13 +57,9 @@ class HeadCamera(Watcher):
         rgb, view = self._env.base.observer.look()
         name = f"{self._env.frame:06d}.png"
         if "rgb" in self._kinds:
-            pixels = rgb.cpu().numpy()
-            if self._video is None:
-                high, wide = pixels.shape[:2]
-                (draft,) = self._stack.enter_context(drafts(self._part / VIDEO))
-                rate = float(self._env.base.control_freq) / self._every
-                self._video = self._stack.enter_context(Video(draft, (wide, high), rate, (*CLOSED, *EXACT)))
-            self._video.add(pixels)
+            self._film(HEAD, rgb)
+            for camera in self._mounted:
+                self._film(camera, self._env.base.observer.picture(camera))
         if "depth" in self._kinds:
             far = np.rint(view.depth * MILLIMETRES).clip(0, MOST_DEPTH)
             _save(self._part / DEPTH / name, far.astype(np.uint16))
@@ -67,7 +67,17 @@ class HeadCamera(Watcher):
             labels = np.where(view.labels == NOTHING, NO_LABEL, view.labels + LABEL_SHIFT)
             _save(self._part / LABELS / name, labels.astype(np.uint16))
 
-    def __enter__(self) -> HeadCamera:
+    def _film(self, camera: str, picture: Tensor) -> None:
+        """Append a `picture`, [H, W, 3], uint8, to the film of a camera."""
+        pixels = picture.cpu().numpy()
+        if camera not in self._films:
+            high, wide = pixels.shape[:2]
+            (draft,) = self._stack.enter_context(drafts(self._part / (camera + FILM)))
+            rate = float(self._env.base.control_freq) / self._every
+            self._films[camera] = self._stack.enter_context(Video(draft, (wide, high), rate, (*CLOSED, *EXACT)))
+        self._films[camera].add(pixels)
+
+    def __enter__(self) -> Cameras:
         return self
 
     def __exit__(

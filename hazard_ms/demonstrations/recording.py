@@ -135,7 +135,8 @@ def _recorded(job: RecordJob, say: Say) -> EpisodeResult:
         keywords: dict[str, Any] = {"obs_mode": "state"} if options.state else {}
         keywords |= {"cameras": options.mounted} if options.mounted else {}
         result = play(job.options, watchers, teacher, reward_mode=REWARD, **keywords)
-    reason, verified = why_not(result, foresight.bests[0], options.keep), False
+    succeeded = bool(recorder.frames()["success"][-1:].any())
+    reason, verified = why_not(result, foresight.bests[0], options.keep, succeeded), False
     seconds = {**result.phase_seconds, "labels": foresight.seconds}
     if options.verify:
         start = time.perf_counter()
@@ -187,12 +188,15 @@ def _camera(part: Path, options: RecordOptions) -> Iterator[list[Watcher]]:
         yield [cameras]
 
 
-def why_not(result: EpisodeResult, reach: float, keep: float) -> str:
-    """The reason for which an episode is not kept; empty if it is. `reach`: value of the best plan from its start."""
+def why_not(result: EpisodeResult, reach: float, keep: float, succeeded: bool) -> str:
+    """The reason for which an episode is not kept; empty if it is.
+
+    `reach`: value of the best plan from its start; `succeeded`: whether it reached its task's goal.
+    """
     blocked = sum(decision.reason == BLOCKED for decision in result.decisions)
     if result.ended == BROKEN:
         return result.ended
-    if result.tally.value < keep * reach:
+    if result.tally.value < keep * reach and not succeeded:
         return f"{100 * result.tally.value:.1f} % of the value, of {100 * reach:.1f} % that can be reached"
     if blocked > MOST_BLOCKED and keep > 0.0:
         return f"{blocked} skills were blocked"

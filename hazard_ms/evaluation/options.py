@@ -36,7 +36,7 @@ class EnvOptions:
     severity: Annotated[str, offer(SEVERITIES)] = "severe"
     """How strong the hazards of the preset realistic are."""
     hazards: tuple[Annotated[str, offer(registry.HAZARDS)], ...] = ()
-    """Hazards of HazardCompound-v1; its usual ones if not given."""
+    """Hazards of HazardCompound-v1, its usual ones if not given, or of tasks for practice."""
     robot_uids: Annotated[str, offer(registry.ROBOTS), flag("-r", "--robot-uids", old="robot")] = "fetch"
     """Robot that rescues."""
     affects_agent: bool = False

@@ -22,9 +22,7 @@ def task_of(name: str, physics: str, hazards: Sequence[str] | None = None, sever
     entry = find(TASKS, name, "task")
     maker = load(entry.maker)
     if hazards is not None and "hazards" not in inspect.signature(maker).parameters:
-        raise ValueError(
-            f"hazards must be None for {name}, which has its own (HazardCompound-v1 has not), got {hazards!r}"
-        )
+        raise ValueError(f"hazards must be None for {name}, which has its own (others have not), got {hazards!r}")
     options: dict[str, Any] = severity_for(maker, name, physics, severity)
     made = maker(physics, **options) if hazards is None else maker(physics, hazards=hazards, **options)
     if not isinstance(made, Task):

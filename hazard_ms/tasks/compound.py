@@ -24,10 +24,20 @@ def hazard_compound(physics: str = "paper", hazards: Sequence[str] = DEFAULT, se
 
     Raises ValueError for no hazards, unknown ones, the same one twice, and ones that use each other's fields.
     """
-    known = isinstance(hazards, (list, tuple)) and all(isinstance(h, str) and h in HAZARDS for h in hazards)
-    if not known or not hazards or len(set(hazards)) < len(hazards):
+    if isinstance(hazards, (list, tuple)) and not hazards:
         raise ValueError(f"hazards must be some of {', '.join(HAZARDS)}, each once, got {hazards!r}")
-    return rescue(in_order([hazard(name, physics, severity) for name in HAZARDS if name in hazards]))
+    return rescue(acting(hazards, physics, severity))
+
+
+def acting(hazards: Sequence[str], physics: str, severity: str = USUAL) -> tuple[Hazard, ...]:
+    """The hazards called `hazards`, each with the physics of a preset, in the order in which they advance.
+
+    Raises ValueError for unknown ones, the same one twice, and ones that use each other's fields.
+    """
+    known = isinstance(hazards, (list, tuple)) and all(isinstance(h, str) and h in HAZARDS for h in hazards)
+    if not known or len(set(hazards)) < len(hazards):
+        raise ValueError(f"hazards must be some of {', '.join(HAZARDS)}, each once, got {hazards!r}")
+    return in_order([hazard(name, physics, severity) for name in HAZARDS if name in hazards])
 
 
 def in_order(hazards: Sequence[Hazard]) -> tuple[Hazard, ...]:

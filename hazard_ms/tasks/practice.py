@@ -1,12 +1,14 @@
-"""Practice of single motions: rooms without a hazard, in which a robot learns to walk to a thing, or to pick one up.
+"""Practice, from a single motion to one rescue: to walk to a thing, pick it up, put it into the bag, fetch it.
 
-Not part of the benchmark: the tasks are registered when this module is imported, as by
-`gym.make("hazard_ms.tasks.practice:HazardPickUp-v1")`.
+Rooms are calm unless `hazards` are asked for, as by `gym.make("hazard_ms.tasks.practice:HazardFetch-v1",
+hazards=["fire"])`: so it can be seen what a hazard costs a policy. Not part of the benchmark: the tasks are registered
+when this module is imported.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -17,10 +19,12 @@ from hazard_ms.episode.safe_places import BAG
 from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.presets import PRESETS
 from hazard_ms.registry import register_task
-from hazard_ms.spec import AgentStart, Body, Fixture, Goal, Room, SceneSpec, Task, rounding
+from hazard_ms.spec import AgentStart, Body, Fixture, Goal, Room, SceneSpec, Task, Term, rounding
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import practice_rewards as rewards
-from hazard_ms.tasks.practice_terms import PICK_UP_TERMS, WALK_TO_TERMS
+from hazard_ms.tasks.compound import acting
+from hazard_ms.tasks.practice_terms import FETCH_TERMS, PICK_UP_TERMS, STOW_TERMS, WALK_TO_TERMS
 
 ROOM = (7.0, 6.0)  # of a practice room [m] [ours]
 COLUMNS, ROWS = (1.4, 3.5, 5.6), (1.5, 4.5)  # about where its six stands are, along x and y [m]: no arm reaches two
@@ -31,22 +35,30 @@ WIDTH, HEIGHT, MASS = (0.04, 0.12), (0.05, 0.25), 0.3  # of things, least and mo
 SCENES = {"train": range(100), "test": range(100, 125)}  # numbers of rooms
 NEAR, FAR = 0.6, 0.85  # distance at which walks to a thing end, and pick-ups begin [m] (skills/motor/walking.py)
 ASKEW = 0.3  # most that the robot looks past a thing when a pick-up begins [rad]
+WALL = 0.2  # least distance of a fire from a wall [m] [ours]
 DISTANT = 2.0  # least distance at which a walk begins [m]
 BERTH = 0.15  # clearance at the start of a walk, beside the robot's own radius [m]
 DRAWS = 64  # places of which the first clear one is taken
+FIRES, FIRE_GAP = (
+    2,
+    (0.5, 0.9),
+)  # with fire: places that burn at frame 0, so far from the stand of one target [m] [ours]
 
 
 def scene(number: str, walking: bool) -> SceneSpec:
     """The practice room "practice/NUMBER": six stands with a thing on each, or on one of them if it is for walking.
 
+    Floor burns beside the stand of one of these things if the task has fire.
+
     Raises ValueError for another name.
     """
     one_of(number, [name for split in SCENES for name in names(split)], "scene")
     chance = np.random.default_rng(int(number.rpartition("/")[2]))
-    fixtures, bodies = list[Fixture](), list[Body]()
+    fixtures, bodies, places = list[Fixture](), list[Body](), list[tuple[float, float]]()
     goal = int(chance.integers(len(COLUMNS) * len(ROWS)))
     for i, (x, y) in enumerate((x, y) for x in COLUMNS for y in ROWS):
         at = (x + chance.uniform(-SHIFT, SHIFT), y + chance.uniform(-SHIFT, SHIFT))
+        places.append(at)
         top, wide = float(chance.uniform(*STAND_HEIGHT)), float(chance.uniform(*STAND_WIDTH))
         size = (*chance.uniform(*WIDTH, size=2).tolist(), float(chance.uniform(*HEIGHT)))
         if chance.random() < ON_FLOOR and not walking:
@@ -55,7 +67,12 @@ def scene(number: str, walking: bool) -> SceneSpec:
             fixtures.append(Fixture(f"stand_{i}", "table", "plain_box", (*at, 0.0), scale=(wide, wide, top)))
         if i == goal or not walking:
             bodies.append(Body(f"box_{i}", "box", "plain_box", (*at, top), scale=size, mass=MASS))
-    return SceneSpec(number, Room(ROOM), tuple(fixtures), tuple(bodies), ("box",), (), AgentStart((2.4, 3.0)))
+    angles = chance.uniform(0.0, 2.0 * math.pi, FIRES)
+    gaps = chance.uniform(*FIRE_GAP, FIRES)
+    middle = places[goal]
+    around = [middle + gap * np.array([math.cos(a), math.sin(a)]) for a, gap in zip(angles, gaps, strict=True)]
+    fires = tuple((float(x), float(y)) for x, y in np.clip(around, WALL, np.array(ROOM) - WALL))
+    return SceneSpec(number, Room(ROOM), tuple(fixtures), tuple(bodies), ("box",), fires, AgentStart((2.4, 3.0)))
 
 
 def names(split: str) -> tuple[str, ...]:
@@ -91,30 +108,64 @@ def stand_far(situation: Situation, rows: Tensor) -> None:
     situation.agent.place(rows, points[e, first][rows], (2.0 * math.pi * draw[e, first, 2])[rows])
 
 
-def practice(goal: Goal, walking: bool, physics: str) -> Task:
-    """A task of practice. `physics` changes nothing without hazards; ValueError is raised for an unknown preset."""
+def practice(
+    goal: Goal,
+    terms: tuple[Term, ...],
+    walking: bool,
+    text: str,
+    physics: str = "paper",
+    hazards: Sequence[str] = (),
+    severity: str = USUAL,
+) -> Task:
+    """A task of practice: its goal, its observations, whether it begins with a walk, and the task in words.
+
+    `hazards` act from frame 0 on with the `physics` of a preset; without any it is calm.
+
+    Raises ValueError for unknown names, hazards of the open air, and a severity without hazards.
+    """
     one_of(physics, PRESETS, "physics")
+    found = acting(hazards, physics, severity)
+    if open_air := [hazard.name for hazard in found if hazard.open_air]:
+        raise ValueError(f"hazards must act in rooms for practice, got {', '.join(open_air)}")
+    if severity != USUAL and not found:
+        raise ValueError(f"severity must be {USUAL!r} without hazards, got {severity!r}")
     return Task(
         scenes=names,
         build=partial(scene, walking=walking),
-        hazards=(),
+        hazards=found,
         goal=goal,
         safe_place=BAG,
-        observations=WALK_TO_TERMS if walking else PICK_UP_TERMS,
+        observations=terms,
         arrange=stand_far if walking else stand_near,
-        text="Walk to the thing and face it." if walking else "Take the thing before you into your hand.",
+        text=text,
     )
 
 
-def walk_to(physics: str = "paper") -> Task:
-    """The task HazardWalkTo-v1. Raises ValueError for an unknown preset."""
-    return practice(rewards.WALK_TO, True, physics)
+def walk_to(physics: str = "paper", hazards: Sequence[str] = (), severity: str = USUAL) -> Task:
+    """The task HazardWalkTo-v1. Raises ValueError as `practice` does."""
+    text = "Walk to the thing and face it."
+    return practice(rewards.WALK_TO, WALK_TO_TERMS, True, text, physics, hazards, severity)
 
 
-def pick_up(physics: str = "paper") -> Task:
-    """The task HazardPickUp-v1. Raises ValueError for an unknown preset."""
-    return practice(rewards.PICK_UP, False, physics)
+def pick_up(physics: str = "paper", hazards: Sequence[str] = (), severity: str = USUAL) -> Task:
+    """The task HazardPickUp-v1. Raises ValueError as `practice` does."""
+    text = "Take the thing before you into your hand."
+    return practice(rewards.PICK_UP, PICK_UP_TERMS, False, text, physics, hazards, severity)
+
+
+def stow(physics: str = "paper", hazards: Sequence[str] = (), severity: str = USUAL) -> Task:
+    """The task HazardStow-v1. Raises ValueError as `practice` does."""
+    text = "Take the thing before you, and put it into your bag."
+    return practice(rewards.STOW, STOW_TERMS, False, text, physics, hazards, severity)
+
+
+def fetch(physics: str = "paper", hazards: Sequence[str] = (), severity: str = USUAL) -> Task:
+    """The task HazardFetch-v1. Raises ValueError as `practice` does."""
+    text = "Walk to the thing, take it, and put it into your bag."
+    return practice(rewards.FETCH, FETCH_TERMS, True, text, physics, hazards, severity)
 
 
 register_task("HazardWalkTo-v1", walk_to, rewards.WALK_FRAMES)
 register_task("HazardPickUp-v1", pick_up, rewards.PICK_UP_FRAMES)
+register_task("HazardStow-v1", stow, rewards.STOW_FRAMES)
+register_task("HazardFetch-v1", fetch, rewards.FETCH_FRAMES)

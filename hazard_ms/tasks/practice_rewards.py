@@ -1,4 +1,4 @@
-"""Goals and rewards of the practice tasks: to stand before a thing, or to hold it.
+"""Goals and rewards of the practice tasks: to stand before a thing, to hold it, or to have it in the bag, unharmed.
 
 Beside the 1 for success, each frame pays a hint. A walk is paid for its speed towards the thing. It takes hundreds of
 frames, so that a reward for being near would tell one action from another by a hundredth of what is still to come
@@ -12,11 +12,13 @@ import torch
 from torch import Tensor
 
 from hazard_ms.episode.grasp import distance_to_boxes
+from hazard_ms.episode.safe_places import BAG_REACH
 from hazard_ms.episode.situation import Situation
 from hazard_ms.spec import Goal, Term, rounding
 from hazard_ms.spec.robot import GRASP_REACH
 
 WALK_FRAMES, PICK_UP_FRAMES = 450, 120  # of an episode: 7 m at full speed; a skill's pick-up takes 81 at most [ours]
+STOW_FRAMES, FETCH_FRAMES = 240, 750  # twice as long as a skill, or a walk and that, takes at most [ours]
 BEFORE, FACING = 0.85, 0.3  # distance [m] and bearing [rad] at which the robot stands before a thing and faces it
 FULL_SPEED = 0.5  # of the benchmark's robots: 1/62 m a frame (robots/planar.py) at 30 frames a second [m/s]
 HALFWAY = 0.25  # distance from where it could take the thing at which a hand gets half the largest hint [m] [ours]
@@ -31,8 +33,18 @@ def beside(situation: Situation, values: Tensor) -> Tensor:
 
 def nearest(situation: Situation, distance: Tensor) -> Tensor:
     """Index along B of the target with the least `distance`, [E, B]: [E]."""
+    return torch.where(wanted(situation), distance, torch.inf).argmin(dim=1)
+
+
+def wanted(situation: Situation) -> Tensor:
+    """Targets that are neither safe nor harmed, bool [E, B]."""
     world = situation.world
-    return torch.where(world.target & ~world.safe, distance, torch.inf).argmin(dim=1)
+    return world.target & ~world.safe & ~situation.episode.damage.damaged
+
+
+def lost(situation: Situation) -> Tensor:
+    """Whether every target is harmed, bool [E]."""
+    return ~(situation.world.target & ~situation.episode.damage.damaged).any(dim=1)
 
 
 def apart(situation: Situation, points: Tensor) -> Tensor:
@@ -89,8 +101,8 @@ def walk_dense(situation: Situation) -> Tensor:
 
 
 def holding(situation: Situation) -> Tensor:
-    """Whether a target is in the hand, bool [E]."""
-    return (situation.world.held & situation.world.target).any(dim=1)
+    """Whether a target that is not harmed is in the hand, bool [E]."""
+    return (situation.world.held & wanted(situation)).any(dim=1)
 
 
 def pick_up_hint(situation: Situation) -> Tensor:
@@ -103,17 +115,47 @@ def pick_up_dense(situation: Situation) -> Tensor:
     return holding(situation).float() + pick_up_hint(situation) / PICK_UP_FRAMES
 
 
+def stowed(situation: Situation) -> Tensor:
+    """Whether a target is in the bag that was not harmed before, bool [E]."""
+    return (situation.world.safe & ~situation.episode.damage.damaged).any(dim=1)
+
+
+def stow_hint(situation: Situation) -> Tensor:
+    """Half of that of a pick-up, [E]; from a half to 1 for a thing in the hand, by the hand's nearness to the bag."""
+    agent = situation.agent
+    away = (agent.gripper_pose()[0] - agent.bag_position()).norm(dim=1)
+    over = 1.0 / (1.0 + (away - BAG_REACH).clamp(min=0.0) / HALFWAY)
+    return torch.where(holding(situation), 0.5 + 0.5 * over, 0.5 * pick_up_hint(situation))
+
+
+def stow_dense(situation: Situation) -> Tensor:
+    """Dense reward, [E]: 1 for the thing in the bag; each frame up to 1/240 on the way there."""
+    return stowed(situation).float() + stow_hint(situation) / STOW_FRAMES
+
+
+def fetch_hint(situation: Situation) -> Tensor:
+    """Hint on the way to the bag, [E]: a quarter of a walk's, then of a stow's from a quarter up to 1."""
+    near = (thing_ahead(situation)[:, :2].norm(dim=-1) <= BEFORE) | holding(situation)
+    return torch.where(near, 0.25 + 0.75 * stow_hint(situation), 0.25 * walk_hint(situation))
+
+
+def fetch_dense(situation: Situation) -> Tensor:
+    """Dense reward, [E]: 1 for the thing in the bag; each frame up to 1/750 on the way there."""
+    return stowed(situation).float() + fetch_hint(situation) / FETCH_FRAMES
+
+
+DISTANCE = Term(
+    "distance", lambda s: thing_ahead(s)[:, :2].norm(dim=-1), "to the thing, over the floor", unit="m", low=0.0
+)
+GAP = Term("gap", gap, "from the hand to the box of the thing", unit="m", low=0.0)
 WALK_TO = Goal(
     success=arrived,
     dense=walk_dense,
     sparse=lambda s: arrived(s).float(),
     largest=1.0 + 1.0 / WALK_FRAMES,
     least=-1.0 / WALK_FRAMES,
-    info=(
-        Term(
-            "distance", lambda s: thing_ahead(s)[:, :2].norm(dim=-1), "to the thing, over the floor", unit="m", low=0.0
-        ),
-    ),
+    fail=lost,
+    info=(DISTANCE,),
     done="arrived",
 )
 PICK_UP = Goal(
@@ -121,6 +163,26 @@ PICK_UP = Goal(
     dense=pick_up_dense,
     sparse=lambda s: holding(s).float(),
     largest=1.0 + 1.0 / PICK_UP_FRAMES,
-    info=(Term("gap", gap, "from the hand to the box of the thing", unit="m", low=0.0),),
+    fail=lost,
+    info=(GAP,),
     done="in the hand",
+)
+STOW = Goal(
+    success=stowed,
+    dense=stow_dense,
+    sparse=lambda s: stowed(s).float(),
+    largest=1.0 + 1.0 / STOW_FRAMES,
+    fail=lost,
+    info=(GAP,),
+    done="in the bag",
+)
+FETCH = Goal(
+    success=stowed,
+    dense=fetch_dense,
+    sparse=lambda s: stowed(s).float(),
+    largest=1.0 + 1.0 / FETCH_FRAMES,
+    least=-0.25 / FETCH_FRAMES,
+    fail=lost,
+    info=(DISTANCE, GAP),
+    done="in the bag",
 )

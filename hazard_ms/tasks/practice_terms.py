@@ -29,6 +29,11 @@ def fingers(situation: Situation) -> Tensor:
     return rewards.in_base(situation, multiply(multiply(rotation, ahead), conjugate(rotation))[:, 1:])
 
 
+def bag(situation: Situation) -> Tensor:
+    """Mouth of the bag in the frame of the base [m], [E, 3]."""
+    return rewards.in_base(situation, situation.agent.bag_position() - situation.world.agent_position)
+
+
 def direction(situation: Situation) -> Tensor:
     """Direction of the thing over the floor in the frame of the base, a unit vector, [E, 2]."""
     there = rewards.thing_ahead(situation)[:, :2]
@@ -79,3 +84,9 @@ PICK_UP_TERMS = (
     Term("gap", lambda s: rewards.gap(s)[:, None], "from the hand to the box of the thing", (1,), "m", low=0.0),
     Term("shut", lambda s: s.episode.hand.closed[:, None], "the hand was commanded shut", (1,), low=0.0, high=1.0),
 )
+STOW_TERMS = (
+    *PICK_UP_TERMS,
+    Term("holding", lambda s: rewards.holding(s)[:, None], "the thing is in the hand", (1,), low=0.0, high=1.0),
+    Term("bag", bag, "mouth of the bag", (3,), "m", "base", entries=BASE),
+)
+FETCH_TERMS = (*WALK_TO_TERMS, *STOW_TERMS[1:])  # with the thing once

@@ -116,13 +116,15 @@ def test_a_prompt_names_what_was_seen_and_every_option_that_can_be_chosen() -> N
     ],
 )
 def test_reasons_not_to_keep_an_episode(change: dict[str, object], reach: float, reason: str) -> None:
-    assert why_not(dataclasses.replace(HALF, **change), reach, keep=0.8) == reason  # type: ignore[arg-type]
+    found = dataclasses.replace(HALF, **change)  # type: ignore[arg-type]
+    assert why_not(found, reach, keep=0.8, succeeded=False) == reason
 
 
 def test_with_keep_0_only_broken_simulations_are_not_kept() -> None:
     blocked = (DecisionRecord(0, WALK_TO, "pen", False, BLOCKED, 9),) * 9
-    assert why_not(dataclasses.replace(HALF, decisions=blocked), 1.0, keep=0.0) == ""
-    assert why_not(dataclasses.replace(HALF, ended=BROKEN), 0.0, keep=0.0) == BROKEN
+    assert why_not(dataclasses.replace(HALF, decisions=blocked), 1.0, keep=0.0, succeeded=False) == ""
+    assert why_not(HALF, 1.0, keep=0.8, succeeded=True) == ""
+    assert why_not(dataclasses.replace(HALF, ended=BROKEN), 0.0, keep=0.0, succeeded=True) == BROKEN
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.flood.realistic.inundation import Inundation
 from hazard_ms.spec.severity import SEVERITIES, USUAL
 from hazard_ms.tasks import task_of
-from tests.worlds.registering import practising
+from tests.worlds.registering import registered_task
 from tests.worlds.wind_worlds import Thing, begin, street
 
 EVERY = pytest.mark.parametrize("severity", SEVERITIES)
@@ -84,10 +84,10 @@ def test_every_rescue_hands_it_to_its_hazards(name: str) -> None:
 
 
 def test_tasks_without_severities_refuse_all_but_the_usual_one() -> None:
-    with practising():
-        assert task_of("HazardWalkTo-v1", "realistic", None, USUAL).hazards == ()
-        with pytest.raises(ValueError, match="severity must be 'severe' for HazardWalkTo-v1, which has no other"):
-            task_of("HazardWalkTo-v1", "realistic", None, "extreme")
+    with registered_task("HazardMild-v0", lambda physics: task_of("HazardFire-v1", physics)):
+        assert task_of("HazardMild-v0", "realistic", None, USUAL).hazards
+        with pytest.raises(ValueError, match="severity must be 'severe' for HazardMild-v0, which has no other"):
+            task_of("HazardMild-v0", "realistic", None, "extreme")
 
 
 def test_options_name_it_where_physics_is_realistic() -> None:

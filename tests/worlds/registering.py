@@ -47,6 +47,6 @@ def practising() -> Iterator[ModuleType]:
     try:
         yield module
     finally:
-        for entry in [entry for entry in registry.TASKS.values() if entry.maker in (module.walk_to, module.pick_up)]:
+        for entry in [entry for entry in registry.TASKS.values() if entry.maker in vars(module).values()]:
             registry.unregister(entry)
         del sys.modules[module.__name__]

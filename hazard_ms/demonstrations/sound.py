@@ -16,7 +16,7 @@ Arrays = Mapping[str, NDArray[Any]]
 # types of the entries of episode.json; docs/demonstrations.md says what they mean
 META: dict[str, tuple[type, ...]] = {
     **dict.fromkeys(("teacher", "instruction", "robot", "control_mode", "reward_mode", "obs", "reason"), (str,)),
-    **dict.fromkeys(("subtasks", "joints", "things", "targets", "verbs"), (list, str)),
+    **dict.fromkeys(("subtasks", "joints", "hazards", "things", "targets", "verbs"), (list, str)),
     **dict.fromkeys(("recipe", "seeds"), (dict,)),
     **dict.fromkeys(("fps", "reach"), (float,)),
     **dict.fromkeys(("every", "format"), (int,)),
@@ -33,6 +33,7 @@ FRAME_ARRAYS = {
     "base": ("f", "U3"),
     "hand": ("f", "U3"),
     "held": ("i", "U"),
+    "hazard": ("f", "UH"),
     "subtask": ("i", "T"),
     "decision": ("i", "T"),
     "reward": ("f", "T"),

@@ -11,6 +11,7 @@ import cv2
 import gymnasium as gym
 import numpy as np
 import pytest
+import torch
 
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.agents.base import PrivilegedAgent
@@ -85,6 +86,8 @@ def test_a_second_environment_passes_through_the_recorded_states(recorded: Demon
     """Bit by bit: joints, poses, observations, rewards and, every tenth frame, the state of everything."""
     frames, base = recorded.frames, second.unwrapped
     obs, _ = second.reset(seed=EPISODE.seed, options=EPISODE.reset_options)
+    fire = base.episode.states["fire"]
+    assert recorded.meta["hazards"] == ["fire.temperature"] and 19.0 < frames["hazard"].min()  # [C], in a room
     states = dict(zip(frames["state_frame"].tolist(), frames["state"], strict=True))
     assert len(frames["action"]) == recorded.result.frames > WAITED and list(states)[:2] == [0, 10]
     for t in range(len(frames["action"]) + 1):
@@ -94,6 +97,8 @@ def test_a_second_environment_passes_through_the_recorded_states(recorded: Demon
         assert np.array_equal(frames["hand"][t], base.agent.gripper_pose()[0][0].numpy()), t
         assert frames["held"][t] == int(base.hand.held[0])
         assert np.array_equal(frames["obs"][t], obs[0].numpy()), t
+        there = torch.from_numpy(frames["hand"][t])[None, None]
+        assert np.array_equal(frames["hazard"][t], [float(base.task.hazards[0].image(fire, base.world, there))]), t
         if t in states:
             assert np.array_equal(states.pop(t), base.get_state()[0].numpy()), t
         if t < len(frames["action"]):

@@ -18,6 +18,7 @@ from hazard_ms.demonstrations.export.lerobot_tables import Tables, read_columns,
 from hazard_ms.demonstrations.export.source import Common, Source, needed
 from hazard_ms.demonstrations.reading import Demonstration
 
+HAZARD = "hazard"  # a label: what begins with "observation" is what policies see
 PICTURES = "observation.images."  # before the name of a camera
 STATE_NAMES = ("base.x", "base.y", "base.heading", "hand.x", "hand.y", "hand.z", "hand.holding")  # after the joints
 Columns = dict[str, NDArray[Any]]
@@ -70,6 +71,7 @@ def rows_of(one: Demonstration, step: int) -> Columns:
         "next.success": np.logical_or.reduceat(frames["success"], at),
         "subtask_index": frames["subtask"][at].astype(np.int64),
     }
+    made |= {HAZARD: frames["hazard"][at]} if "hazard" in frames else {}
     return {**made, "observation.environment_state": frames["obs"][at]} if "obs" in frames else made
 
 
@@ -143,6 +145,7 @@ class _Writing:
         names = {
             "observation.state": [*joints, *(f"{joint}.velocity" for joint in joints), *STATE_NAMES],
             "action": source.action_names,
+            HAZARD: source.common.hazards,
         }
         made = {
             name: {"dtype": str(column.dtype), "shape": list(column.shape[1:]) or [1], "names": names.get(name)}

@@ -32,6 +32,7 @@ class Common:
     robot: str
     control_mode: str
     joints: list[str]  # in the order of `qpos`
+    hazards: list[str]  # names of the levels in `hazard`
     reward_mode: str
     obs: str  # what was recorded of the observations, as `hazard-ms demos record --obs` takes it
     fps: float  # frames per second of simulated time
@@ -48,7 +49,7 @@ class Common:
     def of(cls, one: Demonstration) -> Common:
         """The settings of one episode, which the others of its dataset share."""
         episode = one.result
-        meta: dict[str, Any] = {key: one.meta[key] for key in SHARED}
+        meta: dict[str, Any] = {"hazards": one.meta.get("hazards", []), **{key: one.meta[key] for key in SHARED}}
         return cls(
             env_id=episode.env_id,
             agent=episode.agent,

@@ -130,6 +130,9 @@ class Recorder(Watcher):
             hand=robot.hand().astype(np.float32),
             held=int(base.hand.held[0]),
         )
+        if base.task.hazards:
+            levels = base.episode.levels(robot.gripper_pose()[0][:, None])
+            _put(self._frames, hazard=levels[0, :, 0].cpu().numpy().copy())
         if self._with_obs:
             _put(self._frames, obs=base.get_obs()[0].cpu().numpy().copy())
         if self._env.frame % STATE_EVERY == 0:
@@ -157,6 +160,7 @@ def _described(env: SkillEnv) -> dict[str, Any]:
         "control_mode": base.agent.control_mode,
         "joints": [joint.name for joint in base.agent.robot.active_joints],
         "fps": float(base.control_freq),
+        "hazards": [f"{hazard.name}.{hazard.level.title}" for hazard in base.task.hazards],
         "things": _names(env),
         "targets": [target.name for target in brief.targets],
         "verbs": _verbs(env),

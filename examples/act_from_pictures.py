@@ -1,0 +1,221 @@
+"""Action chunking with transformers, in one file: pictures and joints in, a second of actions out.
+
+    hazard-ms demos record -e HazardPickUp-v1 --load hazard_ms.tasks.practice -a greedy \\
+        --obs rgb --cameras head+wrist -n 400 -o demos
+    python examples/act_from_pictures.py train demos/HazardPickUp-v1/greedy --minutes 30 --out learned/pick_up
+    python examples/act_from_pictures.py play learned/pick_up --episodes 25
+    python examples/act_from_pictures.py play learned/pick_up --episodes 25 --hazards fire
+
+Every tenth of a second the policy may look through the robot's cameras and feel its joints; it says what to send to the
+controllers in each of the coming tenths, of which the first few are carried out before it looks again (Zhao et al.,
+"Learning fine-grained bimanual manipulation with low-cost hardware", RSS 2023, without the variational encoder: the
+demonstrations are those of a program, of which the paper finds that they need none). A small network of convolutions
+takes the place of a pretrained ResNet, so that two cores suffice. It is told neither where things nor where it is.
+
+A run is resumed where its file is there already.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import cv2
+import gymnasium as gym
+import numpy as np
+import torch
+from safetensors.torch import load_file, save_file
+from torch import Tensor, nn
+
+from hazard_ms.demonstrations.reading import demonstrations
+
+SIDE = 80  # of pictures as the network sees them [pixels]
+CHUNK, CARRIED = 10, 4  # actions that it foresees; those that are carried out before it looks again
+WIDTH, HEADS, DEPTH = 128, 4, 2
+BATCH, RATE, WEIGHT_DECAY = 64, 4e-4, 1e-4
+SHIFT, JITTER = 4, 0.02  # most that pictures are shifted [pixels], spread of the noise of joints [rad, m]
+BASE = 3  # joints that are the robot's place in the world, which it is not told
+
+
+class Rows(NamedTuple):
+    """What was seen, felt and done: N rows, [N, ...] each."""
+
+    pictures: Tensor  # [N, cameras, 3, SIDE, SIDE], uint8
+    body: Tensor  # joints, and whether it holds something
+    chunks: Tensor  # the coming CHUNK actions, [N, CHUNK, A]
+
+
+class Chunks(nn.Module):
+    """From pictures, [N, cameras, 3, SIDE, SIDE], and the body, [N, J], to the coming actions, [N, CHUNK, A]."""
+
+    def __init__(self, cameras: int, joints: int, numbers: int) -> None:
+        super().__init__()
+        sizes = (3, 16, 32, 64, WIDTH)
+        layers = [
+            part
+            for one, two in zip(sizes, sizes[1:], strict=False)
+            for part in (nn.Conv2d(one, two, 3, 2, 1), nn.GroupNorm(8, two), nn.ReLU())
+        ]
+        self.eye = nn.Sequential(*layers)
+        tokens = cameras * (SIDE // 16) ** 2 + 1
+        self.body = nn.Sequential(nn.Linear(joints, WIDTH), nn.ReLU(), nn.Linear(WIDTH, WIDTH))
+        self.places = nn.Parameter(0.02 * torch.randn(tokens, WIDTH))
+        self.queries = nn.Parameter(0.02 * torch.randn(CHUNK, WIDTH))
+        shape = dict(d_model=WIDTH, nhead=HEADS, dim_feedforward=3 * WIDTH, dropout=0.1, batch_first=True)
+        self.encoder = nn.TransformerEncoder(nn.TransformerEncoderLayer(**shape), DEPTH)  # type: ignore[arg-type]
+        self.decoder = nn.TransformerDecoder(nn.TransformerDecoderLayer(**shape), 1)  # type: ignore[arg-type]
+        self.out = nn.Linear(WIDTH, numbers)
+        # what is felt and sent has zero mean and unit variance inside
+        self.register_buffer("felt", torch.stack([torch.zeros(joints), torch.ones(joints)]))
+        self.register_buffer("sent", torch.stack([torch.zeros(numbers), torch.ones(numbers)]))
+
+    def forward(self, pictures: Tensor, body: Tensor) -> Tensor:
+        n, cameras = pictures.shape[:2]
+        seen = self.eye(pictures.flatten(0, 1).float() / 255.0 - 0.5)
+        seen = seen.flatten(2).transpose(1, 2).reshape(n, -1, WIDTH)
+        felt = self.body((body - self.felt[0]) / self.felt[1])
+        known = self.encoder(torch.cat([felt[:, None], seen], 1) + self.places)
+        foreseen = self.out(self.decoder(self.queries.expand(n, -1, -1), known))
+        return foreseen * self.sent[1] + self.sent[0]
+
+
+def small(picture: Any) -> np.ndarray:
+    """A picture, [H, W, 3], as the network sees it, [3, SIDE, SIDE]."""
+    return np.ascontiguousarray(cv2.resize(picture, (SIDE, SIDE), interpolation=cv2.INTER_AREA).transpose(2, 0, 1))
+
+
+def film(path: Path) -> np.ndarray:
+    """All pictures of a film, [T, 3, SIDE, SIDE]."""
+    video, pictures = cv2.VideoCapture(str(path)), []
+    while (read := video.read())[0]:
+        pictures.append(small(cv2.cvtColor(read[1], cv2.COLOR_BGR2RGB)))
+    return np.stack(pictures)
+
+
+def read(folder: Path) -> tuple[Rows, dict[str, Any]]:
+    """The rows of a dataset, and what is needed to play as it was recorded."""
+    pictures, bodies, chunks = [], [], []
+    settings: dict[str, Any] = {}
+    for one in demonstrations(folder):
+        every, total = one.meta["every"], len(one.frames["action"])
+        at = np.arange(0, total, every)
+        seen = [film(path)[: len(at)] for path in one.films.values()]
+        pictures.append(np.stack(seen, 1))
+        bodies.append(np.column_stack([one.frames["qpos"][at, BASE:], one.frames["held"][at] >= 0]))
+        # each row's action, and those that follow; the last one goes on
+        following = np.minimum(at[:, None] + every * np.arange(CHUNK), at[-1])
+        chunks.append(one.frames["action"][following])
+        settings = {
+            "task": one.result.env_id,
+            "cameras": [name for name in one.films if name != "head"],
+            "every": every,
+            "robot_uids": one.meta["robot"],
+        }
+    if not bodies:
+        raise SystemExit(f"{folder} holds no episode")
+    made = [torch.from_numpy(np.concatenate(part)) for part in (pictures, bodies, chunks)]
+    return Rows(made[0], made[1].float(), made[2].float()), settings
+
+
+def shifted(pictures: Tensor) -> Tensor:
+    """Pictures, [N, cameras, 3, SIDE, SIDE], each batch moved by some pixels, as if cameras were not quite in place."""
+    right, down = (int(torch.randint(-SHIFT, SHIFT + 1, ())) for _ in range(2))
+    return torch.roll(pictures, (right, down), (-1, -2))
+
+
+def train(folder: Path, minutes: float, out: Path) -> None:
+    """Train for some minutes on the dataset in `folder`, and write the policy."""
+    rows, settings = read(folder)
+    model = Chunks(rows.pictures.shape[1], rows.body.shape[1], rows.chunks.shape[2])
+    for name, numbers in (("felt", rows.body), ("sent", rows.chunks.flatten(0, 1))):
+        getattr(model, name).copy_(torch.stack([numbers.mean(0), numbers.std(0).clamp(min=1e-2)]))
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "settings.json").write_text(json.dumps(settings, indent=1))
+    if (out / "policy.safetensors").exists():
+        model.load_state_dict(load_file(out / "policy.safetensors"))
+    start, done, losses = time.monotonic(), 0.0, []
+    optimiser = torch.optim.AdamW(model.parameters(), RATE, weight_decay=WEIGHT_DECAY)
+    print(f"{len(rows.body)} rows", flush=True)
+    while done < 1.0:
+        done = (time.monotonic() - start) / (60.0 * minutes)
+        optimiser.param_groups[0]["lr"] = RATE * max(0.02, 0.5 + 0.5 * np.cos(np.pi * min(done, 1.0)))
+        batch = torch.randint(len(rows.body), (BATCH,))
+        body = rows.body[batch]
+        noisy = body + JITTER * torch.randn_like(body)
+        foreseen = model(shifted(rows.pictures[batch]), noisy)
+        loss = ((foreseen - rows.chunks[batch]) / model.sent[1]).abs().mean()
+        optimiser.zero_grad()
+        loss.backward()
+        nn.utils.clip_grad_norm_(model.parameters(), 1.0)
+        optimiser.step()
+        losses.append(float(loss.detach()))
+        if len(losses) % 200 == 0:
+            told = f"{len(losses)},{60.0 * minutes * done:.0f},{np.mean(losses[-200:]):.4f}"
+            print(f"{100 * done:.0f} %: steps, seconds, L1: {told}", flush=True)
+            save_file(model.state_dict(), out / "policy.safetensors")
+            with (out / "curve.csv").open("a") as curve:
+                curve.write(told + "\n")
+    save_file(model.state_dict(), out / "policy.safetensors")
+    print(f"{len(losses)} steps in {minutes:g} minutes: L1 {np.mean(losses[-50:]):.3f}")
+
+
+def play(policy: Path, episodes: int, seed: int, split: str, hazards: list[str]) -> list[bool]:
+    """Play episodes with a policy. Returns which of them succeeded."""
+    settings, weights = json.loads((policy / "settings.json").read_text()), load_file(policy / "policy.safetensors")
+    cameras = ["head", *settings["cameras"]]
+    model = Chunks(len(cameras), weights["felt"].shape[1], weights["sent"].shape[1])
+    model.load_state_dict(weights)
+    model.eval()
+    import hazard_ms.tasks.practice  # noqa: F401 registers the tasks for practice
+
+    more = {"hazards": hazards} if hazards else {}
+    env: Any = gym.make("hazard_ms.lerobot:HazardRobot-v1", split=split, render_mode=None, **settings, **more)
+    succeeded = []
+    for number in range(episodes):
+        seen, _ = env.reset(seed=seed + number)
+        over, steps, info = False, 0, {}
+        while not over:
+            joints = (len(seen["agent_pos"]) - 7) // 2  # positions, then velocities, the pose, the hand, what it holds
+            body = np.append(seen["agent_pos"][BASE:joints], seen["agent_pos"][-1])
+            pictures = np.stack([small(seen["pixels"][camera]) for camera in cameras])
+            with torch.no_grad():
+                chunk = model(torch.from_numpy(pictures)[None], torch.from_numpy(body)[None].float())[0].numpy()
+            for action in chunk[:CARRIED]:
+                seen, _, terminated, truncated, info = env.step(action)
+                steps, over = steps + 1, terminated or truncated
+                if over:
+                    break
+        succeeded.append(info["is_success"])
+        print(f"seed {seed + number}: {'success' if succeeded[-1] else 'failed'} after {steps} steps", flush=True)
+    env.close()
+    print(f"{sum(succeeded)} of {episodes} succeeded, {100 * np.mean(succeeded):.0f} %, {split}, {hazards or 'calm'}")
+    return succeeded
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", required=True)
+    one = commands.add_parser("train")
+    one.add_argument("folder", type=Path)
+    one.add_argument("--minutes", type=float, default=30.0)
+    one.add_argument("--out", type=Path, required=True)
+    one.add_argument("--seed", type=int, default=0)
+    two = commands.add_parser("play")
+    two.add_argument("policy", type=Path)
+    two.add_argument("--episodes", type=int, default=25)
+    two.add_argument("--seed", type=int, default=0)
+    two.add_argument("--split", default="test")
+    two.add_argument("--hazards", nargs="*", default=[])
+    given = parser.parse_args()
+    torch.manual_seed(given.seed)
+    if given.command == "train":
+        train(given.folder, given.minutes, given.out)
+    else:
+        play(given.policy, given.episodes, given.seed, given.split, given.hazards)
+
+
+if __name__ == "__main__":
+    main()

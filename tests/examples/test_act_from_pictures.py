@@ -1,0 +1,82 @@
+"""The example that learns from pictures: its rows are those of the recording, and it learns, resumes and plays."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+from hazard_ms.demonstrations.options import RecordOptions
+from hazard_ms.demonstrations.reading import demonstrations
+from hazard_ms.demonstrations.recording import RecordJob, attempt
+from hazard_ms.evaluation.options import EpisodeOptions
+from tests.worlds.registering import loaded, practising
+
+pytestmark = pytest.mark.render
+EXAMPLE = Path(__file__).parents[2] / "examples" / "act_from_pictures.py"
+EVERY = 3  # frames
+
+
+@pytest.fixture(scope="module", autouse=True)
+def practice() -> Iterator[Any]:
+    with practising() as module:
+        yield module
+
+
+@pytest.fixture(scope="module")
+def example() -> Iterator[Any]:
+    with loaded(EXAMPLE) as module:
+        yield module
+
+
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory: pytest.TempPathFactory, practice: Any) -> Path:
+    episode = EpisodeOptions("HazardPickUp-v1", agent="greedy", seed=4)
+    options = RecordOptions(
+        episode,
+        "greedy",
+        verify=False,
+        obs="rgb",
+        cameras="head+wrist",
+        every=EVERY,
+        output=tmp_path_factory.mktemp("d"),
+    )
+    options.dataset.mkdir(parents=True)
+    assert not attempt(RecordJob(episode, 60.0, record=options), lambda word: None).error
+    return options.dataset
+
+
+def test_rows_are_what_was_seen_and_what_was_done_from_then_on(example: Any, dataset: Path) -> None:
+    rows, settings = example.read(dataset)
+    (one,) = demonstrations(dataset)
+    actions, last = one.frames["action"], (len(one.frames["action"]) - 1) // EVERY
+    assert rows.pictures.shape == (last + 1, 2, 3, 80, 80) and rows.body.shape == (last + 1, 13)
+    for row in (0, 5, last - 3, last):
+        for step in range(example.CHUNK):
+            frame = min(row + step, last) * EVERY
+            np.testing.assert_array_equal(rows.chunks[row, step].numpy(), actions[frame])
+        np.testing.assert_array_equal(rows.body[row, :-1].numpy(), one.frames["qpos"][row * EVERY, 3:])
+    assert rows.body[:, -1].tolist() == (one.frames["held"][:-1:EVERY] >= 0).tolist()
+    apart = (rows.pictures[:, 0].float() - rows.pictures[:, 1].float()).abs().mean()
+    assert apart > 20.0  # two cameras
+    assert settings == {"task": "HazardPickUp-v1", "cameras": ["wrist"], "every": EVERY, "robot_uids": "fetch"}
+
+
+def test_it_learns_goes_on_and_plays(
+    example: Any, dataset: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(example, "BATCH", 8)
+    torch.manual_seed(0)
+    losses = []
+    for minutes in (0.02, 0.2):
+        example.train(dataset, minutes, tmp_path / "made")
+        losses.append(float(capsys.readouterr().out.split()[-1]))
+    assert losses[1] < 0.8 * losses[0]
+    assert json.loads((tmp_path / "made" / "settings.json").read_text())["task"] == "HazardPickUp-v1"
+    assert example.play(tmp_path / "made", 1, 4, "train", ["flood"]) in ([False], [True])
+    assert "of 1 succeeded" in (said := capsys.readouterr().out) and "['flood']" in said

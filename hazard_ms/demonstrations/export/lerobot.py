@@ -71,7 +71,9 @@ def rows_of(one: Demonstration, step: int) -> Columns:
         "next.success": np.logical_or.reduceat(frames["success"], at),
         "subtask_index": frames["subtask"][at].astype(np.int64),
     }
-    made |= {HAZARD: frames["hazard"][at]} if "hazard" in frames else {}
+    if "hazard" in frames:
+        levels = frames["hazard"][at]
+        made[HAZARD] = levels[:, 0] if levels.shape[1] == 1 else levels  # LeRobot's columns of one number hold no lists
     return {**made, "observation.environment_state": frames["obs"][at]} if "obs" in frames else made
 
 

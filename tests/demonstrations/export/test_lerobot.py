@@ -215,7 +215,7 @@ def test_what_lerobot_cannot_hold_is_refused(tmp_path: Path) -> None:
     short = dataset(tmp_path / "short", (5,), "rgb", 3)
     one = next(iter(Source(short)))
     with pytest.raises(ValueError, match="must hold 9 pictures in their order, got 2"):
-        lerobot_film.Film(tmp_path, HEAD, 10).add(one, 9)
+        lerobot_film.Film(tmp_path, HEAD, 10).add(one.films["head"], 9)
 
 
 @pytest.mark.skipif(READER not in os.environ, reason=f"{READER} must name a Python with lerobot 0.4")

@@ -18,6 +18,7 @@ A run is resumed where its file is there already.
 from __future__ import annotations
 
 import argparse
+import importlib
 import json
 import time
 from pathlib import Path
@@ -37,6 +38,7 @@ CHUNK, CARRIED = 10, 4  # actions that it foresees; those that are carried out b
 WIDTH, HEADS, DEPTH = 128, 4, 2
 BATCH, RATE, WEIGHT_DECAY = 64, 4e-4, 1e-4
 SHIFT, JITTER = 4, 0.02  # most that pictures are shifted [pixels], spread of the noise of joints [rad, m]
+PRACTICE = "hazard_ms.tasks.practice"
 BASE = 3  # joints that are the robot's place in the world, which it is not told
 
 
@@ -162,15 +164,14 @@ def train(folder: Path, minutes: float, out: Path) -> None:
     print(f"{len(losses)} steps in {minutes:g} minutes: L1 {np.mean(losses[-50:]):.3f}")
 
 
-def play(policy: Path, episodes: int, seed: int, split: str, hazards: list[str]) -> list[bool]:
-    """Play episodes with a policy. Returns which of them succeeded."""
+def play(policy: Path, episodes: int, seed: int, split: str, hazards: list[str], load: str = PRACTICE) -> list[bool]:
+    """Play episodes with a policy; `load`: the module that registers its task. Returns which of them succeeded."""
+    importlib.import_module(load)
     settings, weights = json.loads((policy / "settings.json").read_text()), load_file(policy / "policy.safetensors")
     cameras = ["head", *settings["cameras"]]
     model = Chunks(len(cameras), weights["felt"].shape[1], weights["sent"].shape[1])
     model.load_state_dict(weights)
     model.eval()
-    import hazard_ms.tasks.practice  # noqa: F401 registers the tasks for practice
-
     more = {"hazards": hazards} if hazards else {}
     env: Any = gym.make("hazard_ms.lerobot:HazardRobot-v1", split=split, render_mode=None, **settings, **more)
     succeeded = []
@@ -209,12 +210,13 @@ def main() -> None:
     two.add_argument("--seed", type=int, default=0)
     two.add_argument("--split", default="test")
     two.add_argument("--hazards", nargs="*", default=[])
+    two.add_argument("--load", default=PRACTICE, help="module that registers the task")
     given = parser.parse_args()
     torch.manual_seed(given.seed)
     if given.command == "train":
         train(given.folder, given.minutes, given.out)
     else:
-        play(given.policy, given.episodes, given.seed, given.split, given.hazards)
+        play(given.policy, given.episodes, given.seed, given.split, given.hazards, given.load)
 
 
 if __name__ == "__main__":

@@ -51,6 +51,7 @@ KNOWN: dict[str, tuple[set[str], str]] = {
     "evaluation.page": ({".read_bytes"}, "films that this run made, of a size that is asked first"),
     "evaluation.sweep": ({"json.loads"}, "settings of this run, as a result holds them"),
     "kernels.compiled": ({".open", "os.open"}, "bytes that are hashed or compared; " + LOCK),
+    "lerobot.hazard_client": ({"json.loads"}, NETWORK),
     "machine.activity": ({".read_text"}, SYSTEM),
     "machine.drivers": ({".read_bytes", ".read_text"}, SYSTEM + "; a package that is compared with its SHA-256"),
     "machine.files": ({".open", "os.open"}, HERE + "; " + LOCK),

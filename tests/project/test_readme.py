@@ -28,7 +28,8 @@ LONGEST_README = 80  # lines: about a screen
 # commands that have commands of their own: to parse their words is to run them
 NESTED = [name for name, command in cli.COMMANDS.items() if "done" in inspect.signature(command).parameters]
 INTERPRETERS = ("python", "inspect")  # which are given files of ours
-OTHERS = ("pip", "uv", "cd", "export", "lerobot-train", "lerobot-eval")  # not ours; tests/lerobot runs the last two
+# not ours; tests/lerobot runs the last three
+OTHERS = ("pip", "uv", "cd", "export", "lerobot-train", "lerobot-eval", "vla-eval")
 
 
 def python_blocks() -> list[object]:

@@ -59,9 +59,10 @@ class RecordOptions:
 
     def _check_cameras(self) -> None:
         """Check the names of cameras. Raises ValueError for those that the robot lacks, and where nothing is filmed."""
+        from hazard_ms.registry import ROBOTS, load
         from hazard_ms.spec.checks import one_of
 
-        known = (HEAD, *self.env.mounted_cameras)
+        known = (HEAD, *load(ROBOTS[self.env.robot_uids].robot).mounted_cameras)
         for name in self.cameras.split("+"):
             one_of(name, known, "cameras")
         if HEAD not in self.cameras.split("+") or (self.mounted and "rgb" not in self.pictures):

@@ -63,11 +63,6 @@ class EnvOptions:
             one_of(name, registry.HAZARDS, "hazards")
 
     @property
-    def mounted_cameras(self) -> tuple[str, ...]:
-        """Names of the cameras that the robot has beside that of its head."""
-        return tuple(registry.load(registry.ROBOTS[self.robot_uids].robot).mounted_cameras)
-
-    @property
     def max_frames(self) -> int:
         """Frames of an episode, at most."""
         return registry.TASKS[self.env_id].frames(self.split)

@@ -50,8 +50,9 @@ MOST_ROOMS = 34
 # and agents look up; 3 more for evaluation, which adds up what hazards do to things and robots, asks where things were
 # put, and what a task declares; 1 more for agents, which reckon with the law of the gale; 2 more for evaluation, whose
 # regret plans with measures about hazards, and foresees what they lead to; 4 more for LeRobot, whose tools make the
-# environment, ask how robots are driven, and are refused by the same checks, and for the example of its Hub
-MOST_ARROWS = 185
+# environment, ask how robots are driven, and are refused by the same checks, and for the example of its Hub; 2 more for
+# demonstrations, which ask the registry what cameras a robot has, and for the example that learns from them
+MOST_ARROWS = 186
 MOST_FILES = 16  # of a folder
 MOST_LINES = 250  # of a file
 HEAVY = ("torch", "warp", "sapien", "mani_skill", "scipy", "numpy", "gymnasium")  # that take seconds to import

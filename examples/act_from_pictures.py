@@ -1,8 +1,8 @@
 """Action chunking with transformers, in one file: pictures and joints in, a second of actions out.
 
-    hazard-ms demos record -e HazardPickUp-v1 --load hazard_ms.tasks.practice -a greedy \\
+    hazard-ms demos record -e HazardPickUp-v1 --load hazard_ms.tasks.practice -a oracle \\
         --obs rgb --cameras head+wrist -n 400 -o demos
-    python examples/act_from_pictures.py train demos/HazardPickUp-v1/greedy --minutes 30 --out learned/pick_up
+    python examples/act_from_pictures.py train demos/HazardPickUp-v1/oracle --minutes 30 --out learned/pick_up
     python examples/act_from_pictures.py play learned/pick_up --episodes 25
     python examples/act_from_pictures.py play learned/pick_up --episodes 25 --hazards fire
 
@@ -37,7 +37,7 @@ SIDE = 80  # of pictures as the network sees them [pixels]
 CHUNK, CARRIED = 10, 4  # actions that it foresees; those that are carried out before it looks again
 WIDTH, HEADS, DEPTH = 128, 4, 2
 BATCH, RATE, WEIGHT_DECAY = 64, 4e-4, 1e-4
-SHIFT, JITTER = 4, 0.02  # most that pictures are shifted [pixels], spread of the noise of joints [rad, m]
+SHIFT, JITTER = 4, 0.1  # most that pictures are shifted [pixels]; noise of joints, as a share of their spread
 PRACTICE = "hazard_ms.tasks.practice"
 BASE = 3  # joints that are the robot's place in the world, which it is not told
 
@@ -107,9 +107,9 @@ def read(folder: Path) -> tuple[Rows, dict[str, Any]]:
         seen = [film(path)[: len(at)] for path in one.films.values()]
         pictures.append(np.stack(seen, 1))
         bodies.append(np.column_stack([one.frames["qpos"][at, BASE:], one.frames["held"][at] >= 0]))
-        # each row's action, and those that follow; the last one goes on
-        following = np.minimum(at[:, None] + every * np.arange(CHUNK), at[-1])
-        chunks.append(one.frames["action"][following])
+        # what was sent from one picture to the next, in the mean, so that it can be sent again as long; the last goes on
+        sent = np.stack([one.frames["action"][frame : frame + every].mean(0) for frame in at])
+        chunks.append(sent[np.minimum(np.arange(len(at))[:, None] + np.arange(CHUNK), len(at) - 1)])
         settings = {
             "task": one.result.env_id,
             "cameras": [name for name in one.films if name != "head"],
@@ -146,7 +146,7 @@ def train(folder: Path, minutes: float, out: Path) -> None:
         optimiser.param_groups[0]["lr"] = RATE * max(0.02, 0.5 + 0.5 * np.cos(np.pi * min(done, 1.0)))
         batch = torch.randint(len(rows.body), (BATCH,))
         body = rows.body[batch]
-        noisy = body + JITTER * torch.randn_like(body)
+        noisy = body + JITTER * model.felt[1] * torch.randn_like(body)
         foreseen = model(shifted(rows.pictures[batch]), noisy)
         loss = ((foreseen - rows.chunks[batch]) / model.sent[1]).abs().mean()
         optimiser.zero_grad()

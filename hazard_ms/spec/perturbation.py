@@ -11,8 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-from hazard_ms.spec.severity import SCALED, SEVERITIES, USUAL
-
 MOST_LEVEL = 3  # [ours]; LIBERO-Plus sorts its perturbations into five levels by how many of its models fail
 LEAST_SHARE = 0.75  # of a level's most, that an amount is at least [-] [ours]
 LONGEST = 1_000  # text that is read [characters] [ours]
@@ -63,6 +61,8 @@ class Perturbation:
 
         Raises ValueError for a level of hazard with a `preset` that has one strength only, and beside a severity.
         """
+        from hazard_ms.spec.severity import SCALED, SEVERITIES, USUAL  # loads numpy
+
         if not self.hazard:
             return severity
         if preset != SCALED:

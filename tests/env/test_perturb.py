@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import gymnasium as gym
@@ -12,8 +13,7 @@ import torch
 
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.lerobot.environment import RobotEnv
-from hazard_ms.simulation.drawing import moved_cameras, relighting
-from hazard_ms.simulation.drawing.moods import INDOORS
+from hazard_ms.simulation.drawing import moved_cameras
 from hazard_ms.spec.perturbation import MOST_LEVEL
 
 SIDE = 64  # of pictures [pixels]
@@ -119,6 +119,8 @@ def test_looks_and_observations_are_those_of_the_moved_camera() -> None:
     env = made("camera:3", obs_mode="rgb+depth+segmentation", deterministic=False)
     for seed in (3, 78):  # the same scene, which is not built anew
         obs, _ = env.reset(seed=seed)
+        eye = env.unwrapped._sensors["head"].camera._render_cameras[0]
+        assert obs["sensor_param"]["head"]["intrinsic_cv"][0, 0, 0] == pytest.approx(eye.fx)
         _, view = env.unwrapped.observer.look()
         glance = env.unwrapped.observer.glance()
         depth = obs["sensor_data"]["head"]["depth"][0, ..., 0].numpy().astype(np.float32) * 1e-3
@@ -128,20 +130,23 @@ def test_looks_and_observations_are_those_of_the_moved_camera() -> None:
     env.close()
 
 
-def test_light_is_farther_from_training_with_each_level() -> None:
-    rows = np.random.default_rng(0).random((20, relighting.DRAWS)).tolist()
-    day = INDOORS["day"]
-    white = [[relighting.drawn(level, row) for row in rows] for level in range(1, MOST_LEVEL + 1)]
-    amounts = np.abs(np.array(white))  # [levels, rows, stops and mireds and turns]
-    assert (amounts[1:].min(1) > amounts[:-1].max(1)).all()
-    for change in white[2]:
-        lit = relighting.relit(day, change)
-        assert (lit.lamp[0] / lit.lamp[2] > day.lamp[0] / day.lamp[2]) == (change.mireds > 0.0)  # redder is warmer
-        assert math.hypot(*lit.toward[:2]) == pytest.approx(math.hypot(*day.toward[:2]))
-        assert lit.toward[2] == day.toward[2]  # the sun stays as high
-    grey = day._replace(lamp=(1.0, 1.0, 1.0))
-    luminance = np.array(relighting.relit(grey, relighting.Change(1.0, 80.0, 0.0)).lamp) @ (0.2126, 0.7152, 0.0722)
-    assert luminance == pytest.approx(2.0)  # a stop, whatever its colour
+@pytest.mark.render
+def test_every_camera_of_the_robot_is_moved_in_its_own_way_and_noisy() -> None:
+    places, pictures = [], []
+    for perturb in ("", "camera:2", "camera:2,noise:2"):
+        env = made(perturb, obs_mode="rgb", cameras=["wrist"])
+        obs, _ = env.reset(seed=1)
+        eyes = [env.unwrapped._sensors[name].camera._render_cameras[0] for name in ("head", "wrist")]
+        places.append([eye.local_pose.to_transformation_matrix() for eye in eyes])
+        env.unwrapped.observer.look()
+        picture = env.unwrapped.observer.picture("wrist")
+        assert torch.equal(picture, obs["sensor_data"]["wrist"]["rgb"][0])
+        pictures.append(picture)
+        env.close()
+    head, wrist = (np.linalg.inv(before) @ after for before, after in zip(*places[:2], strict=True))
+    assert angle(head[:3, :3], np.eye(3)) > 0.1 and angle(wrist[:3, :3], np.eye(3)) > 0.1
+    assert angle(head[:3, :3], wrist[:3, :3]) > 0.01
+    assert not torch.equal(pictures[0], pictures[1]) and not torch.equal(pictures[1], pictures[2])
 
 
 @pytest.mark.render
@@ -224,6 +229,13 @@ def test_what_cannot_be_is_refused(keywords: dict[str, Any], said: str) -> None:
     task = keywords.pop("task", "HazardFire-v1")
     with pytest.raises(ValueError, match=said):
         gym.make(task, obs_mode="state", render_backend="none", **keywords)
+
+
+def test_cameras_of_a_batch_on_a_gpu_are_not_moved() -> None:
+    drawn = SimpleNamespace(scene=SimpleNamespace(gpu_sim_enabled=True), _render_cameras=[])
+    moved_cameras.MovedCameras({"head": SimpleNamespace(camera=drawn)}, 0)
+    with pytest.raises(ValueError, match="camera in perturb must be 0 where physics runs on a GPU, got 1"):
+        moved_cameras.MovedCameras({"head": SimpleNamespace(camera=drawn)}, 1)
 
 
 @pytest.mark.render

@@ -48,7 +48,12 @@ class MovedCameras:
     """The cameras of E robots, which are moved for each episode as its seed says."""
 
     def __init__(self, cameras: dict[str, Any], level: int) -> None:
-        """Take ManiSkill's `cameras` by name where they are mounted; `level`: how far they are moved."""
+        """Take ManiSkill's `cameras` by name where they are mounted; `level`: how far they are moved.
+
+        Raises ValueError for a level above 0 where physics runs on a GPU.
+        """
+        if level and any(camera.camera.scene.gpu_sim_enabled for camera in cameras.values()):
+            raise ValueError(f"camera in perturb must be 0 where physics runs on a GPU, got {level}")
         self._level, self._cameras = level, cameras
         self._mounted = {
             name: [(eye.local_pose, eye.fx, eye.fy) for eye in camera.camera._render_cameras]

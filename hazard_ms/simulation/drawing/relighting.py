@@ -10,7 +10,7 @@ from hazard_ms.spec import Vec3
 from hazard_ms.spec.perturbation import amount
 
 # most by level, 0 to 3
-STOPS = (0.0, 0.5, 1.0, 2.0)  # of brightness: a stop is a factor of 2 [-] [ours]
+STOPS = (0.0, 0.25, 0.5, 1.0)  # of brightness, a stop being a factor of 2; beyond, walls are all white [-] [ours]
 MIREDS = (0.0, 40.0, 80.0, 160.0)  # of colour temperature, as a quarter, half and full filter of film lights [ours]
 TURNS = (0.0, math.radians(30.0), math.radians(60.0), math.radians(120.0))  # of the sun about the vertical [rad] [ours]
 DRAWS = 6  # uniform numbers of a change: a direction and an amount of each of the three

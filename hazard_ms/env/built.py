@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -22,14 +23,18 @@ from hazard_ms.hazards.presets import FREQUENCIES
 from hazard_ms.registry.mitigations import tools_of
 from hazard_ms.robots.mounting import mounted
 from hazard_ms.scenes.choice import SceneChoice
+from hazard_ms.scenes.rearranged import rearranged
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.labels import labels_of
 from hazard_ms.sensing.observations import Observer
 from hazard_ms.simulation import building, clearance
+from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.drawing.lighting import Lighting
+from hazard_ms.simulation.drawing.moved_cameras import MovedCameras
 from hazard_ms.simulation.drawing.viewpoint import corner_view
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec, Task, checks
+from hazard_ms.spec.perturbation import Perturbation
 
 SPACING = 60.0  # between the scenes of a batch: nothing reaches a neighbour [m] [ours]
 
@@ -45,6 +50,7 @@ class BuiltEnv(BaseEnv):
     lighting: str
     senses: tuple[str, ...]
     cameras: tuple[str, ...]
+    perturbation: Perturbation
     specs: tuple[SceneSpec, ...] = ()
     world: World
     episode: Episode
@@ -53,8 +59,15 @@ class BuiltEnv(BaseEnv):
 
     @property
     def task_description(self) -> str:
-        """The task in one sentence: what agents are told, and what demonstrations hold as the instruction."""
-        return self.task.text
+        """The task in one sentence: what agents are told, and what demonstrations hold as the instruction.
+
+        Where words are perturbed, it is that of the present episode in the first environment.
+        """
+        if not self.perturbation.words:
+            return self.task.text
+        sentences, chance = self.task.rewordings[self.perturbation.words - 1], Chance(1)
+        chance.seed = self.world.chance.seed[:1].cpu()
+        return sentences[int(float(chance.uniform("perturbed words", 1)) * len(sentences))]
 
     @property
     def _default_sim_config(self) -> SimConfig:
@@ -73,9 +86,21 @@ class BuiltEnv(BaseEnv):
         return CameraConfig("render_camera", corner_view(spec), 768, 512, fov=1.15, near=0.05, far=60.0)
 
     def _load_agent(self, options: dict[str, Any]) -> None:
-        names = self.choice.names(options.get("scene"), self._episode_seed)
-        self.specs = tuple(self.task.build(name) for name in names)
+        self.specs = self.chosen(self._episode_seed, options.get("scene"))
         super()._load_agent(options, building.pose_of((0.0, 0.0, 0.0), 0.0))
+
+    def chosen(self, seeds: Sequence[int] | np.ndarray, wanted: Any = None) -> tuple[SceneSpec, ...]:
+        """The `wanted` scenes, or where that is None those that `seeds`, [E], choose, as these seeds arrange them."""
+        names = self.choice.names(wanted, seeds)
+        numbered = zip(names, seeds, strict=True)
+        return tuple(rearranged(self.task.build(name), int(s), self.perturbation) for name, s in numbered)
+
+    def _other_scenes(self, seed: Any) -> bool:
+        """Whether these seeds choose other scenes than those that are built."""
+        self._set_main_rng(seed)
+        seeds = np.resize(self._main_seed, self.num_envs)
+        others = self.choice.names(None, seeds) != [s.name for s in self.specs]
+        return others or (self.perturbation.rearranges and self.chosen(seeds) != self.specs)
 
     def _load_scene(self, options: dict[str, Any]) -> None:
         self.lights: Lighting | None = None  # where nothing renders, nothing shines
@@ -91,15 +116,17 @@ class BuiltEnv(BaseEnv):
         self.situation = Situation(self.episode, self.agent, self.affects_agent)
 
     def _load_lighting(self, options: dict[str, Any]) -> None:
-        self.lights = Lighting(self.scene, self.specs, self.lighting)
+        self.lights = Lighting(self.scene, self.specs, self.lighting, self.perturbation.lighting)
 
     def _after_reconfigure(self, options: dict[str, Any]) -> None:
         self.world.handles = building.connect(self.scene, self.specs, self.actors, self.device)
         self.agent.controller.reset()  # ManiSkill does it only after a state is restored, which needs its targets
         labels = labels_of(self.scene, self.actors, self.agent.robot, self.bags)
         cameras = (self._sensors, self._human_render_cameras)
-        display = Display(self.situation, self.scene, self.bags, self.lights, cameras, self.effects_mode)
-        self.observer = Observer(self.situation, self.task.observations, display, self._sensors, labels, self.senses)
+        moved = MovedCameras(self._sensors, self.perturbation.camera)
+        display = Display(self.situation, self.scene, self.bags, self.lights, cameras, self.effects_mode, moved)
+        terms, noise = self.task.observations, self.perturbation.noise
+        self.observer = Observer(self.situation, terms, display, self._sensors, labels, self.senses, noise)
 
     def _initialize_episode(self, env_idx: Tensor, options: dict[str, Any]) -> None:
         seeds = torch.as_tensor(np.asarray(self._episode_seed), device=self.device)
@@ -166,6 +193,10 @@ class BuiltEnv(BaseEnv):
         if self.obs_mode != "state":
             return super()._flatten_raw_obs(obs)
         return torch.cat(_tensors(obs), dim=1)  # as ManiSkill's, in one step
+
+    def label_table(self, env: int = 0) -> dict[int, tuple[str, str]]:
+        """Segmentation ids of scene `env`: id -> (name, category). They may differ from scene to scene."""
+        return self.observer.label_table(env)
 
     def target_ids(self, env: int = 0) -> list[int]:
         """The id in a segmentation of scene `env` for each target of the entries extra/target_*; 0 without one."""

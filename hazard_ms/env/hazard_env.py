@@ -30,8 +30,9 @@ from hazard_ms.sensing.modes import check_senses, finite
 from hazard_ms.sensing.observation_table import ObservationTable
 from hazard_ms.simulation.drawing.lighting import LIGHTINGS
 from hazard_ms.spec import checks
+from hazard_ms.spec.perturbation import Perturbation
 from hazard_ms.spec.severity import USUAL
-from hazard_ms.tasks import task_of
+from hazard_ms.tasks import perturbing, task_of
 
 EFFECTS = ("full", "fast", "off")
 
@@ -67,6 +68,7 @@ class HazardEnv(BuiltEnv):
         scene_every: int = 1,
         effects: str = "full",
         lighting: str = "day",
+        perturb: str = "",
         senses: Sequence[str] = (),
         cameras: Sequence[str] = (),
         **maniskill_keywords: Any,
@@ -87,6 +89,7 @@ class HazardEnv(BuiltEnv):
                 What they draw follows from the last seed, so that a training run sees the same scenes again.
             effects: How hazards look: full, fast or off. Never changes physics or labels, and nor does lighting.
             lighting: day, evening, night, failing (lamps go out during the episode), random (by the seed).
+            perturb: What differs from training, by kind and level (docs/benchmark.md 4.4): "lighting:2,camera:1".
             senses: Of the head camera, beyond ManiSkill's: thermal, degraded (colour and depth through smoke and rain).
             cameras: Beside that of the head: wrist, shoulder; G1 has wrist_left, too.
             **maniskill_keywords: As in ManiSkill, but for these. num_envs: more than one needs a GPU. obs_mode: state
@@ -98,8 +101,10 @@ class HazardEnv(BuiltEnv):
         """
         keywords.check_names(maniskill_keywords, HazardEnv.__init__)
         self.physics = checks.one_of(physics, PRESETS, "physics")
-        made = playing(task_of(task, self.physics, hazards, severity), scenes)
-        self.severity = severity
+        self.perturbation = Perturbation.read(perturb)
+        self.severity = self.perturbation.severity(severity, physics)
+        made = playing(task_of(task, self.physics, hazards, self.severity), scenes)
+        perturbing.check(self.perturbation, made)
         self.choice = SceneChoice(made, split)
         self.task = dataclasses.replace(made, max_frames=TASKS[task].frames(split))
         self._most_frames = self.task.max_frames
@@ -148,11 +153,6 @@ class HazardEnv(BuiltEnv):
             self._np_random = np.random.default_rng(seed)
             self._np_random_seed = seed if isinstance(seed, int) else seed[0]
         return super().reset(seed=seed, options=options)
-
-    def _other_scenes(self, seed: Any) -> bool:
-        """Whether these seeds choose other scenes than those that are built."""
-        self._set_main_rng(seed)
-        return self.choice.names(None, np.resize(self._main_seed, self.num_envs)) != [s.name for s in self.specs]
 
     def step(self, action: Any) -> tuple[Any, Tensor, Tensor, Tensor, dict[str, Any]]:
         """Let one frame pass.
@@ -206,7 +206,7 @@ class HazardEnv(BuiltEnv):
         for seen in obs["sensor_data"].values():
             if "segmentation" in seen:
                 seen["segmentation"] = seen["segmentation"].to(torch.int16)  # as ManiSkill's, for all shaders
-        return self.observer.add_hazard_image(obs, in_extra=self.obs_mode == "pointcloud")
+        return self.observer.with_noise(self.observer.add_hazard_image(obs, in_extra=self.obs_mode == "pointcloud"))
 
     def render(self) -> Any:
         """A picture of the present frame, as `render_mode` says. Raises ValueError where nothing renders."""
@@ -214,10 +214,6 @@ class HazardEnv(BuiltEnv):
             raise ValueError("render_backend must be auto, gpu or cpu for render(), got none: see `hazard-ms doctor`")
         self.observer.show(spectator=self.render_mode in ("human", "rgb_array"))  # other modes show sensors, too
         return super().render()
-
-    def label_table(self, env: int = 0) -> dict[int, tuple[str, str]]:
-        """Segmentation ids of scene `env`: id -> (name, category). They may differ from scene to scene."""
-        return self.observer.label_table(env)
 
     def get_state_dict(self) -> dict[str, Any]:
         """ManiSkill's simulation and controllers, and under "hazard_ms" hazards, damage, rescue, hand and chance."""

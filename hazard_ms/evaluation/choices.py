@@ -1,4 +1,4 @@
-"""Names that help texts and the completion of shells offer for an option.
+"""The options of an environment, and the names that help texts and the completion of shells offer for any option.
 
 Other values are let through to the check of the option, which accepts what a third party registered and names the
 nearest name for what is unknown. Nothing heavy is imported, so that help is quick.
@@ -7,10 +7,14 @@ nearest name for what is unknown. Nothing heavy is imported, so that help is qui
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 import tyro
 from tyro.constructors import PrimitiveConstructorSpec
+
+from hazard_ms import registry
+from hazard_ms.spec.perturbation import canonical
 
 # As hazards.presets, spec.severity, simulation.lighting, env and scenes.splits name them; tests/cli compares them.
 PRESETS = ("paper", "shipped", "realistic")
@@ -21,6 +25,7 @@ SPLITS = ("train", "test", "large", "new_objects", "hard", "held_out")
 
 BACKENDS = ("serial", "local", "ray")  # where episodes are played
 AVERTED = ("task", "yes", "no")  # whether sweeps tell what is averted
+LOOKS = ("lighting", "effects", "perturb")  # options that are told only where they are not the usual ones
 HUMAN = "human"  # the agent of episodes that people played: no choice, nobody could ask it
 
 
@@ -51,3 +56,85 @@ def flag(*spellings: str, old: str | None = None) -> Any:
     option's own.
     """
     return tyro.conf.arg(name=old, aliases=list(spellings))
+
+
+@dataclass(frozen=True)
+class EnvOptions:
+    """The environment that episodes are played in: names and defaults are those of the keywords of gym.make."""
+
+    env_id: Annotated[str, offer(registry.TASKS), flag("-e")] = "HazardFire-v1"
+    """Task."""
+    split: Annotated[str, offer(SPLITS)] = "train"
+    """Split from which seeds choose scenes; large and new_objects are for tasks in rooms; in hard, time is shorter."""
+    physics: Annotated[str, offer(PRESETS)] = "paper"
+    """Preset of the hazards."""
+    severity: Annotated[str, offer(SEVERITIES)] = "severe"
+    """How strong the hazards of the preset realistic are."""
+    hazards: tuple[Annotated[str, offer(registry.HAZARDS)], ...] = ()
+    """Hazards of HazardCompound-v1, its usual ones if not given, or of tasks for practice."""
+    robot_uids: Annotated[str, offer(registry.ROBOTS), flag("-r", "--robot-uids", old="robot")] = "fetch"
+    """Robot that rescues."""
+    affects_agent: bool = False
+    """Let the hazards act on the robot, as they always do in homes."""
+    lighting: Annotated[str, offer(LIGHTINGS), flag("--lighting", old="light")] = "day"
+    """Light of the scene; random is drawn by the seed."""
+    effects: Annotated[str, offer(EFFECTS)] = "full"
+    """Look of the hazards."""
+    perturb: str = ""
+    """What differs from training, by kind and level from 1 to 3, such as lighting:2,camera:1."""
+    load: tuple[str, ...] = ()
+    """Modules, or files NAME.py, that register tasks, hazards, robots and agents of your own."""
+
+    def __post_init__(self) -> None:
+        """Write the perturbation in its one way. Raises ValueError for one that cannot be."""
+        object.__setattr__(self, "perturb", canonical(self.perturb))
+
+    def check(self) -> None:
+        """Load the modules of `load`, and check every name. Raises ValueError for what cannot be played."""
+        from hazard_ms.spec.checks import one_of  # loads torch
+        from hazard_ms.spec.severity import chosen
+        from hazard_ms.tasks.perturbing import check_perturbation
+
+        for module in self.load:
+            registry.load_plugin(module)
+        known = {"env_id": registry.TASKS, "robot_uids": registry.ROBOTS, "physics": PRESETS}
+        for what, names in {**known, "lighting": LIGHTINGS, "effects": EFFECTS}.items():
+            one_of(getattr(self, what), names, what)
+        chosen(self.severity, self.physics)
+        for name in self.hazards:
+            one_of(name, registry.HAZARDS, "hazards")
+        if self.perturb:
+            check_perturbation(self.perturb, self.env_id, self.physics, self.hazards, self.severity)
+
+    @property
+    def max_frames(self) -> int:
+        """Frames of an episode, at most."""
+        return registry.TASKS[self.env_id].frames(self.split)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Keywords of gym.make that change the episode; LOOKS only where they are not the usual ones."""
+        names = ["split", "physics", *["severity" for _ in self.strength], "robot_uids", "affects_agent"]
+        made = {name: getattr(self, name) for name in [*names, *self.unusual(*LOOKS)]}
+        made["affects_agent"] |= registry.affects_agent(self.env_id)
+        return {**made, "hazards": list(self.hazards)} if self.hazards else made
+
+    @property
+    def strength(self) -> list[str]:
+        """The severity, where the preset has several."""
+        return [self.severity] if self.physics == "realistic" else []
+
+    def unusual(self, *names: str) -> list[str]:
+        """The options, out of those called `names`, that differ from their defaults."""
+        return [n for n in names if getattr(self, n) != EnvOptions.__dataclass_fields__[n].default]
+
+    @property
+    def words(self) -> list[str]:
+        """Command-line words that give the same environment again."""
+        made = ["-e", self.env_id, "--split", self.split, "--physics", self.physics]
+        for name in self.unusual("severity", "robot_uids", *LOOKS):
+            made += ["--" + name.replace("_", "-"), getattr(self, name)]
+        made += ["--affects-agent"] * self.affects_agent
+        for name in ("hazards", "load"):
+            made += ["--" + name.replace("_", "-"), *getattr(self, name)] if getattr(self, name) else []
+        return made

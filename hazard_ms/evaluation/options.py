@@ -12,7 +12,8 @@ import tyro
 
 from hazard_ms import registry
 from hazard_ms.agents.thinking import CLOCKS, OFF
-from hazard_ms.evaluation.choices import AVERTED, BACKENDS, EFFECTS, LIGHTINGS, PRESETS, SEVERITIES, SPLITS, flag, offer
+from hazard_ms.evaluation.choices import AVERTED, BACKENDS, LOOKS, flag, offer
+from hazard_ms.evaluation.choices import EnvOptions as EnvOptions
 from hazard_ms.registry.detectors import DETECTORS, TRUTH
 from hazard_ms.spec.order import natural
 
@@ -21,79 +22,6 @@ EPISODES = 25  # of every agent, unless another number is asked for: a split of 
 MOST = 10**6  # episodes, seeds and frames between pictures: any larger number must be a mistake [-] [ours]
 MOST_WORKERS = 1024  # processes [ours]
 LONGEST_DECISION = 86_400.0  # [s] [ours]
-
-
-@dataclass(frozen=True)
-class EnvOptions:
-    """The environment that episodes are played in: names and defaults are those of the keywords of gym.make."""
-
-    env_id: Annotated[str, offer(registry.TASKS), flag("-e")] = "HazardFire-v1"
-    """Task."""
-    split: Annotated[str, offer(SPLITS)] = "train"
-    """Split from which seeds choose scenes; large and new_objects are for tasks in rooms; in hard, time is shorter."""
-    physics: Annotated[str, offer(PRESETS)] = "paper"
-    """Preset of the hazards."""
-    severity: Annotated[str, offer(SEVERITIES)] = "severe"
-    """How strong the hazards of the preset realistic are."""
-    hazards: tuple[Annotated[str, offer(registry.HAZARDS)], ...] = ()
-    """Hazards of HazardCompound-v1, its usual ones if not given, or of tasks for practice."""
-    robot_uids: Annotated[str, offer(registry.ROBOTS), flag("-r", "--robot-uids", old="robot")] = "fetch"
-    """Robot that rescues."""
-    affects_agent: bool = False
-    """Let the hazards act on the robot, as they always do in homes."""
-    lighting: Annotated[str, offer(LIGHTINGS), flag("--lighting", old="light")] = "day"
-    """Light of the scene; random is drawn by the seed."""
-    effects: Annotated[str, offer(EFFECTS)] = "full"
-    """Look of the hazards."""
-    load: tuple[str, ...] = ()
-    """Modules, or files NAME.py, that register tasks, hazards, robots and agents of your own."""
-
-    def check(self) -> None:
-        """Load the modules of `load`, and check every name. Raises ValueError for what cannot be played."""
-        from hazard_ms.spec.checks import one_of  # loads torch
-        from hazard_ms.spec.severity import chosen
-
-        for module in self.load:
-            registry.load_plugin(module)
-        known = {"env_id": registry.TASKS, "robot_uids": registry.ROBOTS, "physics": PRESETS}
-        for what, names in {**known, "lighting": LIGHTINGS, "effects": EFFECTS}.items():
-            one_of(getattr(self, what), names, what)
-        chosen(self.severity, self.physics)
-        for name in self.hazards:
-            one_of(name, registry.HAZARDS, "hazards")
-
-    @property
-    def max_frames(self) -> int:
-        """Frames of an episode, at most."""
-        return registry.TASKS[self.env_id].frames(self.split)
-
-    @property
-    def settings(self) -> dict[str, Any]:
-        """Keywords of gym.make that change the episode; light and effects only where they are not the usual ones."""
-        names = ["split", "physics", *["severity" for _ in self.strength], "robot_uids", "affects_agent"]
-        made = {name: getattr(self, name) for name in [*names, *self.unusual("lighting", "effects")]}
-        made["affects_agent"] |= registry.affects_agent(self.env_id)
-        return {**made, "hazards": list(self.hazards)} if self.hazards else made
-
-    @property
-    def strength(self) -> list[str]:
-        """The severity, where the preset has several."""
-        return [self.severity] if self.physics == "realistic" else []
-
-    def unusual(self, *names: str) -> list[str]:
-        """The options, out of those called `names`, that differ from their defaults."""
-        return [n for n in names if getattr(self, n) != EnvOptions.__dataclass_fields__[n].default]
-
-    @property
-    def words(self) -> list[str]:
-        """Command-line words that give the same environment again."""
-        made = ["-e", self.env_id, "--split", self.split, "--physics", self.physics]
-        for name in self.unusual("severity", "robot_uids", "lighting", "effects"):
-            made += ["--" + name.replace("_", "-"), getattr(self, name)]
-        made += ["--affects-agent"] * self.affects_agent
-        for name in ("hazards", "load"):
-            made += ["--" + name.replace("_", "-"), *getattr(self, name)] if getattr(self, name) else []
-        return made
 
 
 @dataclass(frozen=True)
@@ -245,6 +173,6 @@ class SweepOptions:
         e = episode
         scenes = e.split if e.scene is None else re.sub(r"[^\w.-]+", ".", Path(e.scene).stem)
         setting = [e.env_id, *e.hazards, scenes, e.physics, *e.strength, e.robot_uids] + ["affected"] * e.affects_agent
-        setting += [getattr(e, name) for name in e.unusual("lighting", "effects")]
+        setting += [getattr(e, name) for name in e.unusual(*LOOKS)]
         setting += [f"clock.{e.clock}"] * (e.clock != OFF) + [e.perception] * (e.perception != TRUTH)
         return self.output / (re.sub(r"[^\w.-]+", ".", "-".join([*setting, e.agent])) + f"-{e.seed:04d}.json")

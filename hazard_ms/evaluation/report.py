@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from hazard_ms.agents.thinking import OFF
 from hazard_ms.evaluation.averted.loss import averted_of_all, mean_loads, mean_score
+from hazard_ms.evaluation.choices import LOOKS
 from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.options import SweepOptions
 from hazard_ms.evaluation.result import EpisodeResult, machine, versions
@@ -35,7 +36,7 @@ def title(options: SweepOptions) -> str:
     physics = " ".join([env.physics, *env.strength])
     settings = [f"split {env.split}", f"physics {physics}", f"robot {env.robot_uids}"]
     settings += ["agent affected"] * env.affects_agent
-    settings += [f"{name} {env.settings[name]}" for name in ("lighting", "effects") if name in env.settings]
+    settings += [f"{name} {env.settings[name]}" for name in LOOKS if name in env.settings]
     settings += [] if options.clock == OFF else [f"clock {options.clock}"]
     settings += [] if options.perception == TRUTH else [f"perception {options.perception}"]
     what = ", ".join([env.env_id, *env.hazards, *settings])

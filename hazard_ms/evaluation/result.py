@@ -109,7 +109,7 @@ class EpisodeResult:
     agent: Name
     seed: Annotated[int, Within(0, 2**32 - 1)]
     scene: Name
-    settings: dict[str, Any]  # keywords of gym.make; lighting and effects only where they are not the usual ones
+    settings: dict[str, Any]  # keywords of gym.make; light, effects and perturbation only where not the usual ones
     frames: Frame
     max_frames: Annotated[int, Within(1, 10_000_000)]
     ended: Name  # why

@@ -27,6 +27,7 @@ class HazardConfig(EnvConfig):
     split: str = "test"
     scenes: list[str] | None = None  # files or folders of scenes in place of a split
     physics: str = "paper"
+    perturb: str = ""  # what differs from training: "lighting:2,camera:1"
     side: int = 256  # of pictures [pixels]
     cameras: list[str] = field(default_factory=list)  # of the robot, beside that of its head
     keywords: dict[str, Any] = field(default_factory=dict)  # others of gym.make
@@ -62,6 +63,7 @@ class HazardConfig(EnvConfig):
         every = frames_of(self.fps, self.physics)
         made: dict[str, Any] = {"task": self.task, "every": every, "side": self.side}
         made |= {"robot_uids": self.robot, "physics": self.physics, "cameras": self.cameras}
+        made |= {"perturb": self.perturb} if self.perturb else {}
         made |= {"split": self.split} if self.scenes is None else {"scenes": self.scenes}
         if self.episode_length is not None:
             made["max_frames"] = self.episode_length * every

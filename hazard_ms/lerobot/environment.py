@@ -60,7 +60,7 @@ class RobotEnv(gym.Env[Observation, NDArray[np.float32]]):
             control_mode: What an action means; None: as in demonstrations.
             max_frames: Greatest length of an episode [frames]; None takes that of the task. (With gymnasium's own
                 max_episode_steps a wrapper would hide the task's sentence from LeRobot.)
-            **settings: Other keywords of the task's environment (split, scenes, physics, cameras, ...).
+            **settings: Other keywords of the task's environment (split, scenes, physics, cameras, perturb, ...).
 
         Raises:
             ValueError: For unknown names, numbers out of range, and where nothing renders.

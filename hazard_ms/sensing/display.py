@@ -10,6 +10,7 @@ from hazard_ms.effects.raytracing.sensor import take_over
 from hazard_ms.episode.situation import Situation
 from hazard_ms.simulation.building import extent_of_bag, pose_of
 from hazard_ms.simulation.drawing.lighting import Lighting
+from hazard_ms.simulation.drawing.moved_cameras import MovedCameras
 
 
 class Display:
@@ -23,13 +24,15 @@ class Display:
         lights: Lighting | None,
         cameras: tuple[dict[str, Any], ...],
         mode: str,
+        moved: MovedCameras,
     ) -> None:
         """Prepare to show the episodes of `situation` in ManiSkill's `scene`.
 
-        `bags`: the actor of each environment's bag; `cameras`: dictionaries of cameras by name; `mode` of effects.
+        `bags`: the actor of each environment's bag; `cameras`: dictionaries of cameras by name; `mode` of effects;
+        `moved`: the robots' cameras where they are not as in training.
         Cameras that use our ray tracing are replaced in place. Raises ValueError for one that uses SAPIEN's own.
         """
-        self._situation, self._bags, self._lights = situation, bags, lights
+        self._situation, self._bags, self._lights, self._moved = situation, bags, lights, moved
         self.scene = scene
         self.renders = bool(scene.can_render())
         world = situation.world
@@ -51,6 +54,7 @@ class Display:
         if self.renders and effects:
             tell_of_first_picture(on_cpu=not self.scene.sub_scenes[0].render_system.device.is_cuda())
         world, agent = self._situation.world, self._situation.agent
+        self._moved.show(world.chance.seed)
         depth = extent_of_bag()[2]
         mouths, headings = agent.bag_position().tolist(), world.agent_heading.tolist()
         for bag, (x, y, z), heading in zip(self._bags, mouths, headings, strict=False):

@@ -18,10 +18,9 @@ class LabelCamera:
 
     def __init__(self, eye: Any, pack: str) -> None:
         """Put a camera with the shaders `pack` where SAPIEN's camera `eye` is."""
-        self._camera = sapien.render.RenderCameraComponent(eye.width, eye.height, pack)
+        self._camera, self._eye = sapien.render.RenderCameraComponent(eye.width, eye.height, pack), eye
         eye.entity.add_component(self._camera)
-        self._camera.local_pose = eye.local_pose
-        self._camera.set_perspective_parameters(eye.near, eye.far, eye.fx, eye.fy, eye.cx, eye.cy, eye.skew)
+        self.follow()
 
     @classmethod
     def beside(cls, camera: Camera, scene: Any) -> LabelCamera | None:
@@ -33,6 +32,12 @@ class LabelCamera:
         if scene.gpu_sim_enabled or pack is None:
             return None
         return cls(camera.camera._render_cameras[0], pack)
+
+    def follow(self) -> None:
+        """Move to where the other camera is, and look as it does; call it before the scene's `update_render`."""
+        eye = self._eye
+        self._camera.local_pose = eye.local_pose
+        self._camera.set_perspective_parameters(eye.near, eye.far, eye.fx, eye.fy, eye.cx, eye.cy, eye.skew)
 
     def take(self) -> dict[str, Tensor]:
         """A picture: "depth" in [mm] and "segmentation", [1, H, W, 1] each, as those of ManiSkill's cameras.

@@ -15,6 +15,7 @@ from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.hazard_image import enlarge, hazard_images, sample_points
 from hazard_ms.sensing.label_camera import LabelCamera
 from hazard_ms.sensing.labels import label_table
+from hazard_ms.sensing.senses.picture_noise import noisy
 from hazard_ms.sensing.senses.senses import DEGRADED, THERMAL, Frame, Senses
 from hazard_ms.sensing.target_table import TargetTable
 from hazard_ms.sensing.view import View
@@ -34,11 +35,14 @@ class Observer:
         sensors: dict[str, Any],
         labels: Tensor,
         senses: Sequence[str] = (),
+        noise: int = 0,
     ) -> None:
         """Make the senses for the task's `terms`; `sensors`: cameras by name; `labels` [E, S]: see `labels_of`.
 
-        `senses`: extra ones, see `hazard_ms.sensing.senses.senses`.
+        `senses`: extra ones, see `hazard_ms.sensing.senses.senses`; `noise`: level of that in colour pictures, see
+        `hazard_ms.sensing.senses.picture_noise`.
         """
+        self.noise = noise
         self.situation, self.terms, self.display, self.sensors, self.labels = situation, terms, display, sensors, labels
         self.table = TargetTable(situation.world, SLOTS)
         self.senses = Senses(situation, senses)
@@ -112,6 +116,17 @@ class Observer:
             self._add_senses(seen or {}, place, self._frame(depth, seen or {}, params))
         return obs
 
+    def with_noise(self, obs: dict[str, Any]) -> dict[str, Any]:
+        """An observation with the noise of the sensor in the colour pictures of all cameras, if there is any."""
+        for name, seen in obs.get("sensor_data", {}).items():
+            if "rgb" in seen:
+                seen["rgb"] = self._noisy(seen["rgb"], name)
+        return obs
+
+    def _noisy(self, colour: Tensor, name: str) -> Tensor:
+        """The picture `colour`, [E, H, W, 3], of the camera `name` as its sensor gives it."""
+        return noisy(colour, self.noise, self.situation.world.chance, name) if self.noise else colour
+
     def _frame(self, depth: Tensor, seen: dict[str, Tensor], params: dict[str, Tensor]) -> Frame:
         """What the head camera truly sees; `depth` as ManiSkill gives it, [E, H, W, 1]."""
         ids = seen["segmentation"] if "segmentation" in seen else self._textures(segmentation=True)["segmentation"]
@@ -148,12 +163,12 @@ class Observer:
         self.camera.capture()
         seen = self._textures(rgb=True, depth=labels is None, segmentation=labels is None)
         colour, view = self._view(seen if labels is None else labels.take(), seen["rgb"])
-        return colour[0], view
+        return self._noisy(colour, self.situation.agent.head_camera)[0], view
 
     def picture(self, name: str) -> Tensor:
         """The first environment's picture of the camera `name` at the time of the last look, [H, W, 3], uint8."""
         self.sensors[name].capture()
-        return self._textures(name, rgb=True)["rgb"][0]
+        return self._noisy(self._textures(name, rgb=True)["rgb"], name)[0]
 
     def glance(self) -> View:
         """The view of a look without its image, in a third of the time."""
@@ -164,6 +179,8 @@ class Observer:
         return self._view(self._label_camera.take())[1]
 
     def _refresh(self) -> None:
+        if self._label_camera is not None:
+            self._label_camera.follow()
         self.display.scene.update_render(update_sensors=True, update_human_render_cameras=False)
 
     def _view(self, seen: dict[str, Tensor], colour: Any = None) -> tuple[Any, View]:

@@ -72,6 +72,7 @@ class Task:
     safe_place: SafePlace
     observations: tuple[Term, ...]  # beside the robot's joints and the cameras
     text: str = ""  # the task in words, for agents
+    rewordings: tuple[tuple[str, ...], ...] = ()  # of `text`: those of each level of words in a perturbation, from 1
     splits: tuple[str, ...] = ("train", "test")
     name: str = ""  # "HazardFire-v1"; filled in by the registry, as is the next
     max_frames: int = 1500

@@ -18,6 +18,7 @@ from hazard_ms.scenes import splits
 from hazard_ms.spec import Task, Term
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
 from hazard_ms.spec.severity import USUAL
+from hazard_ms.tasks import words
 from hazard_ms.tasks.rescue import RESCUE, rescue
 
 FAMILY = "gale"
@@ -50,6 +51,7 @@ def hazard_gale(physics: str = "paper", severity: str = USUAL) -> Task:
         goal=GALE,
         safe_place=LEE,
         text="Put every target into a shopping cart, or in the lee, before wind that turns can carry it away.",
+        rewordings=words.GALE,
         averted=True,
         mitigations=("push",),
     )

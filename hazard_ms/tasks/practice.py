@@ -23,6 +23,7 @@ from hazard_ms.spec import AgentStart, Body, Fixture, Goal, Room, SceneSpec, Tas
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import practice_rewards as rewards
+from hazard_ms.tasks import words
 from hazard_ms.tasks.compound import acting
 from hazard_ms.tasks.practice_terms import FETCH_TERMS, PICK_UP_TERMS, STOW_TERMS, WALK_TO_TERMS
 
@@ -138,6 +139,7 @@ def practice(
         observations=terms,
         arrange=stand_far if walking else stand_near,
         text=text,
+        rewordings=words.PRACTICE.get(text, ()),
     )
 
 

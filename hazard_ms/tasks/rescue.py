@@ -11,6 +11,7 @@ from hazard_ms.scenes import splits
 from hazard_ms.spec import Goal, Task, Term
 from hazard_ms.spec.catalogue import HIGH_VALUE
 from hazard_ms.tasks.terms import terms
+from hazard_ms.tasks.words import RESCUES, worded
 
 INFO = (
     Term("rescued", rewards.rescued, "targets that are safe", low=0.0),
@@ -45,5 +46,6 @@ def rescue(hazards: Sequence[Hazard], family: str = "", most_value: float = HIGH
         safe_place=place,
         observations=terms(hazards, most_value),
         text=f"Put every target into {place.text} before the {names} can damage it or carry it away.",
+        rewordings=worded(RESCUES, place=place.text, hazards=names),
         splits=splits.split_names(family),
     )

@@ -7,10 +7,9 @@ their own, so that no hazard is affected.
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import sapien
@@ -21,6 +20,8 @@ from torch import Tensor
 from hazard_ms.assets.index import asset, asset_path
 from hazard_ms.simulation.building import extent_of, lamp_places
 from hazard_ms.simulation.chance import Chance
+from hazard_ms.simulation.drawing import relighting
+from hazard_ms.simulation.drawing.moods import Mood, moods_of
 from hazard_ms.simulation.names import plain_name
 from hazard_ms.spec import SceneSpec, Vec3
 from hazard_ms.spec.checks import one_of
@@ -38,66 +39,6 @@ BLINK = 4  # frames for which a flickering lamp stays as it is: at 30 frames a s
 DIM = 0.15  # share of its light that a flickering lamp gives at its darkest [ours]
 
 
-class Mood(NamedTuple):
-    """The light of one kind of place at one time of the day.
-
-    Colours are linear red, green and blue in SAPIEN's units. All values are [ours].
-    """
-
-    toward: Vec3  # direction in which the light of sun, moon or windows travels
-    sun: Vec3
-    lamp: Vec3  # of each lamp that is on
-    lit: float  # share of the lamps that are on
-    ambient: Vec3 = (0.0, 0.0, 0.0)
-    pane: Vec3 = (0.0, 0.0, 0.0)  # light that shines through windows
-    air: Vec3 = (1.0, 1.0, 1.0)  # light on haze, smoke, water and flying things, as a share of that of a bright day
-    sky: str = ""  # asset of the sky that lights scenes in the open instead of `ambient`
-
-
-INDOORS = {
-    "day": Mood((0.4, 0.6, -1.0), (0.90, 0.87, 0.80), (2.0, 1.9, 1.7), 1.0, (0.45, 0.44, 0.42), (0.55, 0.70, 0.85)),
-    "evening": Mood(
-        (0.9, 0.5, -0.7),
-        (0.30, 0.16, 0.07),
-        (4.2, 2.8, 1.45),
-        1.0,
-        (0.20, 0.16, 0.13),
-        (0.30, 0.16, 0.10),
-        (0.60, 0.46, 0.36),
-    ),
-    "night": Mood(
-        (0.3, -0.6, -1.0),
-        (0.020, 0.030, 0.055),
-        (0.75, 0.44, 0.20),
-        0.5,
-        (0.030, 0.034, 0.048),
-        (0.008, 0.013, 0.030),
-        (0.09, 0.08, 0.08),
-    ),
-    "failing": Mood(
-        (0.3, -0.6, -1.0),
-        (0.030, 0.040, 0.065),
-        (3.6, 3.3, 2.8),
-        1.0,
-        (0.055, 0.058, 0.065),
-        (0.008, 0.013, 0.030),
-        (0.20, 0.19, 0.18),
-    ),
-}
-DAYS = {  # in the open, by sky
-    "sky_day": Mood((0.38, 0.55, -0.74), (2.9, 2.7, 2.3), (0.0, 0.0, 0.0), 0.0, sky="sky_day"),
-    "sky_storm": Mood((0.44, 0.63, -0.64), (0.75, 0.78, 0.80), (0.0, 0.0, 0.0), 0.0, sky="sky_storm"),
-}
-EVENING = Mood(
-    (0.98, -0.17, -0.30), (2.6, 1.6, 0.85), (8.0, 5.1, 2.4), 1.0, air=(0.95, 0.66, 0.48), sky="sky_evening"
-)  # the sun stands a little higher than in the picture of the sky, so that shadows end
-MOONLIGHT = (0.41, -0.58, -0.70), (0.045, 0.060, 0.100)  # `toward` and `sun` of clear nights [ours]
-NIGHTS = {
-    "night": Mood(*MOONLIGHT, (20.0, 12.8, 6.4), 1.0, air=(0.060, 0.066, 0.090), sky="sky_night"),
-    "failing": Mood(*MOONLIGHT, (20.0, 16.8, 12.4), 1.0, air=(0.060, 0.066, 0.090), sky="sky_night"),
-}
-
-
 @dataclass
 class _Lights:
     """The lights of one scene."""
@@ -107,14 +48,13 @@ class _Lights:
     sun: Any  # RenderDirectionalLightComponent
     lamps: list[Any]  # RenderPointLightComponent
     panes: list[Any]  # RenderMaterial
-    shown: tuple[str, tuple[float, ...]] | None = None
+    shown: tuple[Mood, tuple[float, ...]] | None = None
 
-    def show(self, name: str, levels: tuple[float, ...]) -> None:
-        """Switch to the light called `name`, with the lamps at `levels` from 0 to 1."""
-        if (name, levels) == self.shown:
+    def show(self, mood: Mood, levels: tuple[float, ...]) -> None:
+        """Switch to the light `mood`, with the lamps at `levels` from 0 to 1."""
+        if (mood, levels) == self.shown:
             return
-        mood = self.moods[name]
-        if self.shown is None or self.shown[0] != name:
+        if self.shown is None or self.shown[0] != mood:
             self.scene.set_ambient_light(list(mood.ambient))
             self.sun.pose = sapien.Pose(
                 [0.0, 0.0, 0.0], sapien.math.shortest_rotation([1.0, 0.0, 0.0], list(mood.toward))
@@ -126,18 +66,20 @@ class _Lights:
                 pane.emission = [*mood.pane, 1.0]
         for lamp, level in zip(self.lamps, levels, strict=True):
             lamp.color = [c * level for c in mood.lamp]
-        self.shown = (name, levels)
+        self.shown = (mood, levels)
 
 
 class Lighting:
     """The light in each of E scenes, made when the scenes are built."""
 
-    def __init__(self, scene: Any, specs: tuple[SceneSpec, ...], mode: str = "day") -> None:
+    def __init__(self, scene: Any, specs: tuple[SceneSpec, ...], mode: str = "day", level: int = 0) -> None:
         """Make the light of `mode` (see LIGHTINGS) for the sub-scenes of ManiSkill's `scene`.
+
+        `level`: how far it is from that, by the seed (see `relighting`); 0: not at all.
 
         Raises ValueError for an unknown mode.
         """
-        self.mode = one_of(mode, LIGHTINGS, "lighting")
+        self.mode, self.level = one_of(mode, LIGHTINGS, "lighting"), level
         pairs = zip(scene.sub_scenes, specs, strict=True) if scene.can_render() else ()
         # beyond the reach of shadows, light would shine through the ceiling
         wide = max(float(np.hypot(*s.room.size)) for s in specs)
@@ -150,16 +92,17 @@ class Lighting:
         if not self._lights:
             return
         seed, frame = seed.cpu(), frame.cpu()
-        names = self.chosen(seed)
+        names, changes = self.chosen(seed), self.changes(seed)
         levels = self._failing(seed, frame)
-        for lights, name, row in zip(self._lights, names, levels.tolist(), strict=True):
+        for lights, name, change, row in zip(self._lights, names, changes, levels.tolist(), strict=True):
             lit = lights.moods[name].lit * len(lights.lamps)
             steady = tuple(float(k < lit) for k in range(len(lights.lamps)))
-            lights.show(name, tuple(row[: len(lights.lamps)]) if name == "failing" else steady)
+            mood = lights.moods[name] if change is None else relighting.relit(lights.moods[name], change)
+            lights.show(mood, tuple(row[: len(lights.lamps)]) if name == "failing" else steady)
 
     def air(self) -> list[Vec3]:
         """Colour of the light on haze, smoke, water and flying things in each scene, as last shown; 1 by day."""
-        return [lights.moods[lights.shown[0]].air for lights in self._lights if lights.shown is not None]
+        return [lights.shown[0].air for lights in self._lights if lights.shown is not None]
 
     def chosen(self, seed: Tensor) -> list[str]:
         """Names of the light that the episodes of `seed` [E] have."""
@@ -169,6 +112,13 @@ class Lighting:
             DRAWN[int(u * len(DRAWN))]
             for u in self._uniform("lighting", seed, torch.zeros_like(seed), 1)[:, 0].tolist()
         ]
+
+    def changes(self, seed: Tensor) -> list[relighting.Change | None]:
+        """The difference of the light in the episodes of `seed` [E] from that of training; None where there is none."""
+        if not self.level:
+            return [None] * len(seed)
+        numbers = self._uniform("perturbed lighting", seed, torch.zeros_like(seed), relighting.DRAWS)
+        return [relighting.drawn(self.level, row) for row in numbers.tolist()]
 
     def _failing(self, seed: Tensor, frame: Tensor) -> Tensor:
         """Levels from 0 to 1 of lamps that fail, [E, MOST_LAMPS]: steady, then flickering, then dark."""
@@ -193,16 +143,6 @@ def _lights(scene: sapien.Scene, spec: SceneSpec, wide: float) -> _Lights:
     parts = [p for e in shell for s in e.find_component_by_type(RenderBodyComponent).render_shapes for p in s.parts]
     panes = [p.material for p in parts if any(p.material.emission[:3])]
     return _Lights(scene, moods_of(spec), sun, lamps, panes)
-
-
-def moods_of(spec: SceneSpec) -> dict[str, Mood]:
-    """Every light that the scene of `spec` can have, by name.
-
-    In the open some days are bright and some stormy, depending on the scene's name.
-    """
-    if not spec.room.open_air:
-        return INDOORS
-    return {"day": list(DAYS.values())[zlib.crc32(spec.name.encode()) % len(DAYS)], "evening": EVENING, **NIGHTS}
 
 
 def _lamps(spec: SceneSpec) -> list[Vec3]:

@@ -107,7 +107,7 @@ def read(folder: Path) -> tuple[Rows, dict[str, Any]]:
         seen = [film(path)[: len(at)] for path in one.films.values()]
         pictures.append(np.stack(seen, 1))
         bodies.append(np.column_stack([one.frames["qpos"][at, BASE:], one.frames["held"][at] >= 0]))
-        # what was sent from one picture to the next, in the mean, so that it can be sent again as long; the last goes on
+        # what was sent from one picture to the next, in the mean, so that it can be sent again as long
         sent = np.stack([one.frames["action"][frame : frame + every].mean(0) for frame in at])
         chunks.append(sent[np.minimum(np.arange(len(at))[:, None] + np.arange(CHUNK), len(at) - 1)])
         settings = {

@@ -35,7 +35,17 @@ LINGER_SECONDS = 1.0  # for a client to read why it is refused [s] [ours]
 MOST_LEFT = 2**16  # of what it has sent, which is read and dropped meanwhile [bytes] [ours]
 KEYWORDS = (  # of HazardRobot-v1 that clients give; none of them names a file, a module, or a device
     *("task", "side", "every", "render_mode", "robot_uids", "control_mode", "max_frames", "split", "physics"),
-    *("severity", "hazards", "affects_agent", "deterministic", "scene_every", "effects", "lighting", "cameras"),
+    *(
+        "severity",
+        "hazards",
+        "affects_agent",
+        "deterministic",
+        "scene_every",
+        "effects",
+        "lighting",
+        "cameras",
+        "perturb",
+    ),
 )
 CALLS = ("reset", "step", "render", "close")
 Make = Callable[..., gym.Env[Any, Any]]

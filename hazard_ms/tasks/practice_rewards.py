@@ -121,7 +121,7 @@ def stowed(situation: Situation) -> Tensor:
 
 
 def stow_hint(situation: Situation) -> Tensor:
-    """Half of that of a pick-up, [E]; from a half to 1 for a thing in the hand, by the hand's nearness to the bag."""
+    """Hint on the way into the bag, [E], 0 to 1: half of that of a pick-up; once it is held, a half and more."""
     agent = situation.agent
     away = (agent.gripper_pose()[0] - agent.bag_position()).norm(dim=1)
     over = 1.0 / (1.0 + (away - BAG_REACH).clamp(min=0.0) / HALFWAY)
@@ -134,7 +134,7 @@ def stow_dense(situation: Situation) -> Tensor:
 
 
 def fetch_hint(situation: Situation) -> Tensor:
-    """Hint on the way to the bag, [E]: a quarter of a walk's, then of a stow's from a quarter up to 1."""
+    """Hint of the reward of a fetch, [E]: a quarter of that of a walk; beside the thing a quarter, and more to stow it."""
     near = (thing_ahead(situation)[:, :2].norm(dim=-1) <= BEFORE) | holding(situation)
     return torch.where(near, 0.25 + 0.75 * stow_hint(situation), 0.25 * walk_hint(situation))
 

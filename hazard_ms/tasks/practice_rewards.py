@@ -134,7 +134,7 @@ def stow_dense(situation: Situation) -> Tensor:
 
 
 def fetch_hint(situation: Situation) -> Tensor:
-    """Hint of the reward of a fetch, [E]: a quarter of that of a walk; beside the thing a quarter, and more to stow it."""
+    """Hint of the reward of a fetch, [E]: a quarter of that of a walk; beside the thing a quarter and more."""
     near = (thing_ahead(situation)[:, :2].norm(dim=-1) <= BEFORE) | holding(situation)
     return torch.where(near, 0.25 + 0.75 * stow_hint(situation), 0.25 * walk_hint(situation))
 

@@ -30,7 +30,7 @@ HEAD = """# Policies from pictures
 
 Made by `./run python results/imitation.py` from `imitation.csv`. Success in percent with 95 % intervals (Wilson 1927)
 in rooms of `test`, which no demonstration shows. The policies see pictures of head and wrist, and feel their joints;
-`{teacher}`, which demonstrated, knows from its map where things are. Hazards have the preset `paper`.
+`{teacher}`, which demonstrated, is told where things are. Hazards have the preset `paper`.
 Written at
 {machine}.
 

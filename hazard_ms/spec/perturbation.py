@@ -32,7 +32,7 @@ class Perturbation:
     def read(cls, text: Any) -> Perturbation:
         """The perturbation that a text such as "lighting:2,camera:1" names; the empty text names none.
 
-        Raises ValueError for unknown kinds and levels, for a kind that is named twice, and for what is no text.
+        Raises ValueError for unknown kinds and levels, for a kind named twice, and for a value that is not text.
         """
         from hazard_ms.spec.checks import one_of  # loads numpy
 

@@ -150,6 +150,10 @@ class HazardFetch(PlanarRobot, Fetch):
     def grip_closed(self) -> Tensor:
         return self.controller.controllers["gripper"]._target_qpos[:, 0] < SHUT
 
+    @property
+    def arm_joints(self) -> list[int]:
+        return self._arm
+
     def arm(self) -> NDArray[np.float64]:
         return self.all_joints()[self._arm]
 

@@ -195,6 +195,10 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
         crouch = self.robot.get_qpos()[:, self._arms[RIGHT][1], None]
         return position + turned(position.new_tensor(self.bag) + crouch * position.new_tensor(DOWN), heading)
 
+    @cached_property
+    def arm_joints(self) -> list[int]:
+        return self.joint_numbers([*ARMS[RIGHT], *ARMS[LEFT]])
+
     def arm(self) -> NDArray[np.float64]:
         used = self._used
         return self.all_joints()[self._arms[used]] / self._signs(used)

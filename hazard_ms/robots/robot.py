@@ -99,6 +99,18 @@ class Robot(abc.ABC):
         [E, 2]. Call it after the action is set and before physics steps.
         """
 
+    @property
+    @abc.abstractmethod
+    def arm_joints(self) -> list[int]:
+        """Numbers of the J joints of all arms, among all joints."""
+
+    @abc.abstractmethod
+    def shift_arms(self, offset: Tensor) -> None:
+        """Let the drives of `arm_joints` aim `offset` [rad], [E, J], beside where this frame's action sends them.
+
+        Call it after the action is set and before physics steps.
+        """
+
     @abc.abstractmethod
     def arm(self) -> NDArray[np.float64]:
         """Positions of the arm joints in the first environment [rad], [Joints]."""

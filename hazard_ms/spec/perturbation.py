@@ -1,6 +1,6 @@
 """Perturbations by name: what differs from training in an evaluation, and how much, as text "lighting:2,camera:1".
 
-The kinds are those of LIBERO-Plus (arXiv 2510.13626) without its textures of backgrounds, and the hazard. Levels go
+The kinds are those of LIBERO-Plus (arXiv 2510.13626) without its textures of backgrounds, and control and hazard. Levels go
 from 0, which changes nothing, to MOST_LEVEL; docs/benchmark.md 4.4 lists all of them. What a level changes follows from
 it and from the episode's seed alone. An amount is drawn from LEAST_SHARE of the level's most to all of it, which is
 more than any amount of a lower level.
@@ -26,6 +26,7 @@ class Perturbation:
     words: int = 0  # the sentence of the task
     start: int = 0  # where the robot starts, and its heading
     noise: int = 0  # noise of the sensor in colour pictures of the robot's cameras
+    control: int = 0  # how far the arm's joints go beside where they are sent
     hazard: int = 0  # the severity of the hazards of `realistic`, in place of the usual one
 
     @classmethod

@@ -58,4 +58,4 @@ def test_a_hazard_needs_a_preset_with_severities_and_no_other_severity() -> None
 def test_amounts_of_a_level_are_more_than_those_of_the_one_below_where_most_doubles() -> None:
     assert amount(2.0, 1.0) == 2.0
     assert amount(2.0, 0.0) > amount(1.0, 1.0)
-    assert len(KINDS) == len(set(KINDS)) == 7
+    assert len(KINDS) == len(set(KINDS)) == 8

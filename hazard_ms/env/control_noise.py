@@ -1,0 +1,36 @@
+"""Noise in the control of arms, for evaluations and demonstrations in which joints do not go quite where they are sent.
+
+What is recorded as the action is what was sent. So demonstrations under such noise show how a teacher comes back from
+where noise has led it, with labels that are free of noise (DART: Laskey et al., CoRL 2017, arXiv 1703.09327).
+"""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+
+from hazard_ms.simulation.chance import Chance
+from hazard_ms.spec import rounding
+from hazard_ms.spec.perturbation import LEAST_SHARE
+
+MOST = (0.0, 0.03, 0.06, 0.12)  # greatest standard deviation of each joint by level, 0 to 3 [rad] [ours]
+KNOT = 5  # frames from one independent draw to the next, between which noise is led smoothly [ours]
+
+
+def arm_noise(chance: Chance, joints: int, level: int) -> Tensor:
+    """How far each joint is off in this frame [rad], [E, joints], under a perturbation of `level`.
+
+    Normal, as strong in all frames of an episode, and a function of its seed and of the frame alone.
+    """
+    knot, share = chance.frame // KNOT, (chance.frame % KNOT).float()[:, None] / KNOT
+    one, two = (_at(chance, frame).normal("perturbed control", joints) for frame in (knot, knot + 1))
+    noise = ((1.0 - share) * one + share * two) / rounding.sqrt((1.0 - share) ** 2 + share**2)
+    drawn = _at(chance, torch.zeros_like(knot)).uniform("perturbed control amount", 1)
+    return MOST[level] * (LEAST_SHARE + (1.0 - LEAST_SHARE) * drawn) * noise
+
+
+def _at(chance: Chance, frames: Tensor) -> Chance:
+    """The chance of the same episodes at other `frames`, [E]."""
+    made = Chance(len(frames), frames.device)
+    made.restart(torch.arange(len(frames), device=frames.device), chance.seed, frames)
+    return made

@@ -1,7 +1,7 @@
 """Action chunking with transformers, in one file: pictures and joints in, a second of actions out.
 
     hazard-ms demos record -e HazardPickUp-v1 --load hazard_ms.tasks.practice -a oracle \\
-        --obs rgb --cameras head+wrist -n 400 -o demos
+        --obs rgb --cameras head+wrist --perturb control:2 -n 600 -o demos
     python examples/act_from_pictures.py train demos/HazardPickUp-v1/oracle --minutes 30 --out learned/pick_up
     python examples/act_from_pictures.py play learned/pick_up --episodes 25
     python examples/act_from_pictures.py play learned/pick_up --episodes 25 --hazards fire
@@ -10,7 +10,9 @@ Every tenth of a second the policy may look through the robot's cameras and feel
 controllers in each of the coming tenths, of which the first few are carried out before it looks again (Zhao et al.,
 "Learning fine-grained bimanual manipulation with low-cost hardware", RSS 2023, without the variational encoder: the
 demonstrations are those of a program, of which the paper finds that they need none). A small network of convolutions
-takes the place of a pretrained ResNet, so that two cores suffice. It is told neither where things nor where it is.
+takes the place of a pretrained ResNet, so that two cores suffice: of each picture it tells where in it some features are
+that it has learnt (Levine et al., "End-to-end training of deep visuomotor policies", JMLR 2016). It is told neither where
+things nor where it is. While it is shown how, noise leads the arm astray: so it learns to come back.
 
 A run is resumed where its file is there already.
 """
@@ -33,7 +35,9 @@ from torch import Tensor, nn
 
 from hazard_ms.demonstrations.reading import demonstrations
 
-SIDE = 80  # of pictures as the network sees them [pixels]
+SIDE = 96  # of pictures as the network sees them [pixels]
+CUT = {"head": (3 / 8, 3 / 16, 5 / 8)}  # what is seen of a camera's picture: top, left and side, as shares of its side
+POINTS = 64  # features whose places in a picture are told
 CHUNK, CARRIED = 10, 4  # actions that it foresees; those that are carried out before it looks again
 WIDTH, HEADS, DEPTH = 128, 4, 2
 BATCH, RATE, WEIGHT_DECAY = 64, 4e-4, 1e-4
@@ -50,21 +54,32 @@ class Rows(NamedTuple):
     chunks: Tensor  # the coming CHUNK actions, [N, CHUNK, A]
 
 
+class Eye(nn.Module):
+    """From a picture, [N, 3, SIDE, SIDE], to what is seen in it, [N, WIDTH]: the places of POINTS features."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.features = nn.Sequential(
+            *(nn.Conv2d(3, 24, 5, 2, 2), nn.ReLU(), nn.Conv2d(24, 48, 3, 2, 1), nn.ReLU()),
+            *(nn.Conv2d(48, POINTS, 3, 2, 1), nn.ReLU(), nn.Conv2d(POINTS, POINTS, 3, 1, 1)),
+        )
+        self.out = nn.Sequential(nn.Linear(2 * POINTS, WIDTH), nn.ReLU(), nn.Linear(WIDTH, WIDTH))
+
+    def forward(self, picture: Tensor) -> Tensor:
+        found = self.features(picture)
+        share = found.flatten(2).softmax(-1).reshape(found.shape)  # of each feature, over the picture
+        along = torch.linspace(-1.0, 1.0, found.shape[-1])
+        return self.out(torch.cat([(share.sum(2) * along).sum(-1), (share.sum(3) * along).sum(-1)], 1))
+
+
 class Chunks(nn.Module):
     """From pictures, [N, cameras, 3, SIDE, SIDE], and the body, [N, J], to the coming actions, [N, CHUNK, A]."""
 
     def __init__(self, cameras: int, joints: int, numbers: int) -> None:
         super().__init__()
-        sizes = (3, 16, 32, 64, WIDTH)
-        layers = [
-            part
-            for one, two in zip(sizes, sizes[1:], strict=False)
-            for part in (nn.Conv2d(one, two, 3, 2, 1), nn.GroupNorm(8, two), nn.ReLU())
-        ]
-        self.eye = nn.Sequential(*layers)
-        tokens = cameras * (SIDE // 16) ** 2 + 1
+        self.eyes = nn.ModuleList(Eye() for _ in range(cameras))
         self.body = nn.Sequential(nn.Linear(joints, WIDTH), nn.ReLU(), nn.Linear(WIDTH, WIDTH))
-        self.places = nn.Parameter(0.02 * torch.randn(tokens, WIDTH))
+        self.places = nn.Parameter(0.02 * torch.randn(cameras + 1, WIDTH))
         self.queries = nn.Parameter(0.02 * torch.randn(CHUNK, WIDTH))
         shape = dict(d_model=WIDTH, nhead=HEADS, dim_feedforward=3 * WIDTH, dropout=0.1, batch_first=True)
         self.encoder = nn.TransformerEncoder(nn.TransformerEncoderLayer(**shape), DEPTH)  # type: ignore[arg-type]
@@ -75,36 +90,36 @@ class Chunks(nn.Module):
         self.register_buffer("sent", torch.stack([torch.zeros(numbers), torch.ones(numbers)]))
 
     def forward(self, pictures: Tensor, body: Tensor) -> Tensor:
-        n, cameras = pictures.shape[:2]
-        seen = self.eye(pictures.flatten(0, 1).float() / 255.0 - 0.5)
-        seen = seen.flatten(2).transpose(1, 2).reshape(n, -1, WIDTH)
+        seen = [eye(pictures[:, camera].float() / 255.0 - 0.5) for camera, eye in enumerate(self.eyes)]
         felt = self.body((body - self.felt[0]) / self.felt[1])
-        known = self.encoder(torch.cat([felt[:, None], seen], 1) + self.places)
-        foreseen = self.out(self.decoder(self.queries.expand(n, -1, -1), known))
+        known = self.encoder(torch.stack([felt, *seen], 1) + self.places)
+        foreseen = self.out(self.decoder(self.queries.expand(len(body), -1, -1), known))
         return foreseen * self.sent[1] + self.sent[0]
 
 
-def small(picture: Any) -> np.ndarray:
-    """A picture, [H, W, 3], as the network sees it, [3, SIDE, SIDE]."""
+def small(picture: Any, camera: str) -> np.ndarray:
+    """A picture of a camera, [H, W, 3], as the network sees it, [3, SIDE, SIDE]."""
+    top, left, side = (round(share * len(picture)) for share in CUT.get(camera, (0.0, 0.0, 1.0)))
+    picture = picture[top : top + side, left : left + side]
     return np.ascontiguousarray(cv2.resize(picture, (SIDE, SIDE), interpolation=cv2.INTER_AREA).transpose(2, 0, 1))
 
 
-def film(path: Path) -> np.ndarray:
-    """All pictures of a film, [T, 3, SIDE, SIDE]."""
+def film(path: Path, camera: str) -> np.ndarray:
+    """All pictures of a camera's film, [T, 3, SIDE, SIDE]."""
     video, pictures = cv2.VideoCapture(str(path)), []
     while (read := video.read())[0]:
-        pictures.append(small(cv2.cvtColor(read[1], cv2.COLOR_BGR2RGB)))
+        pictures.append(small(cv2.cvtColor(read[1], cv2.COLOR_BGR2RGB), camera))
     return np.stack(pictures)
 
 
-def read(folder: Path) -> tuple[Rows, dict[str, Any]]:
-    """The rows of a dataset, and what is needed to play as it was recorded."""
+def read(*folders: Path) -> tuple[Rows, dict[str, Any]]:
+    """The rows of datasets of one task and one set of cameras, and what is needed to play as they were recorded."""
     pictures, bodies, chunks = [], [], []
     settings: dict[str, Any] = {}
-    for one in demonstrations(folder):
+    for one in (one for folder in folders for one in demonstrations(folder)):
         every, total = one.meta["every"], len(one.frames["action"])
         at = np.arange(0, total, every)
-        seen = [film(path)[: len(at)] for path in one.films.values()]
+        seen = [film(path, camera)[: len(at)] for camera, path in one.films.items()]
         pictures.append(np.stack(seen, 1))
         bodies.append(np.column_stack([one.frames["qpos"][at, BASE:], one.frames["held"][at] >= 0]))
         # what was sent from one picture to the next, in the mean, so that it can be sent again as long
@@ -117,7 +132,7 @@ def read(folder: Path) -> tuple[Rows, dict[str, Any]]:
             "robot_uids": one.meta["robot"],
         }
     if not bodies:
-        raise SystemExit(f"{folder} holds no episode")
+        raise SystemExit(f"{', '.join(map(str, folders))}: no episode")
     made = [torch.from_numpy(np.concatenate(part)) for part in (pictures, bodies, chunks)]
     return Rows(made[0], made[1].float(), made[2].float()), settings
 
@@ -128,9 +143,9 @@ def shifted(pictures: Tensor) -> Tensor:
     return torch.roll(pictures, (right, down), (-1, -2))
 
 
-def train(folder: Path, minutes: float, out: Path) -> None:
-    """Train for some minutes on the dataset in `folder`, and write the policy."""
-    rows, settings = read(folder)
+def train(folders: list[Path], minutes: float, out: Path) -> None:
+    """Train for some minutes on the datasets in `folders`, and write the policy."""
+    rows, settings = read(*folders)
     model = Chunks(rows.pictures.shape[1], rows.body.shape[1], rows.chunks.shape[2])
     for name, numbers in (("felt", rows.body), ("sent", rows.chunks.flatten(0, 1))):
         getattr(model, name).copy_(torch.stack([numbers.mean(0), numbers.std(0).clamp(min=1e-2)]))
@@ -181,7 +196,7 @@ def play(policy: Path, episodes: int, seed: int, split: str, hazards: list[str],
         while not over:
             joints = (len(seen["agent_pos"]) - 7) // 2  # positions, then velocities, the pose, the hand, what it holds
             body = np.append(seen["agent_pos"][BASE:joints], seen["agent_pos"][-1])
-            pictures = np.stack([small(seen["pixels"][camera]) for camera in cameras])
+            pictures = np.stack([small(seen["pixels"][camera], camera) for camera in cameras])
             with torch.no_grad():
                 chunk = model(torch.from_numpy(pictures)[None], torch.from_numpy(body)[None].float())[0].numpy()
             for action in chunk[:CARRIED]:
@@ -200,7 +215,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", required=True)
     one = commands.add_parser("train")
-    one.add_argument("folder", type=Path)
+    one.add_argument("folders", type=Path, nargs="+")
     one.add_argument("--minutes", type=float, default=30.0)
     one.add_argument("--out", type=Path, required=True)
     one.add_argument("--seed", type=int, default=0)
@@ -214,7 +229,7 @@ def main() -> None:
     given = parser.parse_args()
     torch.manual_seed(given.seed)
     if given.command == "train":
-        train(given.folder, given.minutes, given.out)
+        train(given.folders, given.minutes, given.out)
     else:
         play(given.policy, given.episodes, given.seed, given.split, given.hazards, given.load)
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 import pytest
 import torch
@@ -55,7 +56,7 @@ def test_rows_are_what_was_seen_and_what_was_done_from_then_on(example: Any, dat
     rows, settings = example.read(dataset)
     (one,) = demonstrations(dataset)
     actions, last = one.frames["action"], (len(one.frames["action"]) - 1) // EVERY
-    assert rows.pictures.shape == (last + 1, 2, 3, 80, 80) and rows.body.shape == (last + 1, 13)
+    assert rows.pictures.shape == (last + 1, 2, 3, 96, 96) and rows.body.shape == (last + 1, 13)
     for row in (0, 5, last - 3, last):
         for step in range(example.CHUNK):
             frame = min(row + step, last) * EVERY
@@ -64,6 +65,12 @@ def test_rows_are_what_was_seen_and_what_was_done_from_then_on(example: Any, dat
             )
         np.testing.assert_array_equal(rows.body[row, :-1].numpy(), one.frames["qpos"][row * EVERY, 3:])
     assert rows.body[:, -1].tolist() == (one.frames["held"][:-1:EVERY] >= 0).tolist()
+    video = cv2.VideoCapture(str(one.films["head"]))
+    whole = video.read()[1][:, :, ::-1]  # of 256 pixels, of which the policy sees what is before its hands
+    seen = cv2.resize(whole[96:256, 48:208], (96, 96), interpolation=cv2.INTER_AREA)
+    np.testing.assert_array_equal(rows.pictures[0, 0].numpy(), seen.transpose(2, 0, 1))
+    twice, _ = example.read(dataset, dataset)
+    assert len(twice.body) == 2 * (last + 1)
     apart = (rows.pictures[:, 0].float() - rows.pictures[:, 1].float()).abs().mean()
     assert apart > 20.0  # two cameras
     assert settings == {"task": "HazardPickUp-v1", "cameras": ["wrist"], "every": EVERY, "robot_uids": "fetch"}
@@ -76,7 +83,7 @@ def test_it_learns_goes_on_and_plays(
     torch.manual_seed(0)
     losses = []
     for minutes in (0.02, 0.2):
-        example.train(dataset, minutes, tmp_path / "made")
+        example.train([dataset], minutes, tmp_path / "made")
         losses.append(float(capsys.readouterr().out.split()[-1]))
     assert losses[1] < 0.8 * losses[0]
     assert json.loads((tmp_path / "made" / "settings.json").read_text())["task"] == "HazardPickUp-v1"

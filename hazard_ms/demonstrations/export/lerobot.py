@@ -65,7 +65,8 @@ def rows_of(one: Demonstration, step: int) -> Columns:
     body = [frames[name][at] for name in ("qpos", "qvel", "base", "hand")]
     made: Columns = {
         "observation.state": np.concatenate([*body, frames["held"][at, None] >= 0], axis=1).astype(np.float32),
-        "action": frames["action"][at],
+        # what was sent up to the next picture, in the mean: a policy's action lasts as long
+        "action": (np.add.reduceat(frames["action"], at) / np.diff([*at, total])[:, None]).astype(np.float32),
         "next.reward": np.add.reduceat(frames["reward"], at).astype(np.float32),
         "next.done": np.arange(len(at)) == len(at) - 1,
         "next.success": np.logical_or.reduceat(frames["success"], at),

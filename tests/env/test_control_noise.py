@@ -1,0 +1,86 @@
+"""Noise in the control of arms: as strong as its level says, smooth, of the seed, and not in what was sent."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+import torch
+
+import hazard_ms  # noqa: F401 registers the environments
+from hazard_ms.env.control_noise import KNOT, MOST, arm_noise
+from hazard_ms.simulation.chance import Chance
+
+FRAMES = 4000
+
+
+def drawn(level: int, seeds: tuple[int, ...], frames: int = FRAMES, joints: int = 3) -> np.ndarray:
+    """The noise of each frame, [frames, E, joints]."""
+    chance = Chance(len(seeds))
+    chance.restart(torch.arange(len(seeds)), torch.tensor(seeds))
+    made = []
+    for _ in range(frames):
+        made.append(arm_noise(chance, joints, level).numpy())
+        chance.tick()
+    return np.stack(made)
+
+
+@pytest.mark.parametrize("level", [1, 2, 3])
+def test_an_episode_has_three_quarters_of_a_level_or_more_in_every_frame(level: int) -> None:
+    noise = drawn(level, tuple(range(8)))
+    for part in (noise[::KNOT], noise[2::KNOT]):  # at draws, and between two of them
+        spread = part.std(axis=(0, 2))
+        assert (spread > 0.75 * MOST[level] * 0.95).all() and (spread < MOST[level] * 1.05).all()
+    assert np.ptp(noise.std(axis=(0, 2))) > 0.05 * MOST[level]  # not as much in each episode
+    assert abs(noise.mean()) < 0.02 * MOST[level]
+
+
+def test_it_is_smooth_and_forgets_within_two_draws() -> None:
+    noise = drawn(3, (5,))[:, 0]
+    steps, apart = np.diff(noise, axis=0).std(), noise.std()
+    assert steps < 2.0 * apart / KNOT  # of one draw to the next it would be sqrt(2) of them all
+    later = np.corrcoef(noise[: -2 * KNOT].ravel(), noise[2 * KNOT :].ravel())[0, 1]
+    assert abs(later) < 4.0 / math.sqrt(3 * FRAMES / KNOT)
+    joints = np.corrcoef(noise.T) - np.eye(3)
+    assert np.abs(joints).max() < 5.0 / math.sqrt(FRAMES / KNOT)
+
+
+def test_it_follows_from_seed_and_frame_whatever_is_beside() -> None:
+    alone, many = drawn(2, (7,), 30), drawn(2, (3, 7), 30)
+    np.testing.assert_array_equal(alone[:, 0], many[:, 1])
+    assert (many[:, 0] != many[:, 1]).all()
+
+
+@pytest.mark.parametrize("robot", ["fetch", "g1"])
+def test_arms_go_beside_where_they_are_sent_and_come_back(robot: str) -> None:
+    """Noise of a frame is not added to that of the last one, and the same seed gives the same bits."""
+    seen = []
+    for perturb in ("", "control:2", "control:2"):
+        env: Any = gym.make(
+            "HazardFire-v1",
+            obs_mode="none",
+            render_backend="none",
+            robot_uids=robot,
+            control_mode="pd_joint_pos",
+            perturb=perturb,
+        )
+        env.reset(seed=1)
+        agent, off = env.unwrapped.agent, []
+        still = agent.action(0.0, 0.0, agent.tucked, True)
+        sent = [agent.robot.active_joints[number].drive_target.item() for number in agent.arm_joints]
+        for _ in range(80):
+            env.step(still)
+            now = [agent.robot.active_joints[number].drive_target.item() for number in agent.arm_joints]
+            off.append(np.array(now) - sent)
+        joints = env.unwrapped.agent.robot.get_qpos()[0].numpy().copy()
+        seen.append((np.array(off), joints))
+        env.close()
+    (none, calm), (one, moved), (again, same) = seen
+    assert np.abs(none).max() == 0.0
+    assert 0.5 * MOST[2] < one.std() < 1.5 * MOST[2] and np.abs(one.mean(0)).max() < MOST[2]
+    assert np.abs(moved - calm)[3:].max() > 0.01  # [rad]
+    np.testing.assert_array_equal(one, again)
+    np.testing.assert_array_equal(moved, same)

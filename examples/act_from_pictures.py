@@ -10,9 +10,9 @@ Every tenth of a second the policy may look through the robot's cameras and feel
 controllers in each of the coming tenths, of which the first few are carried out before it looks again (Zhao et al.,
 "Learning fine-grained bimanual manipulation with low-cost hardware", RSS 2023, without the variational encoder: the
 demonstrations are those of a program, of which the paper finds that they need none). A small network of convolutions
-takes the place of a pretrained ResNet, so that two cores suffice: of each picture it tells where in it some features are
-that it has learnt (Levine et al., "End-to-end training of deep visuomotor policies", JMLR 2016). It is told neither where
-things nor where it is. While it is shown how, noise leads the arm astray: so it learns to come back.
+takes the place of a pretrained ResNet, so that two cores suffice: of each picture it tells where in it some features
+are that it has learnt (Levine et al., "End-to-end training of deep visuomotor policies", JMLR 2016). The policy is told
+neither where things nor where it is. While it is shown how, noise leads the arm astray: so it learns to come back.
 
 A run is resumed where its file is there already.
 """

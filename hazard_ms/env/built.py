@@ -13,7 +13,7 @@ from mani_skill.utils.common import to_tensor
 from mani_skill.utils.structs.types import SimConfig
 from torch import Tensor
 
-from hazard_ms.env.control_noise import arm_noise
+from hazard_ms.env.control_noise import lead_astray
 from hazard_ms.env.leaves import Leaves
 from hazard_ms.episode import rewards
 from hazard_ms.episode.episode import Episode
@@ -157,10 +157,7 @@ class BuiltEnv(BaseEnv):
     def _before_control_step(self) -> None:
         self.leaves.move()
         if self.perturbation.control:
-            noise = arm_noise(self.world.chance, len(self.agent.arm_joints), self.perturbation.control)
-            self.agent.shift_arms(noise)
-            if self.gpu_sim_enabled:
-                self.scene.px.gpu_apply_articulation_target_position()  # ManiSkill has sent the targets already
+            lead_astray(self.agent, self.world.chance, self.perturbation.control)
         if self.affects_agent:
             down = self.episode.lying()
             if down is not None and not none_set(down):

@@ -6,6 +6,8 @@ where noise has led it, with labels that are free of noise (DART: Laskey et al.,
 
 from __future__ import annotations
 
+from typing import Any
+
 import torch
 from torch import Tensor
 
@@ -15,6 +17,20 @@ from hazard_ms.spec.perturbation import LEAST_SHARE
 
 MOST = (0.0, 0.03, 0.06, 0.12)  # greatest standard deviation of each joint by level, 0 to 3 [rad] [ours]
 KNOT = 5  # frames from one independent draw to the next, between which noise is led smoothly [ours]
+
+
+def lead_astray(agent: Any, chance: Chance, level: int) -> None:
+    """Let the drives of all arms of `agent`, a robot, aim beside where this frame's action sends them, by `arm_noise`.
+
+    Call it after the action is set and before physics steps.
+    """
+    numbers = agent.arm_joints
+    joints = [agent.robot.active_joints[number] for number in numbers]
+    targets = torch.stack([joint.drive_target.reshape(-1) for joint in joints], dim=-1)
+    targets = targets + arm_noise(chance, len(numbers), level)
+    agent.robot.set_joint_drive_targets(targets, joints, torch.tensor(numbers, dtype=torch.int32, device=agent.device))
+    if agent.scene.gpu_sim_enabled:
+        agent.scene.px.gpu_apply_articulation_target_position()  # ManiSkill has sent those of the action already
 
 
 def arm_noise(chance: Chance, joints: int, level: int) -> Tensor:

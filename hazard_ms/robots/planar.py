@@ -179,12 +179,6 @@ class PlanarRobot(Robot):
         index = torch.arange(velocity.shape[1], dtype=torch.int32, device=self.device)
         self.robot.set_joint_drive_velocity_targets(velocity, self.robot.active_joints[: len(index)], index)
 
-    def shift_arms(self, offset: Tensor) -> None:
-        joints = [self.robot.active_joints[number] for number in self.arm_joints]
-        targets = torch.stack([joint.drive_target.reshape(-1) for joint in joints], dim=-1) + offset
-        numbers = torch.tensor(self.arm_joints, dtype=torch.int32, device=self.device)
-        self.robot.set_joint_drive_targets(targets, joints, numbers)
-
     def hand_kinematics(
         self, joints: NDArray[np.float64], number: int, moving: list[int]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

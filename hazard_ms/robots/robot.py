@@ -105,13 +105,6 @@ class Robot(abc.ABC):
         """Numbers of the J joints of all arms, among all joints."""
 
     @abc.abstractmethod
-    def shift_arms(self, offset: Tensor) -> None:
-        """Let the drives of `arm_joints` aim `offset` [rad], [E, J], beside where this frame's action sends them.
-
-        Call it after the action is set and before physics steps.
-        """
-
-    @abc.abstractmethod
     def arm(self) -> NDArray[np.float64]:
         """Positions of the arm joints in the first environment [rad], [Joints]."""
 

@@ -33,9 +33,9 @@ def test_an_episode_has_three_quarters_of_a_level_or_more_in_every_frame(level: 
     noise = drawn(level, tuple(range(6)))
     for part in (noise[::KNOT], noise[2::KNOT]):  # at draws, and between two of them
         spread = part.std(axis=(0, 2))
-        assert (spread > 0.75 * MOST[level] * 0.95).all() and (spread < MOST[level] * 1.05).all()
+        assert (spread > 0.75 * MOST[level] * 0.9).all() and (spread < MOST[level] * 1.1).all()
     assert np.ptp(noise.std(axis=(0, 2))) > 0.05 * MOST[level]  # not as much in each episode
-    assert abs(noise.mean()) < 0.02 * MOST[level]
+    assert abs(noise.mean()) < 0.05 * MOST[level]
 
 
 def test_it_is_smooth_and_forgets_within_two_draws() -> None:

@@ -2,8 +2,8 @@
 
 The kinds are those of LIBERO-Plus (arXiv 2510.13626) without its textures of backgrounds, and control and hazard.
 Levels go from 0, which changes nothing, to MOST_LEVEL; docs/benchmark.md 4.4 lists all of them. What a level changes
-follows from it and from the episode's seed alone. An amount is drawn from LEAST_SHARE of the level's most to all of it, which is
-more than any amount of a lower level.
+follows from it and from the episode's seed alone. An amount is drawn from LEAST_SHARE of the level's most to all of
+it, which is more than any amount of a lower level.
 """
 
 from __future__ import annotations

@@ -39,6 +39,7 @@ SIDE = 96  # of pictures as the network sees them [pixels]
 CUT = {"head": (3 / 8, 3 / 16, 5 / 8)}  # what is seen of a camera's picture: top, left and side, as shares of its side
 POINTS = 64  # features whose places in a picture are told
 CHUNK, CARRIED = 10, 4  # actions that it foresees; those that are carried out before it looks again
+MODES, LOSERS, CHOOSING = 4, 0.1, 0.2  # ways to go on; what all count beside the nearest; what choosing among them does
 WIDTH, HEADS, DEPTH = 128, 4, 2
 BATCH, RATE, WEIGHT_DECAY = 64, 4e-4, 1e-4
 SHIFT, JITTER = 4, 0.1  # most that pictures are shifted [pixels]; noise of joints, as a share of their spread
@@ -73,7 +74,11 @@ class Eye(nn.Module):
 
 
 class Chunks(nn.Module):
-    """From pictures, [N, cameras, 3, SIDE, SIDE], and the body, [N, J], to the coming actions, [N, CHUNK, A]."""
+    """From pictures, [N, cameras, 3, SIDE, SIDE], and the body, [N, J], to ways to go on and how likely each is.
+
+    They are [N, MODES, CHUNK, A], and the logarithms of likelihoods, [N, MODES]. Before some things the teacher drives
+    nearer first, before others it reaches at once: halfway between the two, nothing moves.
+    """
 
     def __init__(self, cameras: int, joints: int, numbers: int) -> None:
         super().__init__()
@@ -84,17 +89,32 @@ class Chunks(nn.Module):
         shape = dict(d_model=WIDTH, nhead=HEADS, dim_feedforward=3 * WIDTH, dropout=0.1, batch_first=True)
         self.encoder = nn.TransformerEncoder(nn.TransformerEncoderLayer(**shape), DEPTH)  # type: ignore[arg-type]
         self.decoder = nn.TransformerDecoder(nn.TransformerDecoderLayer(**shape), 1)  # type: ignore[arg-type]
-        self.out = nn.Linear(WIDTH, numbers)
+        self.out, self.choice = nn.Linear(WIDTH, MODES * numbers), nn.Linear(WIDTH, MODES)
         # what is felt and sent has zero mean and unit variance inside
         self.register_buffer("felt", torch.stack([torch.zeros(joints), torch.ones(joints)]))
         self.register_buffer("sent", torch.stack([torch.zeros(numbers), torch.ones(numbers)]))
 
-    def forward(self, pictures: Tensor, body: Tensor) -> Tensor:
+    def forward(self, pictures: Tensor, body: Tensor) -> tuple[Tensor, Tensor]:
         seen = [eye(pictures[:, camera].float() / 255.0 - 0.5) for camera, eye in enumerate(self.eyes)]
         felt = self.body((body - self.felt[0]) / self.felt[1])
         known = self.encoder(torch.stack([felt, *seen], 1) + self.places)
         foreseen = self.out(self.decoder(self.queries.expand(len(body), -1, -1), known))
-        return foreseen * self.sent[1] + self.sent[0]
+        ways = foreseen.unflatten(2, (MODES, -1)).transpose(1, 2)
+        return ways * self.sent[1] + self.sent[0], self.choice(known[:, 0])
+
+    def loss(self, pictures: Tensor, body: Tensor, chunks: Tensor) -> Tensor:
+        """How far the nearest way is from what was done, [N, CHUNK, A], in spreads of it, and how unlikely it was."""
+        ways, choice = self(pictures, body)
+        off = ((ways - chunks[:, None]) / self.sent[1]).abs().mean((2, 3))
+        near, which = off.min(1)
+        chosen = nn.functional.cross_entropy(choice, which)
+        return (1.0 - LOSERS) * near.mean() + LOSERS * off.mean() + CHOOSING * chosen
+
+    def act(self, pictures: Tensor, body: Tensor) -> np.ndarray:
+        """The likeliest way to go on, [CHUNK, A], from what one robot sees and feels."""
+        with torch.no_grad():
+            ways, choice = self(pictures[None], body[None].float())
+        return ways[0, int(choice.argmax())].numpy()
 
 
 def small(picture: Any, camera: str) -> np.ndarray:
@@ -162,8 +182,7 @@ def train(folders: list[Path], minutes: float, out: Path) -> None:
         batch = torch.randint(len(rows.body), (BATCH,))
         body = rows.body[batch]
         noisy = body + JITTER * model.felt[1] * torch.randn_like(body)
-        foreseen = model(shifted(rows.pictures[batch]), noisy)
-        loss = ((foreseen - rows.chunks[batch]) / model.sent[1]).abs().mean()
+        loss = model.loss(shifted(rows.pictures[batch]), noisy, rows.chunks[batch])
         optimiser.zero_grad()
         loss.backward()
         nn.utils.clip_grad_norm_(model.parameters(), 1.0)
@@ -171,12 +190,12 @@ def train(folders: list[Path], minutes: float, out: Path) -> None:
         losses.append(float(loss.detach()))
         if len(losses) % 200 == 0:
             told = f"{len(losses)},{60.0 * minutes * done:.0f},{np.mean(losses[-200:]):.4f}"
-            print(f"{100 * done:.0f} %: steps, seconds, L1: {told}", flush=True)
+            print(f"{100 * done:.0f} %: steps, seconds, loss: {told}", flush=True)
             save_file(model.state_dict(), out / "policy.safetensors")
             with (out / "curve.csv").open("a") as curve:
                 curve.write(told + "\n")
     save_file(model.state_dict(), out / "policy.safetensors")
-    print(f"{len(losses)} steps in {minutes:g} minutes: L1 {np.mean(losses[-50:]):.3f}")
+    print(f"{len(losses)} steps in {minutes:g} minutes: loss {np.mean(losses[-50:]):.3f}")
 
 
 def play(policy: Path, episodes: int, seed: int, split: str, hazards: list[str], load: str = PRACTICE) -> list[bool]:
@@ -197,9 +216,7 @@ def play(policy: Path, episodes: int, seed: int, split: str, hazards: list[str],
             joints = (len(seen["agent_pos"]) - 7) // 2  # positions, then velocities, the pose, the hand, what it holds
             body = np.append(seen["agent_pos"][BASE:joints], seen["agent_pos"][-1])
             pictures = np.stack([small(seen["pixels"][camera], camera) for camera in cameras])
-            with torch.no_grad():
-                chunk = model(torch.from_numpy(pictures)[None], torch.from_numpy(body)[None].float())[0].numpy()
-            for action in chunk[:CARRIED]:
+            for action in model.act(torch.from_numpy(pictures), torch.from_numpy(body))[:CARRIED]:
                 seen, _, terminated, truncated, info = env.step(action)
                 steps, over = steps + 1, terminated or truncated
                 if over:

@@ -89,3 +89,19 @@ def test_it_learns_goes_on_and_plays(
     assert json.loads((tmp_path / "made" / "settings.json").read_text())["task"] == "HazardPickUp-v1"
     assert example.play(tmp_path / "made", 1, 4, "train", ["flood"]) in ([False], [True])
     assert "of 1 succeeded" in (said := capsys.readouterr().out) and "['flood']" in said
+
+
+def test_between_two_ways_to_go_on_it_takes_one(example: Any) -> None:
+    """Half of the demonstrations drive ahead where the other half drives back: the mean of both stands still."""
+    torch.manual_seed(0)
+    model = example.Chunks(2, 3, 2)
+    optimiser = torch.optim.AdamW(model.parameters(), 1e-3)
+    pictures = torch.randint(0, 255, (1, 2, 3, example.SIDE, example.SIDE), dtype=torch.uint8).repeat(8, 1, 1, 1, 1)
+    body = torch.zeros(8, 3)
+    ahead = torch.tensor([1.0, -1.0]).repeat(4)[:, None, None].expand(8, example.CHUNK, 2)
+    for _ in range(60):
+        loss = model.loss(pictures, body, ahead)
+        optimiser.zero_grad()
+        loss.backward()
+        optimiser.step()
+    assert np.abs(model.eval().act(pictures[0], body[0])).min() > 0.7

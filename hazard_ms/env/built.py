@@ -16,7 +16,7 @@ from torch import Tensor
 from hazard_ms.env.leaves import Leaves
 from hazard_ms.episode import rewards
 from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.grasp import Hand
+from hazard_ms.episode.grasp import Hand, lead_doors
 from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.base import loosened, none_set
 from hazard_ms.hazards.presets import FREQUENCIES
@@ -32,6 +32,7 @@ from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.drawing.lighting import Lighting
 from hazard_ms.simulation.drawing.moved_cameras import MovedCameras
 from hazard_ms.simulation.drawing.viewpoint import corner_view
+from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec, Task, checks
 from hazard_ms.spec.perturbation import Perturbation
@@ -111,6 +112,8 @@ class BuiltEnv(BaseEnv):
         self.world.agent_build = self.agent.build
         if self.task.mitigations:
             self.world.equip(tools_of(self.task.mitigations))
+        if self.task.doors_by_hand:
+            self.world.door_grip = DoorGrip(self.specs, self.world.openings)
         self.episode = Episode(self.world, self.task.hazards, self.task.safe_place)
         self.leaves = Leaves(self.scene, self.world)
         self.situation = Situation(self.episode, self.agent, self.affects_agent)
@@ -175,6 +178,8 @@ class BuiltEnv(BaseEnv):
         self.episode.see(self.agent)
         self.episode.watch(self.agent.robot.get_qpos())
         self.episode.advance(self.control_timestep)
+        if self.world.door_grip is not None:
+            lead_doors(self.hand, self.world, self.agent.gripper_pose()[0], self.agent.grip_closed(), self.control_timestep)
         self.episode.use_hand(self.agent.gripper_pose(), self.agent.grip_closed(), self.agent.bag_position)
 
     def evaluate(self) -> dict[str, Tensor]:

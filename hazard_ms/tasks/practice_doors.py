@@ -33,7 +33,7 @@ FIRE_GAP = (0.5, 0.9)  # distance from the handle at which the floor burns with 
 FIRES = 2
 # where the robot begins: distance from the handle [m], and how far the way there is turned from the shut leaf towards
 # its swing [rad]: within reach of Fetch (1.09 m at this height) and of G1, and mostly out of the swing
-APART, ROUND = (0.80, 1.0), (math.radians(45), math.radians(90))
+APART, ROUND = (0.9, 1.0), (math.radians(45), math.radians(90))
 ASKEW = 0.3  # most that the robot looks past the handle [rad]
 BERTH = 0.05  # clearance at the start from where the leaf comes, beside the robot's own radius [m]
 DRAWS = 64  # places of which the first clear one is taken

@@ -7,9 +7,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.simulation.mitigation.door_grip import FASTEST
 from hazard_ms.skills import failures
@@ -18,7 +15,7 @@ from hazard_ms.skills.decision import Result
 from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.kinematics import shifted
 
-LEAD = math.radians(8)  # by which the hand is sent ahead of where it is [rad] [ours]
+LEAD = math.radians(5)  # by which the hand is sent ahead of where the leaf would follow [rad] [ours]
 THERE = math.radians(2)  # difference from the wanted angle at which a leaf is as far as it was asked to turn [rad]
 STALLED = 30  # frames in which a leaf does not turn on, after which it will not [ours]
 
@@ -35,18 +32,11 @@ def guide(stage: Stage, leaf: Leaf, goal: float) -> Skill:
             reason = failures.BROKEN if leaf.broken else failures.UNREACHABLE
             break
         if bool(grip.state.holds[0, leaf.number]):
-            arm = shifted(stage.robot, stage.robot.arm(), _ahead(stage, leaf, left) - stage.robot.hand())
+            behind = float(grip.state.ahead[0, leaf.number])
+            place = hinges.handle(leaf.room, leaf.o, leaf.angle - behind + math.copysign(min(LEAD, abs(left)), left))
+            arm = shifted(stage.robot, stage.robot.arm(), place - stage.robot.hand())
         yield stage.act(arm=arm, shut=True)
         used += 1
     yield stage.act(arm=stage.robot.arm(), shut=False)
     return Result(not reason, reason, used + 1)
 
-
-def _ahead(stage: Stage, leaf: Leaf, left: float) -> NDArray[np.float64]:
-    """The place [m], [3], of the hand LEAD further along its arc, or as far as is `left` [rad]."""
-    start, along, out = hinges.hinge(leaf.room, leaf.o)
-    hand, handle = stage.robot.hand(), leaf.handle()
-    off = hand[:2] - start
-    bearing = math.atan2(off @ out, off @ along) + math.copysign(min(LEAD, abs(left)), left)
-    far = float(np.hypot(*(handle[:2] - start)))
-    return np.array([*(start + far * (math.cos(bearing) * along + math.sin(bearing) * out)), handle[2]])

@@ -29,13 +29,12 @@ WIDTH, HEIGHT = (0.9, 1.0), 2.0  # of the door, least and most, and its height [
 STAND, THING = 0.4, (0.08, 0.08, 0.15)  # width of the two tables; edges of what lies on the far one [m] [ours]
 CORNER = 0.7  # distance of the tables from two walls [m] [ours]
 TOPS = (0.4, 0.85)  # least and most height of the tables [m]
-FIRE_GAP = (0.5, 0.9)  # distance from the handle at which the floor burns with fire [m] [as of things in practice]
-FIRES = 2
+FIRES, FIRE_GAP = 2, (0.5, 0.9)  # with fire: places that burn at frame 0, so far before the middle of the door [m] [ours]
 # where the robot begins: distance from the handle [m], and how far the way there is turned from the shut leaf towards
 # its swing [rad]: within reach of Fetch (1.09 m at this height) and of G1, and mostly out of the swing
-APART, ROUND = (0.9, 1.0), (math.radians(45), math.radians(90))
+APART, ROUND = (0.9, 1.0), (math.radians(75), math.radians(95))
 ASKEW = 0.3  # most that the robot looks past the handle [rad]
-BERTH = 0.05  # clearance at the start from where the leaf comes, beside the robot's own radius [m]
+BERTH = 0.08  # clearance at the start from where the leaf comes, beside the robot's own radius [m]
 DRAWS = 64  # places of which the first clear one is taken
 FRAMES = 300  # of an episode [ours]
 
@@ -61,7 +60,8 @@ def room(number: str) -> SceneSpec:
         fixtures.append(Fixture(f"stand_{i}", "table", "plain_box", (*places[i], 0.0), scale=(STAND, STAND, top)))
     thing = Body("box_0", "box", "plain_box", (*places[1], top), scale=THING, mass=0.3)
     angles, gaps = chance.uniform(0.0, math.pi, FIRES), chance.uniform(*FIRE_GAP, FIRES)
-    fires = [(middle + gap * math.cos(a), at - gap * math.sin(a)) for a, gap in zip(angles, gaps, strict=True)]
+    polar = zip(angles.tolist(), gaps.tolist(), strict=True)
+    fires = [(middle + gap * math.cos(a), at - gap * math.sin(a)) for a, gap in polar]
     burning = tuple(fires if axis == "x" else [(y, x) for x, y in fires])
     whole = Room(ROOM, openings=(door,), partitions=(Partition("partition_1", axis, at),))
     return SceneSpec(number, whole, tuple(fixtures), (thing,), ("box",), burning, AgentStart((1.0, 1.0)))

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 
 from hazard_ms.simulation.mitigation import hinges
-from hazard_ms.simulation.mitigation.door_grip import FASTEST
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
@@ -16,17 +15,21 @@ from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.kinematics import shifted
 
 LEAD = math.radians(5)  # by which the hand is sent ahead of where the leaf would follow [rad] [ours]
+ROOMY = 0.75  # distance of the handle from the base from which on this draws back, so that the arm has room [m] [ours]
 THERE = math.radians(2)  # difference from the wanted angle at which a leaf is as far as it was asked to turn [rad]
-STALLED = 30  # frames in which a leaf does not turn on, after which it will not [ours]
+STALLED = 20  # frames in which a leaf does not turn on, after which it will not [ours]
 
 
 def guide(stage: Stage, leaf: Leaf, goal: float) -> Skill:
-    """Shut the hand at the handle of `leaf`, lead it to the angle `goal` [rad], and let go."""
+    """Shut the hand at the handle of `leaf`, lead it to the angle `goal` [rad], and let go.
+
+    Where the arm gets no farther, it is far enough if the robot gets through what is open.
+    """
     grip, used, since, best = stage.world.door_grip, 0, 0, math.inf
     assert grip is not None
-    arm = stage.robot.arm()
-    reason = ""
-    while (left := goal - leaf.angle) and abs(left) > THERE:
+    arm, step = stage.robot.arm(), stage.robot.build.forward_step
+    forward, reason = 0.0, ""
+    while abs(left := goal - leaf.angle) > THERE:
         best, since = (abs(left), 0) if abs(left) < best - 1e-3 else (best, since + 1)
         if leaf.broken or since > STALLED:
             reason = failures.BROKEN if leaf.broken else failures.UNREACHABLE
@@ -34,9 +37,14 @@ def guide(stage: Stage, leaf: Leaf, goal: float) -> Skill:
         if bool(grip.state.holds[0, leaf.number]):
             behind = float(grip.state.ahead[0, leaf.number])
             place = hinges.handle(leaf.room, leaf.o, leaf.angle - behind + math.copysign(min(LEAD, abs(left)), left))
+            x, y, _ = stage.robot.base()
+            forward = max(-step, min(0.0, math.hypot(place[0] - x, place[1] - y) - ROOMY))
             arm = shifted(stage.robot, stage.robot.arm(), place - stage.robot.hand())
-        yield stage.act(arm=arm, shut=True)
+        yield stage.act(forward, arm=arm, shut=True)
         used += 1
+    passes = leaf.o.width * hinges.share(leaf.angle) > 2.0 * stage.robot.build.radius
+    if reason == failures.UNREACHABLE and goal > 0.0 and passes:
+        reason = ""
     yield stage.act(arm=stage.robot.arm(), shut=False)
     return Result(not reason, reason, used + 1)
 

@@ -178,9 +178,9 @@ class BuiltEnv(BaseEnv):
         self.episode.see(self.agent)
         self.episode.watch(self.agent.robot.get_qpos())
         self.episode.advance(self.control_timestep)
-        if self.world.door_grip is not None:
-            lead_doors(self.hand, self.world, self.agent.gripper_pose()[0], self.agent.grip_closed(), self.control_timestep)
-        self.episode.use_hand(self.agent.gripper_pose(), self.agent.grip_closed(), self.agent.bag_position)
+        gripper, closed = self.agent.gripper_pose(), self.agent.grip_closed()
+        lead_doors(self.hand, self.world, gripper[0], closed, self.control_timestep)
+        self.episode.use_hand(gripper, closed, self.agent.bag_position)
 
     def evaluate(self) -> dict[str, Tensor]:
         return rewards.evaluate(self.task.goal, self.situation)

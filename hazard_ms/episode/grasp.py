@@ -88,12 +88,13 @@ def update(hand: Hand, world: World, gripper: Tensor, rotation: Tensor, closed: 
 
 
 def lead_doors(hand: Hand, world: World, gripper: Tensor, closed: Tensor, dt: float) -> None:
-    """Let hands take handles, lead leaves, and let go; call it before `update`, in tasks with `world.door_grip`.
+    """Let hands take handles, lead leaves, and let go, in tasks in which leaves follow them; call it before `update`.
 
     `gripper`: positions [m], [E, 3]; `closed`: commands of this frame of `dt` [s], [E]. What a hand can take as well,
     it takes instead of a handle.
     """
-    assert world.door_grip is not None
+    if world.door_grip is None:
+        return
     shuts = closed & ~hand.closed & (hand.held < 0) & (graspable(world, gripper) < 0)
     fixed = world.exists & ~world.movable
     robot = torch.full_like(world.agent_heading, world.robot.radius)[:, None]

@@ -1,4 +1,4 @@
-"""Practice, from a single motion to one rescue: to walk to a thing, pick it up, put it in the bag, fetch it, open a door.
+"""Practice, from a single motion to one rescue: walk to a thing, pick it up, put it into the bag, fetch it; open a door.
 
 Rooms are calm unless `hazards` are asked for, as by `gym.make("hazard_ms.tasks.practice:HazardFetch-v1",
 hazards=["fire"])`: so it can be seen what a hazard costs a policy. Not part of the benchmark: the tasks are registered
@@ -187,8 +187,8 @@ def open_door(physics: str = "paper", hazards: Sequence[str] = (), severity: str
     """The task HazardOpenDoor-v1. Raises ValueError as `practice` does."""
     text = "Open the door before you."
     made = practice(doors.OPEN_DOOR, doors.OPEN_DOOR_TERMS, False, text, physics, hazards, severity)
-    where = {"build": door_room, "arrange": doors.stand_before, "several_rooms": True}
-    return dataclasses.replace(made, **where, mitigations=("open",), doors_by_hand=True)
+    made = dataclasses.replace(made, build=door_room, arrange=doors.stand_before, several_rooms=True)
+    return dataclasses.replace(made, mitigations=("open",), doors_by_hand=True)
 
 
 register_task("HazardWalkTo-v1", walk_to, rewards.WALK_FRAMES)

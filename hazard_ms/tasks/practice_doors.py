@@ -1,10 +1,10 @@
 """Practice at a door: its rooms, where a robot stands before it, the goal, what is paid and what is observed.
 
-The robot begins on the side into which the leaf turns, so that it has to pull. The door is open when what is open of its
-width, seen along the wall's normal, is wider than the robot: then the skills count it as one that the robot gets through
-(hazard_ms.skills.mitigations.handles), for Fetch in a door of 0.9 m at 69 degrees. A third of the hint of a frame is for
-a hand near the handle, a third for holding it, a third for how far the leaf has turned of that angle. So it is worth to
-let go and take it again, and nothing is lost of what was reached.
+The robot begins on the side into which the leaf turns, so that it has to pull. The door is open when what is open of
+its width, seen along the wall's normal, is wider than the robot, for Fetch in a door of 0.9 m at 69 degrees: the skills
+count it as one that the robot gets through then (hazard_ms.skills.mitigations.handles). A third of the hint of a frame
+is for a hand near the handle, a third for holding it, and a third for how far the leaf has turned of that angle: who
+lets go loses nothing of the last, and can take the handle again.
 """
 
 from __future__ import annotations
@@ -29,7 +29,10 @@ WIDTH, HEIGHT = (0.9, 1.0), 2.0  # of the door, least and most, and its height [
 STAND, THING = 0.4, (0.08, 0.08, 0.15)  # width of the two tables; edges of what lies on the far one [m] [ours]
 CORNER = 0.7  # distance of the tables from two walls [m] [ours]
 TOPS = (0.4, 0.85)  # least and most height of the tables [m]
-FIRES, FIRE_GAP = 2, (0.5, 0.9)  # with fire: places that burn at frame 0, so far before the middle of the door [m] [ours]
+FIRES, FIRE_GAP = (
+    2,
+    (0.5, 0.9),
+)  # with fire: places that burn at frame 0, so far before the middle of the door [m] [ours]
 # where the robot begins: distance from the handle [m], and how far the way there is turned from the shut leaf towards
 # its swing [rad]: within reach of Fetch (1.09 m at this height) and of G1, and mostly out of the swing
 APART, ROUND = (0.9, 1.0), (math.radians(75), math.radians(95))

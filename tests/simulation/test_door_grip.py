@@ -152,7 +152,7 @@ def turned(doors: Doors) -> float:
 
 
 def test_a_leaf_stops_before_a_robot_and_before_furniture_and_pushes_what_moves() -> None:
-    """A disc on the leaf's circle stops it where the way from its middle to the leaf is its radius and half the leaf."""
+    """A disc in the swing stops it where the way from its middle to the leaf is its radius and half of the leaf."""
     free = Doors(scene())
     assert turned(free) == pytest.approx(math.pi / 2, abs=1e-3)
     for radius, robot in ((0.29, True), (0.2, False)):

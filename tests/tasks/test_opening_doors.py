@@ -38,7 +38,7 @@ def door() -> Iterator[Any]:
 
 
 def geometry(base: Any) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
-    """The width of the door [m], its hinge [m] and the directions of its leaf and of its swing, from the scene alone."""
+    """The width of the door [m], its hinge [m], the directions of its leaf and of its swing, from the scene alone."""
     (opening,), (wall,) = base.specs[0].room.openings, base.specs[0].room.partitions
     low = opening.centre - opening.width / 2
     if wall.axis == "y":

@@ -2,10 +2,10 @@
 
     wanted = bearing of the hand from the hinge + what the leaf was ahead of it when the handle was taken
 
-A hand that shuts within a grasp's reach of the middle of a handle holds it until it opens, or until it is SLIP away. The
-leaf turns towards `wanted`, from where it is shut up to a quarter turn, by a quarter turn in OPENING_TIME at most, both
-ways. It stays where it is while it would come nearer to what stands in its way, and while it needs more force at the
-handle than the arm pulls (hazard_ms.simulation.mitigation.hinges). Without a hand it stays where it was left.
+A hand that shuts within a grasp's reach of the middle of a handle holds it until it opens, or until it is SLIP away.
+The leaf turns towards `wanted`, from where it is shut up to a quarter turn, by a quarter turn in OPENING_TIME at most,
+both ways. It stays where it is while it would come nearer to what stands in its way, and while it needs more force at
+the handle than the arm pulls (hazard_ms.simulation.mitigation.hinges). Without a hand it stays where it was left.
 
 Limits: leaves of outer doors, and windows, do not turn; a hand holds no latch down; arms are not in the way of a leaf.
 Angles are worked out in double precision, so that they are the same on all processors (hazard_ms.spec.rounding).
@@ -45,7 +45,7 @@ class GripState(State):
 
 
 class DoorGrip:
-    """The hand of each of E agents at the O openings of its scene, of which those count that are doors between rooms."""
+    """The hand of each of E agents at the O openings of its scene: those that are doors between rooms."""
 
     def __init__(self, specs: Sequence[SceneSpec], openings: Openings) -> None:
         """Take the doors of `specs`, whose state is that of `openings`."""

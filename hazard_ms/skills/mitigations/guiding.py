@@ -1,4 +1,4 @@
-"""Leads the leaf of a door by hand, in tasks in which leaves follow the hand (hazard_ms.simulation.mitigation.door_grip).
+"""Leads the leaf of a door by hand, in tasks in which leaves follow it (hazard_ms.simulation.mitigation.door_grip).
 
 The hand is at the handle when it begins. It shuts, and then goes along the arc of the handle, a step ahead of the leaf.
 """
@@ -47,4 +47,3 @@ def guide(stage: Stage, leaf: Leaf, goal: float) -> Skill:
         reason = ""
     yield stage.act(arm=stage.robot.arm(), shut=False)
     return Result(not reason, reason, used + 1)
-

@@ -1,4 +1,4 @@
-"""Practice, from a single motion to one rescue: walk to a thing, pick it up, put it into the bag, fetch it; open a door.
+"""Practice, from one motion to one rescue: walk to a thing, pick it up, put it into the bag, fetch it; open a door.
 
 Rooms are calm unless `hazards` are asked for, as by `gym.make("hazard_ms.tasks.practice:HazardFetch-v1",
 hazards=["fire"])`: so it can be seen what a hazard costs a policy. Not part of the benchmark: the tasks are registered

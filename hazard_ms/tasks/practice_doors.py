@@ -29,6 +29,7 @@ WIDTH, HEIGHT = (0.9, 1.0), 2.0  # of the door, least and most, and its height [
 STAND, THING = 0.4, (0.08, 0.08, 0.15)  # width of the two tables; edges of what lies on the far one [m] [ours]
 CORNER = 0.7  # distance of the tables from two walls [m] [ours]
 TOPS = (0.4, 0.85)  # least and most height of the tables [m]
+BEYOND = 1.2  # of the start that `stand_before` replaces, so that films look from the robot's own side [m] [ours]
 FIRES, FIRE_GAP = (
     2,
     (0.5, 0.9),
@@ -67,7 +68,8 @@ def room(number: str) -> SceneSpec:
     fires = [(middle + gap * math.cos(a), at - gap * math.sin(a)) for a, gap in polar]
     burning = tuple(fires if axis == "x" else [(y, x) for x, y in fires])
     whole = Room(ROOM, openings=(door,), partitions=(Partition("partition_1", axis, at),))
-    return SceneSpec(number, whole, tuple(fixtures), (thing,), ("box",), burning, AgentStart((1.0, 1.0)))
+    beyond = (middle, at + BEYOND) if axis == "x" else (at + BEYOND, middle)
+    return SceneSpec(number, whole, tuple(fixtures), (thing,), ("box",), burning, AgentStart(beyond))
 
 
 def stand_before(situation: Situation, rows: Tensor) -> None:

@@ -16,7 +16,6 @@ import torch
 from torch import Tensor
 
 from hazard_ms.episode.situation import Situation
-from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.spec import AgentStart, Body, Fixture, Goal, Opening, Partition, Room, SceneSpec, Term, rounding
 from hazard_ms.spec.robot import GRASP_REACH
 from hazard_ms.tasks import practice_rewards as rewards
@@ -74,7 +73,7 @@ def room(number: str) -> SceneSpec:
 
 def stand_before(situation: Situation, rows: Tensor) -> None:
     """Put the robots of the environments `rows`, [R], before the handle of the door, out of the way of its leaf."""
-    world, grip = situation.world, grip_of(situation)
+    world, grip = situation.world, situation.grip
     draw = world.chance.uniform("practice start", DRAWS, 3)
     places = (grip.handles()[..., :2], grip.hinge, grip.along, grip.out)
     handle, hinge, along, out = (at(situation, of)[:, None].float() for of in places)
@@ -89,28 +88,20 @@ def stand_before(situation: Situation, rows: Tensor) -> None:
     situation.agent.place(rows, place[rows], heading[rows])
 
 
-def grip_of(situation: Situation) -> DoorGrip:
-    """The hands at doors. Raises ValueError in a task without Task.doors_by_hand."""
-    grip = situation.world.door_grip
-    if grip is None:
-        raise ValueError("doors_by_hand must be True in a task of doors, got False")
-    return grip
-
-
 def at(situation: Situation, values: Tensor) -> Tensor:
     """The numbers of `values`, [E, O, ...], that belong to the door of each room, [E, ...]."""
-    door = grip_of(situation).doors.int().argmax(dim=1)
+    door = situation.grip.doors.int().argmax(dim=1)
     return values[torch.arange(len(values), device=values.device), door]
 
 
 def angle(situation: Situation) -> Tensor:
     """Angle by which the door is open [rad], [E]."""
-    return at(situation, grip_of(situation).angle).float()
+    return at(situation, situation.grip.angle).float()
 
 
 def wide_enough(situation: Situation) -> Tensor:
     """Angle at which what is open of the door is as wide as the robot [rad], [E]."""
-    passing = 2.0 * situation.world.robot.radius / at(situation, grip_of(situation).width)
+    passing = 2.0 * situation.world.robot.radius / at(situation, situation.grip.width)
     return rounding.acos(1.0 - passing)
 
 
@@ -126,7 +117,7 @@ def broken(situation: Situation) -> Tensor:
 
 def handle(situation: Situation) -> Tensor:
     """Middle of the handle [m], [E, 3], world frame."""
-    return at(situation, grip_of(situation).handles())
+    return at(situation, situation.grip.handles())
 
 
 def from_hand(situation: Situation) -> Tensor:
@@ -141,7 +132,7 @@ def gap(situation: Situation) -> Tensor:
 
 def holding(situation: Situation) -> Tensor:
     """Whether the hand holds the handle, bool [E]."""
-    return at(situation, grip_of(situation).state.holds)
+    return at(situation, situation.grip.state.holds)
 
 
 def hint(situation: Situation) -> Tensor:
@@ -158,7 +149,7 @@ def dense(situation: Situation) -> Tensor:
 
 def hinge(situation: Situation) -> Tensor:
     """The hinge at the height of the handle in the frame of the base: ahead, left, up [m], [E, 3]."""
-    over = at(situation, grip_of(situation).hinge).float()
+    over = at(situation, situation.grip.hinge).float()
     place = torch.cat([over, handle(situation)[:, 2:]], dim=-1)
     return rewards.in_base(situation, place - situation.world.agent_position)
 

@@ -15,7 +15,7 @@ from hazard_ms.agents.base import PrivilegedAgent, agent
 from hazard_ms.cli.__main__ import main
 from hazard_ms.demonstrations.options import RecordOptions
 from hazard_ms.demonstrations.recording import RecordJob, attempt
-from hazard_ms.evaluation.options import EpisodeOptions
+from hazard_ms.evaluation.options import EnvOptions, EpisodeOptions
 from hazard_ms.lerobot import ENV_ID
 from hazard_ms.skills.executor import SkillEnv
 from tests.worlds.registering import practising
@@ -66,17 +66,17 @@ def test_the_oracle_opens_nearly_every_door(split: str) -> None:
 def test_the_oracle_demonstrates_it_and_is_scored(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The joint actions of the demonstration open the door again in the environment that LeRobot's tools play."""
     episode = EpisodeOptions(env_id=TASK, agent="oracle", seed=4, load=(MODULE,))
-    options = RecordOptions(env_id=TASK, agent="oracle", output=tmp_path / "demos", load=(MODULE,))
+    options = RecordOptions(EnvOptions(env_id=TASK, load=(MODULE,)), output=tmp_path / "demos")
     options.dataset.mkdir(parents=True)
     outcome = attempt(RecordJob(episode, 600.0, record=options), lambda word: None)
     assert not outcome.error and outcome.result is not None and outcome.result.ended == "door open"
     (folder,) = [path for path in options.dataset.iterdir() if path.is_dir()]
     made = json.loads((folder / "episode.json").read_text())
     frames = np.load(folder / "frames.npz")
-    assert "failures" not in str(folder) and made["env_id"] == TASK and bool(frames["success"][-1])
+    assert made["reason"] == "" and made["subtasks"][-1] == "open door_0" and bool(frames["success"][-1])
 
     env = gym.make(ENV_ID, task=f"{MODULE}:{TASK}", side=64, every=1, split="train")
-    env.reset(seed=4, options={"scene": made["scene"]})
+    env.reset(seed=4, options={"scene": made["result"]["scene"]})
     for action in frames["action"]:
         _, _, terminated, _, info = env.step(action)
         if terminated:

@@ -86,7 +86,7 @@ def _turn(stage: Stage, name: str, opening: bool) -> Skill:
     if not reason and leaf.force(opening) > stage.robot.build.pull:
         reason = failures.HELD_SHUT if opening else failures.HELD_OPEN
     if not reason:
-        by_hand = stage.world.door_grip is not None
+        by_hand = opening and stage.world.door_grip is not None
         turned = yield from (guide(stage, leaf, goal) if by_hand else _lead(stage, leaf, goal, opening, home))
         reason, used = turned.reason, used + turned.frames
         stage.doors.enter(known.number, stage.frame, stage.maps)

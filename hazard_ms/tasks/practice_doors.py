@@ -34,7 +34,7 @@ FIRES, FIRE_GAP = (
     (0.5, 0.9),
 )  # with fire: places that burn at frame 0, so far before the middle of the door [m] [ours]
 # where the robot begins: distance from the handle [m], and how far the way there is turned from the shut leaf towards
-# its swing [rad]: within reach of Fetch (1.09 m at this height) and of G1, and mostly out of the swing
+# its swing [rad]: within reach of Fetch, 1.09 m at this height, and mostly out of the swing [ours]
 APART, ROUND = (0.9, 1.0), (math.radians(75), math.radians(95))
 ASKEW = 0.3  # most that the robot looks past the handle [rad]
 BERTH = 0.08  # clearance at the start from where the leaf comes, beside the robot's own radius [m]

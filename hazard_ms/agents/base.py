@@ -22,7 +22,7 @@ from hazard_ms.agents.thinking import Thought
 from hazard_ms.registry import AGENTS, load, load_plugin
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import Action, Decision
+from hazard_ms.skills.decision import EXPLORE, Action, Decision
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.parameters import parameters
 
@@ -160,6 +160,20 @@ def known(decision: Decision, names: tuple[str, ...]) -> dict[str, Sighting]:
     """The things among `names` that were seen and are remembered, nearest first."""
     seen = {name: decision.map.objects[i] for name in names if (i := decision.index(name)) in decision.map.objects}
     return dict(sorted(seen.items(), key=lambda item: distance(decision, item[1])))
+
+
+def asked(decision: Decision, verb: str) -> Action:
+    """The action for a goal that the mitigation `verb` achieves: on the nearest thing that it makes sense on now.
+
+    Where there is none, and after a failure, it is to look around.
+    """
+    last, here = decision.last_result, decision.agent_position
+    failed = decision.last_action is not None and last is not None and decision.last_action.verb == verb and not last.ok
+    places = {o.name: o.position for o in decision.openings}
+    on = [action for action in decision.available if action.verb == verb and action.target in places]
+    if failed or not on:
+        return Action(EXPLORE)
+    return min(on, key=lambda action: float(np.hypot(*np.subtract(places[str(action.target)][:2], here))))
 
 
 def open_targets(decision: Decision) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.agents.attempts import Attempts, Enclosure, Repeats
-from hazard_ms.agents.base import PrivilegedAgent
+from hazard_ms.agents.base import PrivilegedAgent, asked
 from hazard_ms.agents.gale.carts import PUSH
 from hazard_ms.agents.gale.truth import GaleTruth, hazard_of
 from hazard_ms.agents.mitigating.doing import Mitigator
@@ -34,15 +34,13 @@ MOST_REACH = 2.0  # distance up to which it reaches for a thing after a walk has
 NEAR = 0.2  # beyond where a walk arrives, from which it reaches for a thing without walking [m] [ours]
 NEAR_CART = 0.7  # beyond where a walk arrives, from which a drop drives on while the arm unfolds [m] [ours]
 PROGRESS = 0.2  # a walk that got it this far is not a failure [m]
-GIVE_UP = 3  # failures after which a target is left for the end [ours]
-CART_FAILURES = 3  # after which a cart is no longer used [ours]
+GIVE_UP, CART_FAILURES = 3, 3  # failures after which a target is left for the end, and a cart no longer used [ours]
 FADING = 2e-4  # share of a target's value that is at risk in each frame until it is safe: skills fail [ours]
 MOVED = 0.2  # a thing that will be met farther than this from where it is now is moving [m] [ours]
 LOYALTY = 20.0  # frames that it deducts for the target that it is on its way to, so that it does not waver [ours]
 LOYALTY_ADRIFT = 200.0  # the same in floods of homes, where what drifts past bars ways for a while [ours]
 ROUNDS = 2  # number of times that it tries again what it had given up [ours]
-MOST_LABELS = 20_000  # of the exact search: rarely needed [ours]
-BEAM = 2_000  # labels of a layer beyond that [ours]
+MOST_LABELS, BEAM = 20_000, 2_000  # of the exact search: rarely needed; of a layer beyond that [ours]
 
 
 class Oracle(PrivilegedAgent):
@@ -75,13 +73,15 @@ class Oracle(PrivilegedAgent):
         self._truth.furniture = gale is not None
         self._loyalty = LOYALTY_ADRIFT if brief.several_rooms and pushes(base.task.hazards) else LOYALTY
         self._mitigator = Mitigator(self._truth, brief) if self._mitigates and brief.mitigations and not gale else None
-        self._enclosure, self._repeats = Enclosure(), Repeats(bool(brief.mitigations))
+        self._verb, self._enclosure, self._repeats = brief.verb, Enclosure(), Repeats(bool(brief.mitigations))
 
     def act(self, decision: Decision) -> Action:
         """The next action: the first step of the best plan from here on."""
         assert self._truth is not None
         if self._before is None:  # not earlier: who records the episode begins with the map of an honest agent
             decision = self._truth.furnish(decision)
+        if self._verb:
+            return self._say(f"the task is to {self._verb}", asked(decision, self._verb))
         if self._mitigator is not None:
             self._scene = self._mitigator.scene(self._scene, decision.agent_position)
         if self._mitigator is None or not self._mitigator.took(decision):

@@ -13,7 +13,7 @@ class Random(Agent):
     """Draws from six moves.
 
     They are: one step to the nearest target or container, pick up the nearest target, drop, explore, and walk to
-    something in sight.
+    something in sight; and, where a mitigation achieves the goal, that.
     """
 
     colours = False
@@ -21,6 +21,7 @@ class Random(Agent):
     def reset(self, brief: Brief) -> None:
         """Begin a sequence of random numbers, fixed by `brief.random_seed`."""
         # "RAND": not the stream of another agent with the same seed
+        self._verb = brief.verb
         self._chance = np.random.default_rng([brief.random_seed, 0x52414E44])
 
     def act(self, decision: Decision) -> Action:
@@ -31,6 +32,7 @@ class Random(Agent):
     def _moves(self, decision: Decision) -> list[Action]:
         carts = list(known(decision, decision.containers))
         moves = [Action(DROP, carts[0] if carts else None), Action(EXPLORE)]
+        moves += [action for action in decision.available if action.verb == self._verb]
         targets = known(decision, open_targets(decision))
         if targets:
             nearest = next(iter(targets))

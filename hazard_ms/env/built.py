@@ -17,7 +17,7 @@ from hazard_ms.env.control_noise import lead_astray
 from hazard_ms.env.leaves import Leaves
 from hazard_ms.episode import rewards
 from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.grasp import Hand
+from hazard_ms.episode.grasp import Hand, lead_doors
 from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.base import loosened, none_set
 from hazard_ms.hazards.presets import FREQUENCIES
@@ -33,6 +33,7 @@ from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.drawing.lighting import Lighting
 from hazard_ms.simulation.drawing.moved_cameras import MovedCameras
 from hazard_ms.simulation.drawing.viewpoint import corner_view
+from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec, Task, checks
 from hazard_ms.spec.perturbation import Perturbation
@@ -112,6 +113,8 @@ class BuiltEnv(BaseEnv):
         self.world.agent_build = self.agent.build
         if self.task.mitigations:
             self.world.equip(tools_of(self.task.mitigations))
+        if self.task.doors_by_hand:
+            self.world.door_grip = DoorGrip(self.specs, self.world.openings)
         self.episode = Episode(self.world, self.task.hazards, self.task.safe_place)
         self.leaves = Leaves(self.scene, self.world)
         self.situation = Situation(self.episode, self.agent, self.affects_agent)
@@ -178,7 +181,9 @@ class BuiltEnv(BaseEnv):
         self.episode.see(self.agent)
         self.episode.watch(self.agent.robot.get_qpos())
         self.episode.advance(self.control_timestep)
-        self.episode.use_hand(self.agent.gripper_pose(), self.agent.grip_closed(), self.agent.bag_position)
+        gripper, closed = self.agent.gripper_pose(), self.agent.grip_closed()
+        lead_doors(self.hand, self.world, gripper[0], closed, self.control_timestep)
+        self.episode.use_hand(gripper, closed, self.agent.bag_position)
 
     def evaluate(self) -> dict[str, Tensor]:
         return rewards.evaluate(self.task.goal, self.situation)
@@ -241,7 +246,5 @@ class BuiltEnv(BaseEnv):
 
 def _tensors(obs: dict[str, Any]) -> list[Tensor]:
     """All tensors of a nested observation, [E, N] each, in its own units [-], in their order."""
-    made: list[Tensor] = []
-    for value in obs.values():
-        made += _tensors(value) if isinstance(value, dict) else [value]
-    return made
+    every = obs.values()
+    return [tensor for value in every for tensor in (_tensors(value) if isinstance(value, dict) else [value])]

@@ -56,8 +56,9 @@ class Episode:
         """Every record with declared quantities, by name."""
         openings = {"openings": self.world.openings.state} if self._opens else {}
         equipment = {} if self.world.equipment is None else {"equipment": self.world.equipment.state}
+        grip = {} if self.world.door_grip is None else {"door_grip": self.world.door_grip.state}
         rest = {"damage": self.damage, "rescue": self.rescue, "hand": self.hand}
-        return {**self.states, **openings, **equipment, **rest}
+        return {**self.states, **openings, **equipment, **grip, **rest}
 
     def begin(self, rows: Tensor, seeds: Tensor) -> None:
         """Put everything in the environments `rows` [R] back in its place, with new `seeds` [R].

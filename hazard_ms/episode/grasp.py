@@ -87,6 +87,24 @@ def update(hand: Hand, world: World, gripper: Tensor, rotation: Tensor, closed: 
     return dropped
 
 
+def lead_doors(hand: Hand, world: World, gripper: Tensor, closed: Tensor, dt: float) -> None:
+    """Let hands take handles, lead leaves, and let go, in tasks in which leaves follow them; call it before `update`.
+
+    `gripper`: positions [m], [E, 3]; `closed`: commands of this frame of `dt` [s], [E]. What a hand can take as well,
+    it takes instead of a handle.
+    """
+    if world.door_grip is None:
+        return
+    shuts = closed & ~hand.closed & (hand.held < 0) & (graspable(world, gripper) < 0)
+    fixed = world.exists & ~world.movable
+    robot = torch.full_like(world.agent_heading, world.robot.radius)[:, None]
+    discs = (
+        torch.cat([world.agent_position[:, None, :2], world.position[..., :2]], 1),
+        torch.cat([robot, torch.where(fixed, world.extent[..., :2].amin(-1) / 2, -torch.inf)], 1),
+    )
+    world.door_grip.follow(gripper, closed, shuts, discs, world.robot.pull, dt)
+
+
 def _remember(hand: Hand, world: World, gripper: Tensor, rotation: Tensor, taken: Tensor) -> None:
     """Record the poses of newly held bodies in the gripper's frame, drawn in until they touch the gripper."""
     e = torch.arange(world.num_envs, device=world.device)

@@ -7,6 +7,7 @@ from typing import Any
 
 from hazard_ms.episode.episode import Episode
 from hazard_ms.robots.robot import Robot
+from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.world import World
 
 
@@ -26,3 +27,10 @@ class Situation:
     def world(self) -> World:
         """All things of the scenes, as tensors."""
         return self.episode.world
+
+    @property
+    def grip(self) -> DoorGrip:
+        """The hands at the handles of doors. Raises ValueError in a task without `Task.doors_by_hand`."""
+        if self.world.door_grip is None:
+            raise ValueError("doors_by_hand must be True in a task of doors, got False")
+        return self.world.door_grip

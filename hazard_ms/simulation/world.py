@@ -18,6 +18,7 @@ from hazard_ms.kernels.launch import Launches
 from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.handles import Handles
 from hazard_ms.simulation.jet import Jet
+from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.mitigation.equipment import Equipment
 from hazard_ms.simulation.openings import Openings
 from hazard_ms.simulation.walls import Walls
@@ -76,6 +77,7 @@ class World:
     handles: Handles | None = field(default=None, repr=False)
     jet: Jet | None = None  # of the extinguisher that the agent uses, where there are any
     equipment: Equipment | None = None  # what the agent can pick up and use, in tasks with mitigations
+    door_grip: DoorGrip | None = None  # the hand at the handles of doors, in tasks in which leaves follow it
     agent_build: Build | None = None  # mass, width, drag area and friction of the agent's robot
     fields: dict[str, Callable[[Tensor], Tensor]] = field(default_factory=dict, repr=False)
     launches: Launches = field(default_factory=Launches, repr=False)  # prepared launches of its hazards' kernels

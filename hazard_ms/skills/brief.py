@@ -49,6 +49,7 @@ class Brief:
     several_rooms: bool = False  # whether doors or doorways divide the place
     averted: bool = False  # whether it counts what is averted: what would be lost if nobody acted, and is not
     sight: float = FAR  # distance up to which a look tells most of what is there [m]
+    verb: str = ""  # of the mitigation that achieves the task's goal; "": targets are to be rescued
     looks: bool = False  # whether it can `look_at` things: a detector tells what there is
 
 
@@ -75,6 +76,7 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int, sight: float = FAR)
         several_rooms=has_several_rooms(base),
         averted=base.task.averted,
         sight=sight,
+        verb=base.task.goal.verb,
         looks=labeller.withheld,
     )
 

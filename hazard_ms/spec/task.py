@@ -59,6 +59,7 @@ class Goal:
     fail: Callable[[Any], Any] | None = None  # bool: the episode ends, it can no longer be achieved; None: never
     info: tuple[Term, ...] = ()  # further entries of `info`
     done: str = "done"  # why an episode ended that succeeded, in words: "all rescued"
+    verb: str = ""  # of the mitigation that achieves it, which agents do then; "": they rescue targets
 
 
 @dataclass(frozen=True)
@@ -82,6 +83,8 @@ class Task:
     arrange: Callable[[Any, Any], None] | None = None
     # verbs of `hazard_ms.registry.mitigations` that its agents have, beyond the six of the benchmark
     mitigations: tuple[str, ...] = ()
+    # a hand that shuts at the handle of a door holds it, and the leaf follows the hand; False: skills alone turn leaves
+    doors_by_hand: bool = False
     averted: bool = False  # sweeps tell what agents avert unless asked not to (docs/benchmark.md 4.3)
 
     @property

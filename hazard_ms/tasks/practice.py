@@ -1,4 +1,4 @@
-"""Practice, from a single motion to one rescue: to walk to a thing, pick it up, put it into the bag, fetch it.
+"""Practice, from one motion to one rescue: walk to a thing, pick it up, put it into the bag, fetch it; open a door.
 
 Rooms are calm unless `hazards` are asked for, as by `gym.make("hazard_ms.tasks.practice:HazardFetch-v1",
 hazards=["fire"])`: so it can be seen what a hazard costs a policy. Not part of the benchmark: the tasks are registered
@@ -7,6 +7,7 @@ when this module is imported.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from functools import partial
@@ -22,6 +23,7 @@ from hazard_ms.registry import register_task
 from hazard_ms.spec import AgentStart, Body, Fixture, Goal, Room, SceneSpec, Task, Term, rounding
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.severity import USUAL
+from hazard_ms.tasks import practice_doors as doors
 from hazard_ms.tasks import practice_rewards as rewards
 from hazard_ms.tasks import words
 from hazard_ms.tasks.compound import acting
@@ -53,7 +55,7 @@ def scene(number: str, walking: bool) -> SceneSpec:
 
     Raises ValueError for another name.
     """
-    one_of(number, [name for split in SCENES for name in names(split)], "scene")
+    check(number)
     chance = np.random.default_rng(int(number.rpartition("/")[2]))
     fixtures, bodies, places = list[Fixture](), list[Body](), list[tuple[float, float]]()
     goal = int(chance.integers(len(COLUMNS) * len(ROWS)))
@@ -74,6 +76,20 @@ def scene(number: str, walking: bool) -> SceneSpec:
     around = [middle + gap * np.array([math.cos(a), math.sin(a)]) for a, gap in zip(angles, gaps, strict=True)]
     fires = tuple((float(x), float(y)) for x, y in np.clip(around, WALL, np.array(ROOM) - WALL))
     return SceneSpec(number, Room(ROOM), tuple(fixtures), tuple(bodies), ("box",), fires, AgentStart((2.4, 3.0)))
+
+
+def door_room(number: str) -> SceneSpec:
+    """The practice room "practice/NUMBER" with a door in a wall, as `practice_doors.room` says.
+
+    Raises ValueError for another name.
+    """
+    check(number)
+    return doors.room(number)
+
+
+def check(number: str) -> None:
+    """Raises ValueError unless `number` is the name of a practice room."""
+    one_of(number, [name for split in SCENES for name in names(split)], "scene")
 
 
 def names(split: str) -> tuple[str, ...]:
@@ -167,7 +183,16 @@ def fetch(physics: str = "paper", hazards: Sequence[str] = (), severity: str = U
     return practice(rewards.FETCH, FETCH_TERMS, True, text, physics, hazards, severity)
 
 
+def open_door(physics: str = "paper", hazards: Sequence[str] = (), severity: str = USUAL) -> Task:
+    """The task HazardOpenDoor-v1. Raises ValueError as `practice` does."""
+    text = "Open the door before you."
+    made = practice(doors.OPEN_DOOR, doors.OPEN_DOOR_TERMS, False, text, physics, hazards, severity)
+    made = dataclasses.replace(made, build=door_room, arrange=doors.stand_before, several_rooms=True)
+    return dataclasses.replace(made, mitigations=("open",), doors_by_hand=True)
+
+
 register_task("HazardWalkTo-v1", walk_to, rewards.WALK_FRAMES)
 register_task("HazardPickUp-v1", pick_up, rewards.PICK_UP_FRAMES)
 register_task("HazardStow-v1", stow, rewards.STOW_FRAMES)
 register_task("HazardFetch-v1", fetch, rewards.FETCH_FRAMES)
+register_task("HazardOpenDoor-v1", open_door, doors.FRAMES)

@@ -53,6 +53,9 @@ def furniture(situation: Situation) -> Tensor:
     return rewards.in_base(situation, near)[..., :2].flatten(1)
 
 
+HAND = Term("hand", hand, "middle between the fingers", (3,), "m", "base", entries=BASE)
+FINGERS = Term("fingers", fingers, "where they point", (3,), "", "base", low=-1.0, high=1.0, entries=BASE)
+SHUT = Term("shut", lambda s: s.episode.hand.closed[:, None], "the hand was commanded shut", (1,), low=0.0, high=1.0)
 THING = Term("thing", rewards.thing_ahead, "middle of the thing", (3,), "m", "base", entries=BASE)
 WALK_TO_TERMS = (
     THING,
@@ -70,7 +73,7 @@ WALK_TO_TERMS = (
 PICK_UP_TERMS = (
     THING,
     Term("thing_size", lambda s: rewards.beside(s, s.world.extent), "edges of its box", (3,), "m", low=0.0),
-    Term("hand", hand, "middle between the fingers", (3,), "m", "base", entries=BASE),
+    HAND,
     Term(
         "from_hand",
         lambda s: rewards.thing_ahead(s) - hand(s),
@@ -80,9 +83,9 @@ PICK_UP_TERMS = (
         "base",
         entries=BASE,
     ),
-    Term("fingers", fingers, "where they point", (3,), "", "base", low=-1.0, high=1.0, entries=BASE),
+    FINGERS,
     Term("gap", lambda s: rewards.gap(s)[:, None], "from the hand to the box of the thing", (1,), "m", low=0.0),
-    Term("shut", lambda s: s.episode.hand.closed[:, None], "the hand was commanded shut", (1,), low=0.0, high=1.0),
+    SHUT,
 )
 STOW_TERMS = (
     *PICK_UP_TERMS,

@@ -86,6 +86,14 @@ PRACTICE = {  # by the task's own sentence
             "into your bag.",
         ),
     ),
+    "Open the door before you.": (
+        ("Get the door in front of you open.", "Pull open the door before you.", "Turn the door in front of you open."),
+        ("Can you open the door before you?", "The door before you is shut, and has to be open."),
+        (
+            "There are tables here that are of no use to you; open the door before you.",
+            "The walls were painted last year and look fine, so open the door before you.",
+        ),
+    ),
 }
 
 

@@ -184,7 +184,7 @@ def test_rooms_of_the_splits_differ_and_have_what_they_need(practice: Any) -> No
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("task", (*TASKS, "HazardOpenDoor-v1"))
 def test_checkers_find_nothing(task: str) -> None:
     from stable_baselines3.common.env_checker import check_env as check_for_learners
 

@@ -13,6 +13,7 @@ from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.situation import Situation
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.simulation.building import make_world
+from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from tests.worlds.registering import practising
 
 ROOMS, SEEDS = ("practice/0", "practice/3", "practice/5"), (11, 12, 13)
@@ -42,11 +43,13 @@ def practice() -> Iterator[Any]:
         yield module
 
 
-def begun(practice: Any, walking: bool, numbers: list[int]) -> tuple[Any, Situation]:
-    """The task, and the beginning of episodes in the rooms of these numbers."""
-    task = practice.walk_to() if walking else practice.pick_up()
+def begun(practice: Any, name: str, numbers: list[int]) -> tuple[Any, Situation]:
+    """The task made by the function `name`, and the beginning of episodes in the rooms of these numbers."""
+    task = getattr(practice, name)()
     world = make_world(tuple(task.build(ROOMS[n]) for n in numbers), torch.device("cpu"))
     world.agent_build = HazardFetch.build
+    if task.doors_by_hand:
+        world.door_grip = DoorGrip(world.specs, world.openings)
     situation = Situation(Episode(world, (), task.safe_place), Robots(len(numbers)))  # type: ignore[arg-type]
     rows = torch.arange(len(numbers))
     situation.episode.begin(rows, torch.tensor([SEEDS[n] for n in numbers]))
@@ -60,22 +63,22 @@ def see(situation: Situation) -> None:
     situation.world.agent_position[:, :2], situation.world.agent_heading[:] = agent.base, agent.heading
 
 
-@pytest.mark.parametrize("walking", [True, False])
-def test_each_robot_starts_sees_and_is_paid_as_if_alone(practice: Any, walking: bool) -> None:
-    task, together = begun(practice, walking, [0, 1, 2])
+@pytest.mark.parametrize("name", ["walk_to", "pick_up", "open_door"])
+def test_each_robot_starts_sees_and_is_paid_as_if_alone(practice: Any, name: str) -> None:
+    task, together = begun(practice, name, [0, 1, 2])
     sizes = {len(names) for names in together.world.names}
-    assert walking or len(sizes) > 1  # rooms have different numbers of things: some rows are padding
+    assert name != "pick_up" or len(sizes) > 1  # rooms have different numbers of things: some rows are padding
     for n in range(3):
-        _, alone = begun(practice, walking, [n])
+        _, alone = begun(practice, name, [n])
         torch.testing.assert_close(together.agent.base[n], alone.agent.base[0])  # type: ignore[attr-defined]
         for read in (task.goal.dense, task.goal.success, *(term.of for term in task.observations)):
             assert len(read(together)) == 3
             torch.testing.assert_close(read(together)[n], read(alone)[0])
 
 
-@pytest.mark.parametrize("walking", [True, False])
-def test_robots_whose_episodes_go_on_stay_where_they_are(practice: Any, walking: bool) -> None:
-    task, situation = begun(practice, walking, [0, 1, 2])
+@pytest.mark.parametrize("name", ["walk_to", "pick_up", "open_door"])
+def test_robots_whose_episodes_go_on_stay_where_they_are(practice: Any, name: str) -> None:
+    task, situation = begun(practice, name, [0, 1, 2])
     agent: Any = situation.agent
     before, rows = agent.base.clone(), torch.tensor([1])
     situation.episode.begin(rows, torch.tensor([99]))

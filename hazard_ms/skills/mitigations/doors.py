@@ -22,6 +22,7 @@ from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.skills.mitigations.approach import approach
+from hazard_ms.skills.mitigations.guiding import guide
 from hazard_ms.skills.mitigations.handles import ASIDE, CLOSE, ENOUGH, Place, home_side, stand
 from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, follow, go, lacking, never, posture_for
@@ -33,9 +34,6 @@ from hazard_ms.skills.motor.surface import Leg, Surface
 from hazard_ms.skills.motor.surface import Place as Around
 from hazard_ms.spec.robot import GRASP_REACH
 
-# Times of a quarter turn [s]: doors that move by themselves take 4 s to open, and 3 s to shut from 90 to 10 degrees and
-# 1.5 s from there, at least [ANSI/BHMA A156.19, 4.1.2 and 4.2]: leaves of 45 kg then have no more than 1.69 J
-OPENING_TIME, SHUTTING_TIME = 4.0, 4.5
 WINDOW_SHARE = 0.9  # how far a window opens: a pane that is wholly out is broken [ours]
 STANDS = 3  # places at which it tries to take the handle [ours]
 NEAR = 0.85  # share of the arm's span within which it walks where no place is known [ours]
@@ -88,7 +86,8 @@ def _turn(stage: Stage, name: str, opening: bool) -> Skill:
     if not reason and leaf.force(opening) > stage.robot.build.pull:
         reason = failures.HELD_SHUT if opening else failures.HELD_OPEN
     if not reason:
-        turned = yield from _lead(stage, leaf, goal, opening, home)
+        by_hand = opening and stage.world.door_grip is not None
+        turned = yield from (guide(stage, leaf, goal) if by_hand else _lead(stage, leaf, goal, opening, home))
         reason, used = turned.reason, used + turned.frames
         stage.doors.enter(known.number, stage.frame, stage.maps)
     if taken.ok:
@@ -170,7 +169,7 @@ def _lead(stage: Stage, leaf: Leaf, goal: float, opening: bool, home: float) -> 
         return aside
     used, tucked = aside.frames, aside.frames > 0
     rate = 1.0 / stage.env.control_timestep
-    whole = OPENING_TIME if opening else SHUTTING_TIME
+    whole = hinges.OPENING_TIME if opening else hinges.SHUTTING_TIME
     steps = max(1, math.ceil(whole * rate * abs(goal - first) / (math.pi / 2)))
     arm = stage.robot.tucked if tucked else stage.robot.arm()
     for step in range(1, steps + 1):

@@ -53,6 +53,7 @@ KNOWN: dict[str, tuple[set[str], str]] = {
     "kernels.compiled": ({".open", "os.open"}, "bytes that are hashed or compared; " + LOCK),
     "lerobot.hazard_client": ({"json.loads"}, NETWORK),
     "machine.activity": ({".read_text"}, SYSTEM),
+    "machine.cores": ({".read_text"}, SYSTEM),
     "machine.drivers": ({".read_bytes", ".read_text"}, SYSTEM + "; a package that is compared with its SHA-256"),
     "machine.files": ({".open", "os.open"}, HERE + "; " + LOCK),
     "machine.parts": ({"os.open"}, LOCK),

@@ -193,6 +193,8 @@ def commitments(
 ) -> int:
     """Check published hidden scenes against their commitments; with --draw, draw a new set.
 
+    Raises ValueError that names the first scene that was not committed, and for options that do not go together.
+
     Args:
         file: Commitments: the hashes of a set.
         published: Scenes that were published; each must be the one that was committed.

@@ -14,7 +14,7 @@ def cores() -> int:
 
 
 def maker(processor: Path = Path("/proc/cpuinfo")) -> str:
-    """Who made the `processor` described in this file, "AuthenticAMD"; "unknown" where it does not say.
+    """The maker of the `processor` described in this file, "AuthenticAMD"; "unknown" where it does not say.
 
     Makers build the approximate reciprocals that PhysX takes differently (docs/reliability.md M15).
     """

@@ -49,6 +49,7 @@ KNOWN: dict[str, tuple[set[str], str]] = {
     "effects.shaders.pack": ({".read_text"}, OWN),
     "evaluation.averted.alone": ({"json.loads"}, "settings of this run, as a file holds them"),
     "evaluation.page": ({".read_bytes"}, "films that this run made, of a size that is asked first"),
+    "evaluation.submissions.packing": ({"zipfile.ZipInfo"}, "the name of a member that is written"),
     "evaluation.sweep": ({"json.loads"}, "settings of this run, as a result holds them"),
     "kernels.compiled": ({".open", "os.open"}, "bytes that are hashed or compared; " + LOCK),
     "lerobot.hazard_client": ({"json.loads"}, NETWORK),

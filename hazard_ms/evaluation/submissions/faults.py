@@ -29,6 +29,7 @@ PHYSICS = "other physics"
 RULES = "other rules"
 SCENE = "other scene"
 SCORE = "edited score"
+START = "other start"
 CUT = "cut episode"
 COURSE = "other course"
 COPIED = "copied decisions"
@@ -40,10 +41,11 @@ KINDS = {  # what each means
     REPEATED: "an episode is there twice, or in the place of another one",
     HASH: "a file has another SHA-256 than the manifest says, or the simulation other hashes than the record",
     VERSION: "it was played with another version of hazard_ms",
-    PHYSICS: "an episode was played with other settings, or begins otherwise than it must with these",
+    PHYSICS: "an episode was played with other settings",
     RULES: "an episode was played by another agent, perception or clock than the submission says",
     SCENE: "an episode was played in another scene than its seed chooses",
     SCORE: "a score is not that of the targets, or the targets have other fates in the simulation",
+    START: "the simulation begins otherwise than the record: that is of another scene or other physics than it says",
     CUT: "an episode ends before its end, or its record before the episode",
     COURSE: "the simulation of the decisions goes another way than the record",
     COPIED: "its decisions are those of another submission",

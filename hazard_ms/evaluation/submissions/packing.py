@@ -56,7 +56,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Manifest:
-    """What a submission says it is. `values`: the mean Value of each task, 0 to 1."""
+    """The first file of a submission: what it says it is. `values`: the mean Value of each task, 0 to 1."""
 
     track: Short
     agent: Annotated[str, Within(0, 1_000)]
@@ -78,7 +78,7 @@ class Submission:
     files: dict[str, bytes]  # without the manifest
 
     def rows(self) -> dict[str, tuple[dict[str, Any], EpisodeResult]]:
-        """What each file says, as plain data and as a result. Raises ValueError that names a file without a result."""
+        """The episode in each file, as plain data and as a result. Raises ValueError for a file without a result."""
         found = {}
         for name, content in self.files.items():
             row = plain.parse(content, name)

@@ -50,7 +50,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class Claim:
-    """What a submission says of its cost, which nobody can verify: means of an episode.
+    """The cost that a submission claims, which nobody can verify: means of an episode.
 
     `counters`: the agent's own, such as tokens; `agent_seconds`: wall time in which it chose [s]; `thought_seconds`:
     time by the clock of the track [s].

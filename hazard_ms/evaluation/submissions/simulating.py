@@ -21,7 +21,7 @@ from hazard_ms.evaluation.metrics import Tally
 from hazard_ms.evaluation.replay import DIFFERENT, compare
 from hazard_ms.evaluation.result import BROKEN, STUCK, EpisodeResult, machine, versions
 from hazard_ms.evaluation.spread import spread
-from hazard_ms.evaluation.submissions.faults import COURSE, CUT, DAMAGED, HASH, PHYSICS, SCORE, Fault, faults_of
+from hazard_ms.evaluation.submissions.faults import COURSE, CUT, DAMAGED, HASH, SCORE, START, Fault, faults_of
 from hazard_ms.evaluation.submissions.packing import Submission, name_of, read_submission
 from hazard_ms.evaluation.submissions.report import Claim, Report, Sample, Seen
 from hazard_ms.evaluation.submissions.tracks import Place, Track
@@ -102,7 +102,7 @@ def compared(record: EpisodeResult, played: EpisodeResult | None, error: str = "
             what = f"its record has {len(record.links)} hashes, the simulation {len(played.links)}, the first alike"
             return verdict, [Fault(CUT, where, what)]
         if record.links[0] != played.links[0]:
-            return verdict, [Fault(PHYSICS, where, f"the simulation has another start; {why}")]
+            return verdict, [Fault(START, where, why)]
         return verdict, [Fault(COURSE if verdict == DIFFERENT else HASH, where, why)]
     if record.targets != played.targets:
         return verdict, [Fault(SCORE, where, why)]

@@ -14,10 +14,10 @@ ENCRYPTED = 0x1  # flag of a member (APPNOTE.TXT 4.4.4)
 
 
 def read_archive(content: bytes, what: str, most: int, members: int) -> dict[str, bytes]:
-    """What each member of the archive `content` holds, by name and in its order; nothing is written anywhere.
+    """The content of each member of an archive, by name and in its order; nothing is written anywhere.
 
-    Raises ValueError, which calls it `what`, for anything but a zip archive of at most `members` regular files whose
-    names differ and lead nowhere, and which unpack to at most `most` bytes together.
+    Raises ValueError, which calls the archive `what`, for anything but a zip archive of at most `members` regular files
+    whose names differ and lead nowhere, and which unpack to at most `most` bytes together.
     """
     check_archive(content, what, most)
     found: dict[str, bytes] = {}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import subprocess
 from collections.abc import Callable
 from dataclasses import asdict, replace
@@ -95,7 +96,7 @@ def report_of(name: str, values: dict[tuple[str, int], float], number: int = 0, 
         return Seen(*place, f"kitchen_b/{place[1]:02d}", "exact", tally, 1500, digest, digest)
 
     fields: dict[str, Any] = {
-        "submission": f"{number:064x}",
+        "submission": f"{number:016x}" * 4,
         "track": "trial",
         "episodes": len(values),
         "agent": name,
@@ -110,7 +111,8 @@ def report_of(name: str, values: dict[tuple[str, int], float], number: int = 0, 
 
 def written(report: Report, folder: Path, key: Path | None) -> Path:
     """The file of a report in a folder, signed by a key if there is one."""
-    path = folder / f"{report.card.name if report.card else 'none'}-{report.submission[-4:]}.report.json"
+    name = re.sub(r"\W+", ".", report.agent)
+    path = folder / f"{name}-{report.submission[-4:]}.report.json"
     path.write_text(report.to_json())
     if key is not None:
         sign(path, key)

@@ -135,7 +135,7 @@ def write_scenes(track: Track, output: Path) -> None:
 
 
 def _hashes(published: Published) -> dict[str, tuple[str, ...]]:
-    """The hash of each scene. Raises ValueError for a scene that is none of its task's places, or there twice."""
+    """The hash of each scene. Raises ValueError for a scene of another place or of the split, or there twice."""
     made: dict[str, tuple[str, ...]] = {}
     for task, own in published.scenes.items():
         names = [one.scene for one in own]
@@ -146,6 +146,8 @@ def _hashes(published: Published) -> dict[str, tuple[str, ...]]:
 
 
 def _hash(task: str, number: int, hidden: Hidden, names: Sequence[str]) -> str:
+    if hidden.scene in names:
+        raise ValueError(f"hidden scenes must belong to no split, got {hidden.scene!r}")
     with file_of(hidden.scene, names) as file:
         content = sha256_of(Path(file))
     return hashlib.sha256(f"{task} {number} {hidden.scene} {content} {hidden.salt}".encode()).hexdigest()

@@ -104,10 +104,10 @@ def standings(folder: Path) -> tuple[dict[str, list[Row]], list[str]]:
             continue
         if not report.verified or report.card is None:
             left_out.append(f"{name}: {report.verdict}")
-        elif (older := found.get(report.submission)) is not None:
-            found[report.submission] = _merged(older, Row(name, report, (who,)))
-        else:
-            found[report.submission] = Row(name, report, (who,), _films(path.with_name(name)))
+            continue
+        row = Row(name, report, (who,), _films(path.with_name(name)))
+        older = found.get(report.submission)
+        found[report.submission] = row if older is None else _merged(older, row)
     tracks: dict[str, list[Row]] = {}
     counted: list[Report] = []
     for row in sorted(found.values(), key=lambda r: (r.report.date, r.name)):

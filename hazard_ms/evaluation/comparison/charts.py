@@ -90,9 +90,9 @@ def bars(rows: Mapping[str, Sequence[tuple[str, float, str, float]]], unit: str,
     return _chart(drawn, (width, 8.0 + step * len(rows)), f"Bars in {unit}")
 
 
-def intervals(rows: Sequence[tuple[str, Score, str]], width: float = 1000.0) -> str:
+def intervals(rows: Sequence[tuple[str, Score, str]], width: float = 480.0) -> str:
     """Shares, 0 to 1, one row for each (name, score, colour): a dot at the mean and a line over the interval."""
-    name_width, step = 240.0, 30.0  # [pixels]
+    name_width, step = 165.0, 28.0  # [pixels]
     across, bottom = width - name_width - RIGHT, 8.0 + step * len(rows)
     ends = [end for _, score, _ in rows for end in (score.low, score.high) if end is not None]
     low, high = (0.1 * np.floor(10.0 * min(ends, default=0.0)), 0.1 * np.ceil(10.0 * max(ends, default=1.0)))
@@ -104,7 +104,7 @@ def intervals(rows: Sequence[tuple[str, Score, str]], width: float = 1000.0) -> 
         drawn.append(_text(x, bottom + 17.0, f"{100.0 * low + 10.0 * k:.0f}", "middle"))
     for k, (name, score, fill) in enumerate(rows):
         y = 8.0 + step * (k + 0.5)
-        drawn.append(_text(name_width - 14.0, y + 4.5, name if len(name) <= 32 else f"{name[:31]}…", "end", 13))
+        drawn.append(_text(name_width - 14.0, y + 4.5, name if len(name) <= 19 else f"{name[:18]}…", "end", 13))
         if score.mean is None or score.low is None or score.high is None:
             continue
         left, mid, right = (name_width + across * (s - low) / (high - low) for s in (score.low, score.mean, score.high))

@@ -14,6 +14,7 @@ from hazard_ms.evaluation.submissions.faults import Fault
 from hazard_ms.evaluation.submissions.packing import MOST_EPISODES, Hash, Short
 from hazard_ms.evaluation.submissions.tracks import Place
 from hazard_ms.spec.foreign import plain
+from hazard_ms.spec.foreign.files import printable
 from hazard_ms.spec.foreign.plain import Within
 
 FORMAT = 1  # goes up when a field changes its meaning, goes away or is new
@@ -110,13 +111,14 @@ class Report:
 
 def read_report(path: Path) -> Report:
     """The report in a file. Raises ValueError for anything else, and for a verdict that its parts do not give."""
-    row = plain.read(path, LARGEST)
+    shown = printable(path.name)
+    row = plain.read(path, LARGEST, shown)
     if row.get("format") != FORMAT:
-        raise ValueError(f"format of {path} must be {FORMAT}, got {row.get('format')!r:.100}")
+        raise ValueError(f"format of {shown} must be {FORMAT}, got {row.get('format')!r:.100}")
     told = row.pop("verdict", None)
-    found: Report = plain.made(Report, row, f"report {path}")
+    found: Report = plain.made(Report, row, f"report {shown}")
     if told != found.verdict:
-        raise ValueError(f"verdict of {path} must be {found.verdict!r}, got {told!r:.200}")
+        raise ValueError(f"verdict of {shown} must be {found.verdict!r}, got {told!r:.200}")
     if len({one.place for one in found.seen}) != len(found.seen):
-        raise ValueError(f"report {path} must hold each episode once")
+        raise ValueError(f"report {shown} must hold each episode once")
     return found

@@ -34,9 +34,9 @@ def sign(path: Path, key: Path) -> Path:
 def signer(path: Path, signers: Path) -> str:
     """The name in the file of `signers` whose key signed a file. Raises ValueError where there is none."""
     signature = path.with_name(path.name + ENDING)
-    content = read_foreign(path, LARGEST * 100)
+    content = read_foreign(path, LARGEST * 100, path.name)
     for other in (signature, signers):
-        read_foreign(other, LARGEST)
+        read_foreign(other, LARGEST, other.name)
     files = ("-s", str(signature), "-f", str(signers))
     found = _ssh_keygen("find-principals", *files)
     name = next(iter(found.stdout.decode(errors="replace").splitlines()), "")

@@ -34,13 +34,13 @@ def test_the_pages_are_as_wide_as_the_screen(width: int, site: Path) -> None:
         browser.get(site.as_uri())
         until(lambda: browser.find_elements("css selector", "section#published"), 30)
         assert browser.execute_script("return document.documentElement.scrollWidth") <= width
-        assert "<b>random</b>" in text(browser, "section") and not browser.find_elements("css selector", "td.tight a b")
+        assert "<b>random</b>" in text(browser, "section") and not browser.find_elements("css selector", "td.who a b")
         assert len(browser.find_elements("css selector", "svg circle")) == len(AGENTS)
         small = (
             "return Math.min(...[...document.querySelectorAll('svg text')].map(t => t.getBoundingClientRect().height))"
         )
         assert browser.execute_script(small) >= 8  # [pixels]
-        browser.find_element("css selector", "td.tight a").click()
+        browser.find_element("css selector", "td.who a").click()
         until(lambda: "verified: all 75 episodes" in text(browser, "td.good"), 30)
         assert browser.execute_script("return document.documentElement.scrollWidth") <= width
         assert [line for line in browser.get_log("browser") if line["level"] == "SEVERE"] == []

@@ -113,5 +113,5 @@ def test_the_site_is_whole_and_stands_alone(folder: Path, tmp_path: Path) -> Non
     told = " ".join(reader.text.split())
     for words in ("90.0 [90.0, 90.0]", "+30.0 [", "-30.0 [", "takes the lead", "reference", "Not counted", BAD):
         assert words in told, words
-    rows = re.findall(r'<td class="n">(\d*)</td>\s*<td class="tight"><a', first.read_text())
+    rows = re.findall(r'<td class="n">(\d*)</td>\s*<td class="who"><a', first.read_text())
     assert rows == ["", "1", "2"]  # who is privileged has no rank

@@ -110,7 +110,7 @@ def compared(record: EpisodeResult, played: EpisodeResult | None, error: str = "
         what = f"it ends at frame {record.frames} ({record.ended}), the simulation at {played.frames} ({played.ended})"
         return verdict, [Fault(CUT, where, what)]
     own = record.to_dict()["score"]
-    again = played.to_dict()["score"]
+    again = replace(played, clock=record.clock, decisions=record.decisions).to_dict()["score"]  # thought is a claim
     if any(again.get(name) != value for name, value in own.items()):
         return verdict, [Fault(SCORE, where, f"the simulation has {again}, the record {own}")]
     return verdict, list(_decisions(record, played))

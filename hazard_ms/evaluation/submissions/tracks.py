@@ -94,7 +94,7 @@ TRACKS = {
         Track("perception", "the same, told of things by the detector `small`", PUBLISHED, 25, detectors=("small",)),
         Track("clock", "the same, while hazards go on by the tokens that a model takes", PUBLISHED, 25, clock=TOKENS),
         Track("houses", "whole homes in fire and in flood; the score is what was averted", HOMES, 50, averted=True),
-        Track("trial", "two episodes, to try everything out; ranked beside no other", PUBLISHED[:1], 2),
+        Track("trial", "two episodes, to try everything out: too few to compare agents", PUBLISHED[:1], 2),
     )
 }
 

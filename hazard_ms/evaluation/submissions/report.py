@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from hazard_ms.evaluation.metrics import Tally
+from hazard_ms.evaluation.replay import EXACT
 from hazard_ms.evaluation.submissions.card import Card
 from hazard_ms.evaluation.submissions.faults import Fault
 from hazard_ms.evaluation.submissions.packing import MOST_EPISODES, Hash, Short
@@ -93,7 +94,8 @@ class Report:
     @property
     def verified(self) -> bool:
         """Whether every episode of the track was simulated and found as the submission tells."""
-        return not self.faults and self.sample is None and len(self.seen) == self.episodes > 0
+        exact = all(one.verdict == EXACT for one in self.seen)
+        return exact and not self.faults and self.sample is None and len(self.seen) == self.episodes > 0
 
     @property
     def verdict(self) -> str:

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.evaluation.metrics import Tally
-from hazard_ms.evaluation.replay import DIFFERENT, compare
+from hazard_ms.evaluation.replay import DIFFERENT, EXACT, compare
 from hazard_ms.evaluation.result import BROKEN, STUCK, EpisodeResult, machine, versions
 from hazard_ms.evaluation.spread import spread
 from hazard_ms.evaluation.submissions.faults import COURSE, CUT, DAMAGED, HASH, SCORE, START, Fault, faults_of
@@ -113,15 +113,21 @@ def compared(record: EpisodeResult, played: EpisodeResult | None, error: str = "
     again = replace(played, clock=record.clock, decisions=record.decisions).to_dict()["score"]  # thought is a claim
     if any(again.get(name) != value for name, value in own.items()):
         return verdict, [Fault(SCORE, where, f"the simulation has {again}, the record {own}")]
+    if verdict != EXACT:
+        return verdict, [Fault(COURSE, where, why)]
     return verdict, list(_decisions(record, played))
 
 
 def _decisions(record: EpisodeResult, played: EpisodeResult) -> Iterator[Fault]:
-    """The first decision that went otherwise than the record says."""
+    """The first decision that went otherwise than the record says, or that was never taken."""
+    where = name_of((record.env_id, record.seed))
+    if len(record.decisions) > len(played.decisions):
+        what = f"it has {len(record.decisions)} decisions, the simulation ends after {len(played.decisions)}"
+        yield Fault(COURSE, where, what)
+        return
     for k, (told, found) in enumerate(zip(record.decisions, played.decisions, strict=False)):
         again = replace(found, note=told.note, fallback=told.fallback, thought=told.thought)
         if told != again:
-            where = name_of((record.env_id, record.seed))
             yield Fault(COURSE, where, f"decision {k}, {told.verb} at frame {told.frame}, went otherwise")
             return
 

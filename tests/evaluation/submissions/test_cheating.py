@@ -135,9 +135,13 @@ def test_what_only_a_simulation_shows_is_named(submission: bytes, episodes: list
         (replace(short, ended="stopped"), faults.CUT),
         (replace(record, ended="time"), faults.CUT),
         (replace(record, decisions=(swapped, *record.decisions[1:])), faults.COURSE),
+        (replace(record, decisions=(*record.decisions, record.decisions[0])), faults.COURSE),
     ):
         _, found = compared(cheat, played)
         assert [fault.kind for fault in found] == [kind]
+    unknown = replace(record.decisions[1], verb="fly")
+    _, found = compared(record, again(replace(record, decisions=(*record.decisions[:1], unknown))))
+    assert found and found[0].kind in (faults.COURSE, faults.CUT)
 
 
 @pytest.mark.render

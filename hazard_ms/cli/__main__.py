@@ -23,7 +23,7 @@ from hazard_ms.cli.episodes import evaluate, play, replay, serve
 from hazard_ms.cli.llm import LlmCommand
 from hazard_ms.cli.perception import PerceptionCommand
 from hazard_ms.cli.pictures import gallery, render
-from hazard_ms.cli.report import regret, report
+from hazard_ms.cli.report import commitments, leaderboard, regret, report, submit, verify
 from hazard_ms.cli.scenes import SceneCommand
 from hazard_ms.cli.sketch import SketchCommand
 from hazard_ms.cli.train import TrainCommand
@@ -110,6 +110,10 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "serve": serve,
     "regret": regret,
     "report": report,
+    "submit": submit,
+    "verify": verify,
+    "leaderboard": leaderboard,
+    "commitments": commitments,
     "describe": describe,
     "bench": bench,
     "gpu-check": gpu_check,

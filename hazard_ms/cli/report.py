@@ -1,4 +1,4 @@
-"""The commands `hazard-ms report` and `regret` on folders of results; they import what they need when called."""
+"""The commands on folders of results, `hazard-ms report` and so on; they import what they need when called."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from typing import Annotated
 
 import tyro
 
-from hazard_ms.evaluation.choices import flag
+from hazard_ms.evaluation.choices import flag, offer
+
+TRACKS = ("published", "perception", "clock", "houses", "trial")  # as evaluation.submissions.tracks has them
+Hidden = tuple[Path, Path] | None
 
 
 def report(
@@ -88,4 +91,129 @@ def regret(
         agents = dict.fromkeys(one.agent for one in found)
         made = {agent: shares([one for one in found if one.agent == agent]) for agent in agents}
         write(output, dumps(made, indent=1, allow_nan=False) + "\n")
+    return 0
+
+
+def submit(
+    folders: Annotated[tuple[Path, ...], tyro.conf.Positional],
+    output: Annotated[Path, flag("-o")] = Path("submission.zip"),
+    track: Annotated[str, offer(TRACKS)] = "published",
+    agent: str | None = None,
+    card: Path = Path("card.json"),
+    hidden: Hidden = None,
+) -> int:
+    """Pack the episodes of one agent into a file for the leaderboard: decisions, hashes, versions, card, no code.
+
+    Raises ValueError where an episode of the track is missing, or has a fault that `hazard-ms verify` would find.
+
+    Args:
+        folders: Folders that `hazard-ms evaluate` wrote; folders in them are read, too.
+        output: Submission to write, NAME.zip.
+        track: Track that it is for.
+        agent: Agent whose episodes are meant, as the results name it; may be left out where there is only one.
+        card: File with the agent's card, which docs/leaderboard.md describes.
+        hidden: Commitments and published scenes of a hidden set, whose track it is then for.
+    """
+    from hazard_ms.evaluation.submissions.card import read_card
+    from hazard_ms.evaluation.submissions.commitments import read_hidden
+    from hazard_ms.evaluation.submissions.faults import faults_of
+    from hazard_ms.evaluation.submissions.packing import pack, results_of, submission_of
+    from hazard_ms.evaluation.submissions.tracks import track_of
+    from hazard_ms.machine.files import make_folder, write
+
+    published = read_hidden(hidden)
+    wanted = published or track_of(track)
+    own = read_card(card)
+    content = pack(results_of(folders, wanted, agent), wanted, own)
+    if faults := faults_of(submission_of(content, output.name), wanted):
+        raise ValueError(f"a submission must be without faults, got {len(faults)}, the first: {faults[0]}")
+    make_folder(output.parent)
+    write(output, content)
+    print(f"submission: {output.resolve()}, {len(wanted.places)} episodes, {len(content)} bytes")
+    return 0
+
+
+def verify(
+    file: Annotated[Path, tyro.conf.Positional],
+    output: Annotated[Path | None, flag("-o")] = None,
+    episodes: int = 0,
+    seed: int = 0,
+    workers: int = 0,
+    key: Path | None = None,
+    known: Path | None = None,
+    hidden: Hidden = None,
+) -> int:
+    """Simulate the episodes of a submission again, compare everything with what it says, and report it.
+
+    Ends with 1 if anything is not as it must be; each fault has a name, which docs/leaderboard.md explains.
+
+    Args:
+        file: Submission, NAME.zip.
+        output: Report to write, NAME.report.json.
+        episodes: Episodes that are drawn for a quick look; 0: all, as the leaderboard asks for.
+        seed: Seed by which these are drawn.
+        workers: Processes; 0: one for each core.
+        key: Key of OpenSSH that signs the report; the signature lies beside it.
+        known: Folder of reports on earlier submissions, whose decisions a new one must not have.
+        hidden: Commitments and published scenes of a hidden set.
+    """
+    from hazard_ms.evaluation.submissions.verifying import verify as run
+
+    return run(file, output, episodes, seed, workers, key, known, hidden)
+
+
+def leaderboard(
+    folder: Annotated[Path, tyro.conf.Positional], output: Annotated[Path, flag("-o")] = Path("leaderboard")
+) -> int:
+    """Write the leaderboard as a static site: what signed reports of whole submissions cover, and nothing else.
+
+    Args:
+        folder: Folder with reports, NAME.report.json, their signatures, and the file `signers`; films in NAME.
+        output: Folder for the site; index.html is its first page.
+    """
+    from hazard_ms.evaluation.submissions.site import write_site
+    from hazard_ms.evaluation.submissions.standings import standings
+
+    tracks, left_out = standings(folder)
+    first = write_site(tracks, left_out, output)
+    for name, rows in tracks.items():
+        print(f"{name}: {', '.join(row.title for row in rows)}")
+    for line in left_out:
+        print(f"not counted: {line}")
+    print(f"page: {first.resolve()}")
+    return 0
+
+
+def commitments(
+    file: Annotated[Path, tyro.conf.Positional],
+    published: Path | None = None,
+    output: Annotated[Path | None, flag("-o")] = None,
+    draw: int = 0,
+    secret: Path | None = None,
+) -> int:
+    """Check published hidden scenes against their commitments; with --draw, draw a new set.
+
+    Raises ValueError that names the first scene that was not committed, and for options that do not go together.
+
+    Args:
+        file: Commitments: the hashes of a set.
+        published: Scenes that were published; each must be the one that was committed.
+        output: Folder for the published scenes, as `hazard-ms evaluate --scenes` plays them.
+        draw: Scenes of each task to draw; the commitments are written to the file, which names the set.
+        secret: File for the drawn scenes, to be kept secret until they are published.
+    """
+    from hazard_ms.evaluation.submissions.commitments import read_hidden, write_drawn, write_scenes
+
+    if (published is None) == (draw == 0) or (draw != 0) != (secret is not None):
+        raise ValueError("either published must be given, or both draw and secret, got something else")
+    if published is None:
+        assert secret is not None
+        write_drawn(file, secret, file.stem, draw)
+        print(f"commitments: {file.resolve()}\nsecret until it is published: {secret.resolve()}")
+        return 0
+    track = read_hidden((file, published))
+    assert track is not None
+    if output is not None:
+        write_scenes(track, output)
+    print(f"all {len(track.places)} scenes of {track.name} are those that were committed")
     return 0

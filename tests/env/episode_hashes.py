@@ -21,6 +21,7 @@ import numpy as np
 import torch
 
 import hazard_ms  # noqa: F401 registers the environments
+from hazard_ms.machine.cores import maker
 from tests.worlds.episodes import actions
 
 RECORD = Path(__file__).with_name("episode_hashes.json")
@@ -74,12 +75,6 @@ def hashes(env_id: str, physics: str, seeds: tuple[int, ...] = SEEDS) -> dict[st
     found = {str(seed): episode_hash(env, seed, STEPS) for seed in seeds}
     env.close()
     return found
-
-
-def maker() -> str:
-    """Who made the processor, "AuthenticAMD": makers build the approximate reciprocals of PhysX differently."""
-    rows = (line.partition(":") for line in Path("/proc/cpuinfo").read_text().splitlines())
-    return next((value.strip() for name, _, value in rows if name.strip() == "vendor_id"), "unknown")
 
 
 def recorded(env_id: str, physics: str) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""Charts as SVG for pages about many episodes: lines over frames, areas that add up, and bars."""
+"""Charts as SVG for pages about many episodes: lines over frames, areas that add up, bars, intervals."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from html import escape
 
 import numpy as np
 from numpy.typing import NDArray
+
+from hazard_ms.evaluation.metrics import Score
 
 Curve = NDArray[np.float64]
 Stroke = tuple[str, float]  # colour and width [pixels] of a line
@@ -86,6 +88,29 @@ def bars(rows: Mapping[str, Sequence[tuple[str, float, str, float]]], unit: str,
             x += length * scale
         drawn.append(_text(x + 8.0, y + 13.5, f"{sum(piece[1] for piece in pieces):.0f} {unit}", "start"))
     return _chart(drawn, (width, 8.0 + step * len(rows)), f"Bars in {unit}")
+
+
+def intervals(rows: Sequence[tuple[str, Score, str]], width: float = 480.0) -> str:
+    """Shares, 0 to 1, one row for each (name, score, colour): a dot at the mean and a line over the interval."""
+    name_width, step = 165.0, 28.0  # [pixels]
+    across, bottom = width - name_width - RIGHT, 8.0 + step * len(rows)
+    ends = [end for _, score, _ in rows for end in (score.low, score.high) if end is not None]
+    low, high = (0.1 * np.floor(10.0 * min(ends, default=0.0)), 0.1 * np.ceil(10.0 * max(ends, default=1.0)))
+    low, high = min(low, 0.0), max(high, low + 0.1)
+    drawn = []
+    for k in range(round(10.0 * (high - low)) + 1):
+        x = name_width + across * k * 0.1 / (high - low)
+        drawn.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="0" y2="{bottom:.1f}" stroke="{EDGE}"/>')
+        drawn.append(_text(x, bottom + 17.0, f"{100.0 * low + 10.0 * k:.0f}", "middle"))
+    for k, (name, score, fill) in enumerate(rows):
+        y = 8.0 + step * (k + 0.5)
+        drawn.append(_text(name_width - 14.0, y + 4.5, name if len(name) <= 19 else f"{name[:18]}…", "end", 13))
+        if score.mean is None or score.low is None or score.high is None:
+            continue
+        left, mid, right = (name_width + across * (s - low) / (high - low) for s in (score.low, score.mean, score.high))
+        drawn.append(f'<line x1="{left:.1f}" x2="{right:.1f}" y1="{y}" y2="{y}" stroke="{fill}" stroke-width="3"/>')
+        drawn.append(f'<circle cx="{mid:.1f}" cy="{y}" r="6" fill="{fill}"><title>{escape(name)}</title></circle>')
+    return _chart(drawn, (width, bottom + BOTTOM), "Scores with their intervals")
 
 
 def _chart(drawn: Sequence[str], size: tuple[float, float], label: str) -> str:

@@ -1,0 +1,201 @@
+"""Simulates the episodes of a submission again, decision by decision, in new processes, and compares.
+
+The track says what is simulated: task, scene, physics, robot, perception. The submission gives decisions and waits
+alone. Nothing that it names is imported: where its agent is one of ours that is privileged, ours is asked, since it
+tells the map what it knows.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import random
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+from datetime import datetime, timezone
+from pathlib import Path
+
+from hazard_ms.agents.base import PrivilegedAgent
+from hazard_ms.evaluation.metrics import Tally
+from hazard_ms.evaluation.replay import DIFFERENT, EXACT, compare
+from hazard_ms.evaluation.result import BROKEN, STUCK, EpisodeResult, machine, versions
+from hazard_ms.evaluation.spread import spread
+from hazard_ms.evaluation.submissions.faults import COURSE, CUT, DAMAGED, HASH, SCORE, START, Fault, faults_of
+from hazard_ms.evaluation.submissions.packing import Submission, name_of, read_submission
+from hazard_ms.evaluation.submissions.report import Claim, Report, Sample, Seen
+from hazard_ms.evaluation.submissions.tracks import Place, Track
+from hazard_ms.evaluation.workers import SILENCE, Job, Outcome
+from hazard_ms.machine.cores import maker
+from hazard_ms.registry import AGENTS, load
+from hazard_ms.skills.decision import STOP
+from hazard_ms.spec.checks import whole
+from hazard_ms.spec.foreign.files import sha256_of
+
+NOBODY = "random"  # an agent that is never asked: decisions are those of the record
+UNASKED = ("time", "failed", BROKEN, STUCK)  # ends of episodes that no agent chooses
+NO_HASH = "0" * 64  # of a simulation that did not begin
+
+
+def verify(path: Path, track: Track | None, episodes: int = 0, seed: int = 0, workers: int = 0) -> Report:
+    """The report on a submission in a file; `track` is the one that it must be of, None where it names none.
+
+    `episodes`: how many are drawn by `seed` and simulated; 0: all. Raises ValueError for a file that is not there, and
+    for more episodes than the track has.
+    """
+    digest = sha256_of(path)
+    try:
+        submission = read_submission(path)
+    except ValueError as error:
+        return _report(digest, None, track, [], [Fault(DAMAGED, path.name, str(error)[:1_000])])
+    if track is None:
+        fault = Fault(DAMAGED, path.name, f"track must be a known one, got {submission.manifest.track!r:.100}")
+        return _report(digest, submission, None, [], [fault])
+    whole(episodes, 0, len(track.places), "episodes")
+    faults = faults_of(submission, track)
+    if faults:
+        return _report(digest, submission, track, [], faults)
+    wanted = track.places
+    sample = Sample(episodes, seed) if 0 < episodes < len(wanted) else None
+    if sample:
+        wanted = sorted(random.Random(seed).sample(wanted, episodes), key=wanted.index)
+    seen, found = simulated(submission, track, wanted, workers)
+    return replace(_report(digest, submission, track, seen, found), sample=sample)
+
+
+def simulated(
+    submission: Submission, track: Track, places: Sequence[Place], workers: int = 0
+) -> tuple[list[Seen], list[Fault]]:
+    """Simulate the episodes at `places` of a submission without faults; each is printed as it ends."""
+    rows = submission.rows()
+    records = {place: rows[name_of(place)][1] for place in places}
+    seen: dict[Place, Seen] = {}
+    faults: dict[Place, list[Fault]] = {}
+    with ExitStack() as files:
+        jobs = {place: _job(record, place, track, files) for place, record in records.items()}
+        alone = {place: replace(job, actions=((STOP, None),), waits=()) for place, job in jobs.items() if track.averted}
+        lost: dict[Place, EpisodeResult | None] = {}
+        for place, outcome in _played(alone, workers):
+            lost[place] = outcome.result
+        for place, outcome in _played(jobs, workers):
+            record, played = records[place], outcome.result
+            nobody = lost.get(place)
+            if played is not None and nobody is not None:
+                played = replace(played, lost_alone=nobody.lost)
+            verdict, faults[place] = compared(record, played, outcome.error)
+            seen[place] = _seen(place, record, played, verdict)
+            line = f"{len(seen)}/{len(places)} {name_of(place)}: {verdict}"
+            print("; ".join([line, *(fault.what for fault in faults[place])]), flush=True)
+    return [seen[place] for place in places], [fault for place in places for fault in faults[place]]
+
+
+def compared(record: EpisodeResult, played: EpisodeResult | None, error: str = "") -> tuple[str, list[Fault]]:
+    """Compare a record with its simulation: the verdict of a replay, and a fault where anything differs."""
+    where = name_of((record.env_id, record.seed))
+    verdict, why = compare(record, played, error)
+    why = why.removeprefix(", ")
+    if played is None:
+        return verdict, [Fault(COURSE, where, why or "it could not be simulated")]
+    if record.links != played.links:
+        common = min(len(record.links), len(played.links))
+        if record.links[:common] == played.links[:common]:
+            what = f"its record has {len(record.links)} hashes, the simulation {len(played.links)}, the first alike"
+            return verdict, [Fault(CUT, where, what)]
+        if record.links[0] != played.links[0]:
+            return verdict, [Fault(START, where, why)]
+        return verdict, [Fault(COURSE if verdict == DIFFERENT else HASH, where, why)]
+    if record.targets != played.targets:
+        return verdict, [Fault(SCORE, where, why)]
+    if record.frames != played.frames or (record.ended in UNASKED and record.ended != played.ended):
+        what = f"it ends at frame {record.frames} ({record.ended}), the simulation at {played.frames} ({played.ended})"
+        return verdict, [Fault(CUT, where, what)]
+    own = record.to_dict()["score"]
+    again = replace(played, clock=record.clock, decisions=record.decisions).to_dict()["score"]  # thought is a claim
+    if any(again.get(name) != value for name, value in own.items()):
+        return verdict, [Fault(SCORE, where, f"the simulation has {again}, the record {own}")]
+    if verdict != EXACT:
+        return verdict, [Fault(COURSE, where, why)]
+    return verdict, list(_decisions(record, played))
+
+
+def _decisions(record: EpisodeResult, played: EpisodeResult) -> Iterator[Fault]:
+    """The first decision that went otherwise than the record says, or that was never taken."""
+    where = name_of((record.env_id, record.seed))
+    if len(record.decisions) > len(played.decisions):
+        what = f"it has {len(record.decisions)} decisions, the simulation ends after {len(played.decisions)}"
+        yield Fault(COURSE, where, what)
+        return
+    for k, (told, found) in enumerate(zip(record.decisions, played.decisions, strict=False)):
+        again = replace(found, note=told.note, fallback=told.fallback, thought=told.thought)
+        if told != again:
+            yield Fault(COURSE, where, f"decision {k}, {told.verb} at frame {told.frame}, went otherwise")
+            return
+
+
+def _job(record: EpisodeResult, place: Place, track: Track, files: ExitStack) -> Job:
+    """The job that simulates the decisions of a record in the episode that the track asks for."""
+    options = track.options(place, _asked(record.agent), record.perception)
+    scene = files.enter_context(track.scene_file(place))
+    actions = tuple((d.verb, d.target) for d in record.decisions)
+    waits = tuple(d.waited for d in record.decisions)
+    return Job(replace(options, scene=scene), SILENCE, actions, waits, averted=track.averted)
+
+
+def _asked(agent: str) -> str:
+    """The agent that is asked beside the record: one of ours that is privileged, without its parameters, else none."""
+    name = agent.partition(":")[0]
+    entry = AGENTS.get(name)
+    return name if entry is not None and issubclass(load(entry.agent), PrivilegedAgent) else NOBODY
+
+
+def _played(jobs: dict[Place, Job], workers: int) -> Iterator[tuple[Place, Outcome]]:
+    places = {id(job): place for place, job in jobs.items()}
+    with spread(list(jobs.values()), workers) as outcomes:
+        for job, outcome in outcomes:
+            yield places[id(job)], outcome
+
+
+def _seen(place: Place, record: EpisodeResult, played: EpisodeResult | None, verdict: str) -> Seen:
+    found = played or replace(record, targets=tuple(replace(f, rescued=False, frame=None) for f in record.targets))
+    decided = json.dumps([[d.verb, d.target, d.waited] for d in record.decisions]).encode()
+    return Seen(
+        *place,
+        scene=record.scene,
+        verdict=verdict,
+        tally=Tally.of(found.targets),
+        frames=found.frames,
+        decisions=hashlib.sha256(decided).hexdigest(),
+        course=found.links[-1].sha256 if played is not None and found.links else NO_HASH,
+        averted=None if played is None else played.averted,
+    )
+
+
+def _report(
+    digest: str, submission: Submission | None, track: Track | None, seen: Sequence[Seen], faults: Sequence[Fault]
+) -> Report:
+    manifest = submission and submission.manifest
+    return Report(
+        submission=digest,
+        track=track.name if track else "",
+        episodes=len(track.places) if track else 0,
+        agent=manifest.agent if manifest else "",
+        card=manifest.card if manifest else None,
+        seen=tuple(seen),
+        faults=tuple(faults),
+        date=datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        played_with=manifest.versions if manifest else {},
+        played_on=manifest.machine if manifest else {},
+        versions=versions(),
+        machine={**machine(), "processor": maker()},
+        claim=_claim([r for _, r in submission.rows().values()]) if submission and seen else None,
+    )
+
+
+def _claim(results: Sequence[EpisodeResult]) -> Claim:
+    names = list(dict.fromkeys(name for result in results for name in result.counters))
+    mean = {name: sum(r.counters.get(name, 0.0) for r in results) / len(results) for name in names}
+    return Claim(
+        counters=mean,
+        agent_seconds=sum(r.phase_seconds.get("agent", 0.0) for r in results) / len(results),
+        thought_seconds=sum(d.thought for r in results for d in r.decisions) / len(results),
+    )

@@ -3,7 +3,6 @@
     hazard-ms demos record -e HazardPickUp-v1 --load hazard_ms.tasks.practice -a oracle \\
         --obs rgb --cameras head+wrist --perturb control:2 -n 600 -o demos
     python examples/act_from_pictures.py train demos/HazardPickUp-v1/oracle --minutes 30 --out learned/pick_up
-    python examples/act_from_pictures.py play learned/pick_up --episodes 25
     python examples/act_from_pictures.py play learned/pick_up --episodes 25 --hazards fire
 
 Every tenth of a second the policy may look through the robot's cameras and feel its joints; it says what to send to the
@@ -13,8 +12,6 @@ demonstrations are those of a program, of which the paper finds that they need n
 takes the place of a pretrained ResNet, so that two cores suffice: of each picture it tells where in it some features
 are that it has learnt (Levine et al., "End-to-end training of deep visuomotor policies", JMLR 2016). The policy is told
 neither where things nor where it is. While it is shown how, noise leads the arm astray: so it learns to come back.
-
-A run is resumed where its file is there already.
 """
 
 from __future__ import annotations
@@ -107,8 +104,8 @@ class Chunks(nn.Module):
         ways, choice = self(pictures, body)
         off = ((ways - chunks[:, None]) / self.sent[1]).abs().mean((2, 3))
         near, which = off.min(1)
-        chosen = nn.functional.cross_entropy(choice, which)
-        return (1.0 - LOSERS) * near.mean() + LOSERS * off.mean() + CHOOSING * chosen
+        unlikely = nn.functional.cross_entropy(choice, which)
+        return (1.0 - LOSERS) * near.mean() + LOSERS * off.mean() + CHOOSING * unlikely
 
     def act(self, pictures: Tensor, body: Tensor) -> np.ndarray:
         """The likeliest way to go on, [CHUNK, A], from what one robot sees and feels."""
@@ -180,14 +177,13 @@ def train(folders: list[Path], minutes: float, out: Path) -> None:
         done = (time.monotonic() - start) / (60.0 * minutes)
         optimiser.param_groups[0]["lr"] = RATE * max(0.02, 0.5 + 0.5 * np.cos(np.pi * min(done, 1.0)))
         batch = torch.randint(len(rows.body), (BATCH,))
-        body = rows.body[batch]
-        noisy = body + JITTER * model.felt[1] * torch.randn_like(body)
+        noisy = rows.body[batch] + JITTER * model.felt[1] * torch.randn(BATCH, rows.body.shape[1])
         loss = model.loss(shifted(rows.pictures[batch]), noisy, rows.chunks[batch])
         optimiser.zero_grad()
         loss.backward()
         nn.utils.clip_grad_norm_(model.parameters(), 1.0)
         optimiser.step()
-        losses.append(float(loss.detach()))
+        losses.append(loss.item())
         if len(losses) % 200 == 0:
             told = f"{len(losses)},{60.0 * minutes * done:.0f},{np.mean(losses[-200:]):.4f}"
             print(f"{100 * done:.0f} %: steps, seconds, loss: {told}", flush=True)
@@ -210,8 +206,7 @@ def play(policy: Path, episodes: int, seed: int, split: str, hazards: list[str],
     env: Any = gym.make("hazard_ms.lerobot:HazardRobot-v1", split=split, render_mode=None, **settings, **more)
     succeeded = []
     for number in range(episodes):
-        seen, _ = env.reset(seed=seed + number)
-        over, steps, info = False, 0, {}
+        (seen, _), over, steps, info = env.reset(seed=seed + number), False, 0, {}
         while not over:
             joints = (len(seen["agent_pos"]) - 7) // 2  # positions, then velocities, the pose, the hand, what it holds
             body = np.append(seen["agent_pos"][BASE:joints], seen["agent_pos"][-1])

@@ -34,7 +34,7 @@ def lead_astray(agent: Any, chance: Chance, level: int) -> None:
 
 
 def arm_noise(chance: Chance, joints: int, level: int) -> Tensor:
-    """How far each joint is off in this frame [rad], [E, joints], under a perturbation of `level`.
+    """Angle by which each joint is off in this frame [rad], [E, joints], under a perturbation of `level`.
 
     Normal, as strong in all frames of an episode, and a function of its seed and of the frame alone.
     """

@@ -135,7 +135,7 @@ class HazardFetch(PlanarRobot, Fetch):
 
     def _after_init(self) -> None:
         super()._after_init()
-        self._arm = self.joint_numbers(self.arm_joint_names)
+        self._arm = self.arm_joints = self.joint_numbers(self.arm_joint_names)
         self._body = self.joint_numbers(self.body_joint_names)
         for link in (self.l_wheel_link, self.r_wheel_link):
             for shape in (s for body in link._bodies for s in body.collision_shapes):
@@ -149,10 +149,6 @@ class HazardFetch(PlanarRobot, Fetch):
 
     def grip_closed(self) -> Tensor:
         return self.controller.controllers["gripper"]._target_qpos[:, 0] < SHUT
-
-    @property
-    def arm_joints(self) -> list[int]:
-        return self._arm
 
     def arm(self) -> NDArray[np.float64]:
         return self.all_joints()[self._arm]

@@ -162,6 +162,7 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
     def _after_init(self) -> None:
         super()._after_init()
         self.base_link = self.robot.links_map["base_link"]
+        self.arm_joints = self.joint_numbers([*ARMS[RIGHT], *ARMS[LEFT]])
         self._arms = [self.joint_numbers([*BODY, *names]) for names in ARMS]
         self._tcps = (self.right_tcp, self.left_tcp)
         self._hands = [self.link_number(tcp) for tcp in self._tcps]
@@ -194,10 +195,6 @@ class HazardG1(PlanarRobot, UnitreeG1UpperBodyWithHeadCamera):
         position, heading = self.base_pose()
         crouch = self.robot.get_qpos()[:, self._arms[RIGHT][1], None]
         return position + turned(position.new_tensor(self.bag) + crouch * position.new_tensor(DOWN), heading)
-
-    @cached_property
-    def arm_joints(self) -> list[int]:
-        return self.joint_numbers([*ARMS[RIGHT], *ARMS[LEFT]])
 
     def arm(self) -> NDArray[np.float64]:
         used = self._used

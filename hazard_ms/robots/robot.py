@@ -39,6 +39,7 @@ class Robot(abc.ABC):
     # cameras beside that of the head by name, which an environment has if it is asked for them
     mounted_cameras: Mapping[str, MountedCamera] = MappingProxyType({})
     skill_control_mode: str  # the control mode whose actions `action` makes
+    arm_joints: list[int]  # numbers of the joints of all arms, among all joints
     tucked: NDArray[np.float64]  # arm joints where the arm is out of the way [rad], [J]
     # arm joints that lead past furniture to where the hand is needed [rad], [J] each
     between: tuple[NDArray[np.float64], ...]
@@ -98,11 +99,6 @@ class Robot(abc.ABC):
         `slowed` takes the velocity of the base over the floor [m/s], world frame, [E, 2], and gives what is left of it,
         [E, 2]. Call it after the action is set and before physics steps.
         """
-
-    @property
-    @abc.abstractmethod
-    def arm_joints(self) -> list[int]:
-        """Numbers of the J joints of all arms, among all joints."""
 
     @abc.abstractmethod
     def arm(self) -> NDArray[np.float64]:

@@ -39,6 +39,7 @@ CHUNK, CARRIED = 10, 4  # actions that it foresees; those that are carried out b
 MODES, LOSERS, CHOOSING = 4, 0.1, 0.2  # ways to go on; what all count beside the nearest; what choosing among them does
 WIDTH, HEADS, DEPTH = 128, 4, 2
 BATCH, RATE, WEIGHT_DECAY = 64, 4e-4, 1e-4
+LEAST = 0.1  # spread that numbers count as having at least: what hardly changes must not weigh most
 SHIFT, JITTER = 4, 0.1  # most that pictures are shifted [pixels]; noise of joints, as a share of their spread
 PRACTICE = "hazard_ms.tasks.practice"
 BASE = 3  # joints that are the robot's place in the world, which it is not told
@@ -73,8 +74,7 @@ class Eye(nn.Module):
 class Chunks(nn.Module):
     """From pictures, [N, cameras, 3, SIDE, SIDE], and the body, [N, J], to ways to go on and how likely each is.
 
-    They are [N, MODES, CHUNK, A], and the logarithms of likelihoods, [N, MODES]. Before some things the teacher drives
-    nearer first, before others it reaches at once: halfway between the two, nothing moves.
+    They are [N, MODES, CHUNK, A], and the logarithms of likelihoods, [N, MODES]: to reach at once, or to drive first.
     """
 
     def __init__(self, cameras: int, joints: int, numbers: int) -> None:
@@ -102,7 +102,7 @@ class Chunks(nn.Module):
     def loss(self, pictures: Tensor, body: Tensor, chunks: Tensor) -> Tensor:
         """How far the nearest way is from what was done, [N, CHUNK, A], in spreads of it, and how unlikely it was."""
         ways, choice = self(pictures, body)
-        off = ((ways - chunks[:, None]) / self.sent[1]).abs().mean((2, 3))
+        off = ((ways - chunks[:, None]) / self.sent[1]).square().mean((2, 3))  # a median never drives
         near, which = off.min(1)
         unlikely = nn.functional.cross_entropy(choice, which)
         return (1.0 - LOSERS) * near.mean() + LOSERS * off.mean() + CHOOSING * unlikely
@@ -165,7 +165,7 @@ def train(folders: list[Path], minutes: float, out: Path) -> None:
     rows, settings = read(*folders)
     model = Chunks(rows.pictures.shape[1], rows.body.shape[1], rows.chunks.shape[2])
     for name, numbers in (("felt", rows.body), ("sent", rows.chunks.flatten(0, 1))):
-        getattr(model, name).copy_(torch.stack([numbers.mean(0), numbers.std(0).clamp(min=1e-2)]))
+        getattr(model, name).copy_(torch.stack([numbers.mean(0), numbers.std(0).clamp(min=LEAST)]))
     out.mkdir(parents=True, exist_ok=True)
     (out / "settings.json").write_text(json.dumps(settings, indent=1))
     if (out / "policy.safetensors").exists():

@@ -30,7 +30,9 @@ HEAD = """# Policies from pictures
 
 Made by `./run python results/imitation.py` from `imitation.csv`. Success in percent with 95 % intervals (Wilson 1927)
 in rooms of `test`, which no demonstration shows. The policies see pictures of head and wrist, and feel their joints;
-`{teacher}`, which demonstrated, is told where things are. Hazards have the preset `paper`.
+`{teacher}`, which demonstrated, is told where things are. Hazards have the preset `paper`. Both policies learned from
+396 demonstrations without and 440 with `--perturb control:2`: `pick_up-1` for 18 minutes with the seed 1, `pick_up-0`
+for 16 with the seed 0, after 60 in which it was judged by absolute errors.
 Written at
 {machine}.
 

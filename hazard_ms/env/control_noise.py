@@ -16,7 +16,14 @@ from hazard_ms.spec import rounding
 from hazard_ms.spec.perturbation import LEAST_SHARE
 
 MOST = (0.0, 0.03, 0.06, 0.12)  # greatest standard deviation of each joint by level, 0 to 3 [rad] [ours]
+SPEEDS = "pd_joint_vel"  # ManiSkill's control mode that sends joints nowhere
 KNOT = 5  # frames from one independent draw to the next, between which noise is led smoothly [ours]
+
+
+def check_mode(level: int, control_mode: str | None) -> None:
+    """Refuse noise of a `level` where actions are speeds of joints, which it would not change. Raises ValueError."""
+    if level and control_mode == SPEEDS:
+        raise ValueError(f"control in perturb must be 0 in the control mode {SPEEDS}, got {level}")
 
 
 def lead_astray(agent: Any, chance: Chance, level: int) -> None:

@@ -16,6 +16,7 @@ from torch import Tensor
 
 from hazard_ms.env import inputs, keywords, states
 from hazard_ms.env.built import BuiltEnv
+from hazard_ms.env.control_noise import check_mode
 from hazard_ms.env.spaces import bounded
 from hazard_ms.episode import snapshot
 from hazard_ms.hazards.base import none_set
@@ -105,6 +106,7 @@ class HazardEnv(BuiltEnv):
         self.severity = self.perturbation.severity(severity, physics)
         made = playing(task_of(task, self.physics, hazards, self.severity), scenes)
         perturbing.check(self.perturbation, made)
+        check_mode(self.perturbation.control, maniskill_keywords.get("control_mode"))
         self.choice = SceneChoice(made, split)
         self.task = dataclasses.replace(made, max_frames=TASKS[task].frames(split))
         self._most_frames = self.task.max_frames

@@ -137,7 +137,7 @@ def holding(situation: Situation) -> Tensor:
 
 def hint(situation: Situation) -> Tensor:
     """Hint on the way to an open door, [E], 0 to 1: of nearness to the handle, its hold, and the turn of the leaf."""
-    near = 1.0 / (1.0 + (gap(situation) - GRASP_REACH).clamp(min=0.0) / rewards.HALFWAY)
+    near = rewards.nearness(gap(situation), GRASP_REACH)
     turned = (angle(situation) / wide_enough(situation)).clamp(max=1.0)
     return (near + holding(situation).float() + turned) / 3.0
 

@@ -105,9 +105,14 @@ def holding(situation: Situation) -> Tensor:
     return (situation.world.held & wanted(situation)).any(dim=1)
 
 
+def nearness(gap: Tensor, reach: float) -> Tensor:
+    """Nearness of what is `gap` [m], [E], away to where it is within `reach` [m], [E], from 0 to 1."""
+    return 1.0 / (1.0 + (gap - reach).clamp(min=0.0) / HALFWAY)
+
+
 def pick_up_hint(situation: Situation) -> Tensor:
     """Nearness of the hand to where it could take the nearest target, [E], from 0 to 1."""
-    return 1.0 / (1.0 + (gap(situation) - GRASP_REACH).clamp(min=0.0) / HALFWAY)
+    return nearness(gap(situation), GRASP_REACH)
 
 
 def pick_up_dense(situation: Situation) -> Tensor:
@@ -124,7 +129,7 @@ def stow_hint(situation: Situation) -> Tensor:
     """Hint on the way into the bag, [E], 0 to 1: half of that of a pick-up; once it is held, a half and more."""
     agent = situation.agent
     away = (agent.gripper_pose()[0] - agent.bag_position()).norm(dim=1)
-    over = 1.0 / (1.0 + (away - BAG_REACH).clamp(min=0.0) / HALFWAY)
+    over = nearness(away, BAG_REACH)
     return torch.where(holding(situation), 0.5 + 0.5 * over, 0.5 * pick_up_hint(situation))
 
 

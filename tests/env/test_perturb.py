@@ -141,6 +141,10 @@ def test_a_hazard_is_a_severity() -> None:
         ({"perturb": "lightning:1"}, "a kind in perturb must be one of .* got 'lightning' .*did you mean 'lighting'"),
         ({"perturb": "hazard:1"}, "hazard in perturb must be 0 for all physics but 'realistic', got 1"),
         ({"perturb": 2}, "perturb must be text such as 'lighting:2,camera:1', got 2"),
+        (
+            {"perturb": "control:1", "control_mode": "pd_joint_vel"},
+            "control in perturb must be 0 in the control mode pd_joint_vel, got 1",
+        ),
         ({"perturb": "objects:1", "task": "HazardGale-v1"}, "objects in perturb must be 0 for HazardGale-v1"),
     ],
 )

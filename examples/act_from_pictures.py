@@ -11,7 +11,8 @@ controllers in each of the coming tenths, of which the first few are carried out
 demonstrations are those of a program, of which the paper finds that they need none). A small network of convolutions
 takes the place of a pretrained ResNet, so that two cores suffice: of each picture it tells where in it some features
 are that it has learnt (Levine et al., "End-to-end training of deep visuomotor policies", JMLR 2016). The policy is told
-neither where things nor where it is. While it is shown how, noise leads the arm astray: so it learns to come back.
+neither where things nor where it is. While it is shown how, noise leads the arm astray: so it learns to come back. For
+HazardFetch-v1, where it walks to the thing first, `train --walks` shows it what is far and how fast it turns.
 """
 
 from __future__ import annotations
@@ -32,13 +33,17 @@ from torch import Tensor, nn
 
 from hazard_ms.demonstrations.reading import demonstrations
 
-SIDE = 96  # of pictures as the network sees them [pixels]
-CUT = {"head": (3 / 8, 3 / 16, 5 / 8)}  # what is seen of a camera's picture: top, left and side, as shares of its side
+# what the network sees: the camera; top, left, height and width of the part of its picture, as shares; rows and columns
+VIEWS = {
+    "head": ("head", (3 / 8, 3 / 16, 5 / 8, 5 / 8), (96, 96)),
+    "wrist": ("wrist", (0.0, 0.0, 1.0, 1.0), (96, 96)),
+    "shoulder": ("shoulder", (0.0, 0.0, 1.0, 1.0), (96, 96)),
+    "far": ("head", (3 / 8, 0.0, 1 / 4, 1.0), (64, 256)),  # a thing 4 m away is as wide as three of its pixels
+}
 POINTS = 64  # features whose places in a picture are told
 CHUNK, CARRIED = 10, 4  # actions that it foresees; those that are carried out before it looks again
 MODES, LOSERS, CHOOSING = 4, 0.1, 0.2  # ways to go on; what all count beside the nearest; what choosing among them does
-WIDTH, HEADS, DEPTH = 128, 4, 2
-BATCH, RATE, WEIGHT_DECAY = 64, 4e-4, 1e-4
+WIDTH, HEADS, DEPTH, BATCH, RATE, WEIGHT_DECAY = 128, 4, 2, 64, 4e-4, 1e-4
 LEAST = 0.1  # spread that numbers count as having at least: what hardly changes must not weigh most
 SHIFT, JITTER = 4, 0.1  # most that pictures are shifted [pixels]; noise of joints, as a share of their spread
 PRACTICE = "hazard_ms.tasks.practice"
@@ -48,13 +53,13 @@ BASE = 3  # joints that are the robot's place in the world, which it is not told
 class Rows(NamedTuple):
     """What was seen, felt and done: N rows, [N, ...] each."""
 
-    pictures: Tensor  # [N, cameras, 3, SIDE, SIDE], uint8
-    body: Tensor  # joints, and whether it holds something
+    pictures: list[Tensor]  # of each view, [N, 3, H, W], uint8
+    body: Tensor  # see `felt`
     chunks: Tensor  # the coming CHUNK actions, [N, CHUNK, A]
 
 
 class Eye(nn.Module):
-    """From a picture, [N, 3, SIDE, SIDE], to what is seen in it, [N, WIDTH]: the places of POINTS features."""
+    """From a picture, [N, 3, H, W], to what is seen in it, [N, WIDTH]: the places of POINTS features."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -67,21 +72,21 @@ class Eye(nn.Module):
     def forward(self, picture: Tensor) -> Tensor:
         found = self.features(picture)
         share = found.flatten(2).softmax(-1).reshape(found.shape)  # of each feature, over the picture
-        along = torch.linspace(-1.0, 1.0, found.shape[-1])
-        return self.out(torch.cat([(share.sum(2) * along).sum(-1), (share.sum(3) * along).sum(-1)], 1))
+        down, along = (torch.linspace(-1.0, 1.0, size) for size in found.shape[2:])
+        return self.out(torch.cat([(share.sum(2) * along).sum(-1), (share.sum(3) * down).sum(-1)], 1))
 
 
 class Chunks(nn.Module):
-    """From pictures, [N, cameras, 3, SIDE, SIDE], and the body, [N, J], to ways to go on and how likely each is.
+    """From pictures, [N, 3, H, W] of each view, and the body, [N, J], to ways to go on, [N, MODES, CHUNK, A].
 
-    They are [N, MODES, CHUNK, A], and the logarithms of likelihoods, [N, MODES]: to reach at once, or to drive first.
+    Beside them, logarithms of how likely each is, [N, MODES]: to reach at once, or to drive first.
     """
 
-    def __init__(self, cameras: int, joints: int, numbers: int) -> None:
+    def __init__(self, views: int, joints: int, numbers: int) -> None:
         super().__init__()
-        self.eyes = nn.ModuleList(Eye() for _ in range(cameras))
+        self.eyes = nn.ModuleList(Eye() for _ in range(views))
         self.body = nn.Sequential(nn.Linear(joints, WIDTH), nn.ReLU(), nn.Linear(WIDTH, WIDTH))
-        self.places = nn.Parameter(0.02 * torch.randn(cameras + 1, WIDTH))
+        self.places = nn.Parameter(0.02 * torch.randn(views + 1, WIDTH))
         self.queries = nn.Parameter(0.02 * torch.randn(CHUNK, WIDTH))
         shape = dict(d_model=WIDTH, nhead=HEADS, dim_feedforward=3 * WIDTH, dropout=0.1, batch_first=True)
         self.encoder = nn.TransformerEncoder(nn.TransformerEncoderLayer(**shape), DEPTH)  # type: ignore[arg-type]
@@ -91,15 +96,15 @@ class Chunks(nn.Module):
         self.register_buffer("felt", torch.stack([torch.zeros(joints), torch.ones(joints)]))
         self.register_buffer("sent", torch.stack([torch.zeros(numbers), torch.ones(numbers)]))
 
-    def forward(self, pictures: Tensor, body: Tensor) -> tuple[Tensor, Tensor]:
-        seen = [eye(pictures[:, camera].float() / 255.0 - 0.5) for camera, eye in enumerate(self.eyes)]
+    def forward(self, pictures: list[Tensor], body: Tensor) -> tuple[Tensor, Tensor]:
+        seen = [eye(view.float() / 255.0 - 0.5) for eye, view in zip(self.eyes, pictures, strict=True)]
         felt = self.body((body - self.felt[0]) / self.felt[1])
         known = self.encoder(torch.stack([felt, *seen], 1) + self.places)
         foreseen = self.out(self.decoder(self.queries.expand(len(body), -1, -1), known))
         ways = foreseen.unflatten(2, (MODES, -1)).transpose(1, 2)
         return ways * self.sent[1] + self.sent[0], self.choice(known[:, 0])
 
-    def loss(self, pictures: Tensor, body: Tensor, chunks: Tensor) -> Tensor:
+    def loss(self, pictures: list[Tensor], body: Tensor, chunks: Tensor) -> Tensor:
         """How far the nearest way is from what was done, [N, CHUNK, A], in spreads of it, and how unlikely it was."""
         ways, choice = self(pictures, body)
         off = ((ways - chunks[:, None]) / self.sent[1]).square().mean((2, 3))  # a median never drives
@@ -107,63 +112,65 @@ class Chunks(nn.Module):
         unlikely = nn.functional.cross_entropy(choice, which)
         return (1.0 - LOSERS) * near.mean() + LOSERS * off.mean() + CHOOSING * unlikely
 
-    def act(self, pictures: Tensor, body: Tensor) -> np.ndarray:
+    def act(self, pictures: list[np.ndarray], body: np.ndarray) -> np.ndarray:
         """The likeliest way to go on, [CHUNK, A], from what one robot sees and feels."""
         with torch.no_grad():
-            ways, choice = self(pictures[None], body[None].float())
+            ways, choice = self([torch.from_numpy(view)[None] for view in pictures], torch.from_numpy(body).float())
         return ways[0, int(choice.argmax())].numpy()
 
 
-def small(picture: Any, camera: str) -> np.ndarray:
-    """A picture of a camera, [H, W, 3], as the network sees it, [3, SIDE, SIDE]."""
-    top, left, side = (round(share * len(picture)) for share in CUT.get(camera, (0.0, 0.0, 1.0)))
-    picture = picture[top : top + side, left : left + side]
-    return np.ascontiguousarray(cv2.resize(picture, (SIDE, SIDE), interpolation=cv2.INTER_AREA).transpose(2, 0, 1))
+def small(picture: Any, view: str) -> np.ndarray:
+    """A camera's square picture, [S, S, 3], as the network sees it in a view, [3, H, W]."""
+    _, part, (rows, columns) = VIEWS[view]
+    top, left, height, width = (round(share * len(picture)) for share in part)
+    picture = picture[top : top + height, left : left + width]
+    return np.ascontiguousarray(cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_AREA).transpose(2, 0, 1))
 
 
-def film(path: Path, camera: str) -> np.ndarray:
-    """All pictures of a camera's film, [T, 3, SIDE, SIDE]."""
-    video, pictures = cv2.VideoCapture(str(path)), []
-    while (read := video.read())[0]:
-        pictures.append(small(cv2.cvtColor(read[1], cv2.COLOR_BGR2RGB), camera))
-    return np.stack(pictures)
+def film(path: Path, view: str) -> np.ndarray:
+    """All pictures of a camera's film in a view, [T, 3, H, W]."""
+    video = cv2.VideoCapture(str(path))
+    return np.stack([small(picture[:, :, ::-1], view) for _, picture in iter(video.read, (False, None))])
 
 
-def read(*folders: Path) -> tuple[Rows, dict[str, Any]]:
-    """The rows of datasets of one task and one set of cameras, and what is needed to play as they were recorded."""
+def felt(qpos: np.ndarray, qvel: np.ndarray, held: np.ndarray, walks: bool) -> np.ndarray:
+    """What the robot feels, [N, J]: its joints, whether it holds something, and if it `walks` how fast it turns."""
+    return np.column_stack([qpos[:, BASE:], held, *([qvel[:, BASE - 1]] if walks else [])])
+
+
+def read(*folders: Path, walks: bool = False) -> tuple[Rows, dict[str, Any]]:
+    """The rows of datasets with one set of cameras, and what is needed to play as the first of them was recorded."""
     pictures, bodies, chunks = [], [], []
     settings: dict[str, Any] = {}
     for one in (one for folder in folders for one in demonstrations(folder)):
         every, total = one.meta["every"], len(one.frames["action"])
         at = np.arange(0, total, every)
-        seen = [film(path, camera)[: len(at)] for camera, path in one.films.items()]
-        pictures.append(np.stack(seen, 1))
-        bodies.append(np.column_stack([one.frames["qpos"][at, BASE:], one.frames["held"][at] >= 0]))
+        views = [*one.films, *(["far"] if walks else [])]
+        pictures.append([film(one.films[VIEWS[view][0]], view)[: len(at)] for view in views])
+        bodies.append(felt(one.frames["qpos"][at], one.frames["qvel"][at], one.frames["held"][at] >= 0, walks))
         # what was sent from one picture to the next, in the mean, so that it can be sent again as long
         sent = np.stack([one.frames["action"][frame : frame + every].mean(0) for frame in at])
         chunks.append(sent[np.minimum(np.arange(len(at))[:, None] + np.arange(CHUNK), len(at) - 1)])
-        settings = {
-            "task": one.result.env_id,
-            "cameras": [name for name in one.films if name != "head"],
-            "every": every,
-            "robot_uids": one.meta["robot"],
-        }
+        env = {"task": one.result.env_id, "cameras": [*one.films][1:], "every": every, "robot_uids": one.meta["robot"]}
+        settings = settings or {"views": views, "walks": walks, "env": env}
     if not bodies:
         raise SystemExit(f"{', '.join(map(str, folders))}: no episode")
-    made = [torch.from_numpy(np.concatenate(part)) for part in (pictures, bodies, chunks)]
-    return Rows(made[0], made[1].float(), made[2].float()), settings
+    whole = [torch.from_numpy(np.concatenate(view)) for view in zip(*pictures, strict=True)]
+    body, sent = (torch.from_numpy(np.concatenate(part)).float() for part in (bodies, chunks))
+    return Rows(whole, body, sent), settings
 
 
-def shifted(pictures: Tensor) -> Tensor:
-    """Pictures, [N, cameras, 3, SIDE, SIDE], each batch moved by some pixels, as if cameras were not quite in place."""
+def shifted(pictures: list[Tensor], batch: Tensor) -> list[Tensor]:
+    """The pictures of a batch, moved by some pixels, as if cameras were not quite in place."""
     right, down = (int(torch.randint(-SHIFT, SHIFT + 1, ())) for _ in range(2))
-    return torch.roll(pictures, (right, down), (-1, -2))
+    return [torch.roll(view[batch], (right, down), (-1, -2)) for view in pictures]
 
 
-def train(folders: list[Path], minutes: float, out: Path) -> None:
+def train(folders: list[Path], minutes: float, out: Path, walks: bool = False, seed: int = 0) -> None:
     """Train for some minutes on the datasets in `folders`, and write the policy."""
-    rows, settings = read(*folders)
-    model = Chunks(rows.pictures.shape[1], rows.body.shape[1], rows.chunks.shape[2])
+    torch.manual_seed(seed)
+    rows, settings = read(*folders, walks=walks)
+    model = Chunks(len(rows.pictures), rows.body.shape[1], rows.chunks.shape[2])
     for name, numbers in (("felt", rows.body), ("sent", rows.chunks.flatten(0, 1))):
         getattr(model, name).copy_(torch.stack([numbers.mean(0), numbers.std(0).clamp(min=LEAST)]))
     out.mkdir(parents=True, exist_ok=True)
@@ -172,24 +179,23 @@ def train(folders: list[Path], minutes: float, out: Path) -> None:
         model.load_state_dict(load_file(out / "policy.safetensors"))
     start, done, losses = time.monotonic(), 0.0, []
     optimiser = torch.optim.AdamW(model.parameters(), RATE, weight_decay=WEIGHT_DECAY)
-    print(f"{len(rows.body)} rows", flush=True)
     while done < 1.0:
         done = (time.monotonic() - start) / (60.0 * minutes)
         optimiser.param_groups[0]["lr"] = RATE * max(0.02, 0.5 + 0.5 * np.cos(np.pi * min(done, 1.0)))
         batch = torch.randint(len(rows.body), (BATCH,))
         noisy = rows.body[batch] + JITTER * model.felt[1] * torch.randn(BATCH, rows.body.shape[1])
-        loss = model.loss(shifted(rows.pictures[batch]), noisy, rows.chunks[batch])
+        loss = model.loss(shifted(rows.pictures, batch), noisy, rows.chunks[batch])
         optimiser.zero_grad()
         loss.backward()
         nn.utils.clip_grad_norm_(model.parameters(), 1.0)
         optimiser.step()
         losses.append(loss.item())
         if len(losses) % 200 == 0:
+            save_file(model.state_dict(), out / "policy.safetensors")
             told = f"{len(losses)},{60.0 * minutes * done:.0f},{np.mean(losses[-200:]):.4f}"
             print(f"{100 * done:.0f} %: steps, seconds, loss: {told}", flush=True)
-            save_file(model.state_dict(), out / "policy.safetensors")
             with (out / "curve.csv").open("a") as curve:
-                curve.write(told + "\n")
+                print(told, file=curve)
     save_file(model.state_dict(), out / "policy.safetensors")
     print(f"{len(losses)} steps in {minutes:g} minutes: loss {np.mean(losses[-50:]):.3f}")
 
@@ -198,26 +204,23 @@ def play(policy: Path, episodes: int, seed: int, split: str, hazards: list[str],
     """Play episodes with a policy; `load`: the module that registers its task. Returns which of them succeeded."""
     importlib.import_module(load)
     settings, weights = json.loads((policy / "settings.json").read_text()), load_file(policy / "policy.safetensors")
-    cameras = ["head", *settings["cameras"]]
-    model = Chunks(len(cameras), weights["felt"].shape[1], weights["sent"].shape[1])
-    model.load_state_dict(weights)
-    model.eval()
+    model = Chunks(len(views := settings["views"]), weights["felt"].shape[1], weights["sent"].shape[1])
+    model.eval().load_state_dict(weights)
     more = {"hazards": hazards} if hazards else {}
-    env: Any = gym.make("hazard_ms.lerobot:HazardRobot-v1", split=split, render_mode=None, **settings, **more)
+    env: Any = gym.make("hazard_ms.lerobot:HazardRobot-v1", split=split, render_mode=None, **settings["env"], **more)
     succeeded = []
-    for number in range(episodes):
-        (seen, _), over, steps, info = env.reset(seed=seed + number), False, 0, {}
+    for number in range(seed, seed + episodes):
+        (seen, _), over, steps, info = env.reset(seed=number), False, 0, {}
         while not over:
-            joints = (len(seen["agent_pos"]) - 7) // 2  # positions, then velocities, the pose, the hand, what it holds
-            body = np.append(seen["agent_pos"][BASE:joints], seen["agent_pos"][-1])
-            pictures = np.stack([small(seen["pixels"][camera], camera) for camera in cameras])
-            for action in model.act(torch.from_numpy(pictures), torch.from_numpy(body))[:CARRIED]:
-                seen, _, terminated, truncated, info = env.step(action)
-                steps, over = steps + 1, terminated or truncated
-                if over:
-                    break
+            told = seen["agent_pos"][None]  # joints, how fast they move, the pose, the hand, whether it holds something
+            body = felt(*np.split(told[:, :-7], 2, axis=1), told[:, -1], settings["walks"])
+            pictures = [small(seen["pixels"][VIEWS[view][0]], view) for view in views]
+            for action in model.act(pictures, body)[:CARRIED]:
+                if not over:
+                    seen, _, terminated, truncated, info = env.step(action)
+                    steps, over = steps + 1, terminated or truncated
         succeeded.append(info["is_success"])
-        print(f"seed {seed + number}: {'success' if succeeded[-1] else 'failed'} after {steps} steps", flush=True)
+        print(f"seed {number}: {'success' if succeeded[-1] else 'failed'} after {steps} steps", flush=True)
     env.close()
     print(f"{sum(succeeded)} of {episodes} succeeded, {100 * np.mean(succeeded):.0f} %, {split}, {hazards or 'calm'}")
     return succeeded
@@ -225,25 +228,22 @@ def play(policy: Path, episodes: int, seed: int, split: str, hazards: list[str],
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    commands = parser.add_subparsers(dest="command", required=True)
-    one = commands.add_parser("train")
+    commands = parser.add_subparsers(required=True)
+    (one := commands.add_parser("train")).set_defaults(do=train)
     one.add_argument("folders", type=Path, nargs="+")
     one.add_argument("--minutes", type=float, default=30.0)
     one.add_argument("--out", type=Path, required=True)
     one.add_argument("--seed", type=int, default=0)
-    two = commands.add_parser("play")
+    one.add_argument("--walks", action="store_true", help="see what is far, and feel how fast the base turns")
+    (two := commands.add_parser("play")).set_defaults(do=play)
     two.add_argument("policy", type=Path)
     two.add_argument("--episodes", type=int, default=25)
     two.add_argument("--seed", type=int, default=0)
     two.add_argument("--split", default="test")
     two.add_argument("--hazards", nargs="*", default=[])
     two.add_argument("--load", default=PRACTICE, help="module that registers the task")
-    given = parser.parse_args()
-    torch.manual_seed(given.seed)
-    if given.command == "train":
-        train(given.folders, given.minutes, given.out)
-    else:
-        play(given.policy, given.episodes, given.seed, given.split, given.hazards, given.load)
+    given = vars(parser.parse_args())
+    given.pop("do")(**given)
 
 
 if __name__ == "__main__":

@@ -56,7 +56,8 @@ def test_rows_are_what_was_seen_and_what_was_done_from_then_on(example: Any, dat
     rows, settings = example.read(dataset)
     (one,) = demonstrations(dataset)
     actions, last = one.frames["action"], (len(one.frames["action"]) - 1) // EVERY
-    assert rows.pictures.shape == (last + 1, 2, 3, 96, 96) and rows.body.shape == (last + 1, 13)
+    assert [view.shape for view in rows.pictures] == [(last + 1, 3, 96, 96)] * 2
+    assert rows.body.shape == (last + 1, 13)
     for row in (0, 5, last - 3, last):
         for step in range(example.CHUNK):
             frame = min(row + step, last) * EVERY
@@ -68,25 +69,41 @@ def test_rows_are_what_was_seen_and_what_was_done_from_then_on(example: Any, dat
     video = cv2.VideoCapture(str(one.films["head"]))
     whole = video.read()[1][:, :, ::-1]  # of 256 pixels, of which the policy sees what is before its hands
     seen = cv2.resize(whole[96:256, 48:208], (96, 96), interpolation=cv2.INTER_AREA)
-    np.testing.assert_array_equal(rows.pictures[0, 0].numpy(), seen.transpose(2, 0, 1))
+    np.testing.assert_array_equal(rows.pictures[0][0].numpy(), seen.transpose(2, 0, 1))
     twice, _ = example.read(dataset, dataset)
     assert len(twice.body) == 2 * (last + 1)
-    apart = (rows.pictures[:, 0].float() - rows.pictures[:, 1].float()).abs().mean()
+    apart = (rows.pictures[0].float() - rows.pictures[1].float()).abs().mean()
     assert apart > 20.0  # two cameras
-    assert settings == {"task": "HazardPickUp-v1", "cameras": ["wrist"], "every": EVERY, "robot_uids": "fetch"}
+    env = {"task": "HazardPickUp-v1", "cameras": ["wrist"], "every": EVERY, "robot_uids": "fetch"}
+    assert settings == {"views": ["head", "wrist"], "walks": False, "env": env}
 
 
+def test_who_walks_also_sees_what_is_far_and_feels_how_fast_it_turns(example: Any, dataset: Path) -> None:
+    rows, settings = example.read(dataset, walks=True)
+    (one,) = demonstrations(dataset)
+    assert settings["views"] == ["head", "wrist", "far"] and settings["env"]["cameras"] == ["wrist"]
+    np.testing.assert_array_equal(rows.body[:, -1].numpy(), one.frames["qvel"][:-1:EVERY, 2])
+    assert rows.body[:, -1].abs().max() > 0.1  # [rad/s]: it has turned
+    whole = cv2.VideoCapture(str(one.films["head"])).read()[1][:, :, ::-1]
+    np.testing.assert_array_equal(rows.pictures[2][0].numpy(), whole[96:160].transpose(2, 0, 1))  # pixel by pixel
+
+
+@pytest.mark.parametrize("walks", [False, True])
 def test_it_learns_goes_on_and_plays(
-    example: Any, dataset: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    example: Any,
+    dataset: Path,
+    walks: bool,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setattr(example, "BATCH", 8)
-    torch.manual_seed(0)
     losses = []
     for minutes in (0.02, 0.2):
-        example.train([dataset], minutes, tmp_path / "made")
+        example.train([dataset], minutes, tmp_path / "made", walks)
         losses.append(float(capsys.readouterr().out.split()[-1]))
     assert losses[1] < 0.8 * losses[0]
-    assert json.loads((tmp_path / "made" / "settings.json").read_text())["task"] == "HazardPickUp-v1"
+    assert json.loads((tmp_path / "made" / "settings.json").read_text())["env"]["task"] == "HazardPickUp-v1"
     assert example.play(tmp_path / "made", 1, 4, "train", ["flood"]) in ([False], [True])
     assert "of 1 succeeded" in (said := capsys.readouterr().out) and "['flood']" in said
 
@@ -96,7 +113,8 @@ def test_between_two_ways_to_go_on_it_takes_one(example: Any) -> None:
     torch.manual_seed(0)
     model = example.Chunks(2, 3, 2)
     optimiser = torch.optim.AdamW(model.parameters(), 1e-3)
-    pictures = torch.randint(0, 255, (1, 2, 3, example.SIDE, example.SIDE), dtype=torch.uint8).repeat(8, 1, 1, 1, 1)
+    seen = [torch.randint(0, 255, (1, 3, 96, 96), dtype=torch.uint8) for _ in range(2)]
+    pictures = [view.expand(8, -1, -1, -1) for view in seen]
     body = torch.zeros(8, 3)
     ahead = torch.tensor([1.0, -1.0]).repeat(4)[:, None, None].expand(8, example.CHUNK, 2)
     for _ in range(60):
@@ -104,4 +122,4 @@ def test_between_two_ways_to_go_on_it_takes_one(example: Any) -> None:
         optimiser.zero_grad()
         loss.backward()
         optimiser.step()
-    assert np.abs(model.eval().act(pictures[0], body[0])).min() > 0.7
+    assert np.abs(model.eval().act([view[0].numpy() for view in seen], body[:1].numpy())).min() > 0.7

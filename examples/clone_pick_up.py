@@ -39,7 +39,7 @@ from hazard_ms.skills.motor.walking import ARRIVED, known, way_to
 TASK, TRAIN, TEST = "HazardFire-v1", "train", "test"  # kitchen_a, living_room_a, craft_room_a; and kitchen_b
 ARM, GRIPPER, BASE = slice(0, 7), 7, slice(11, 13)  # of Fetch's action: [rad]; shut below 0; shares of full speed
 FRAMES = 120  # after which a policy has failed; 99 % of demonstrations have the thing in the hand after 81 [ours]
-LOOKS = 4  # looks that show everything around, with a field of view of 120 degrees
+LOOKS, QUARTER = 4, math.tau / 4  # looks that show everything around, with a field of view of 120 degrees; [rad]
 HEIGHTS, FAR = (0.15, 0.4, 0.6, 0.8), 1.3  # [m] things this high count in the room ahead, which is measured this far
 NOISE, KEPT = 0.08, 0.75  # [rad] of the disturbance of each joint, and the share of it left after a frame [ours]
 HIDDEN, EPOCHS, BATCH, RATE, DROPOUT = 256, 20, 256, 2e-3, 0.1  # [ours]
@@ -116,8 +116,7 @@ def starts(env: SkillEnv, scenes: Sequence[str]) -> Iterator[int]:
 def stand(env: SkillEnv, x: float, y: float, heading: float, looks: int) -> None:
     """Put the robot at `x`, `y` [m] with its `heading` [rad] after `looks` looks around from there."""
     for look in reversed(range(looks)):
-        angle = heading + look * math.tau / LOOKS
-        env.base.agent.place(torch.tensor([0]), torch.tensor([[x, y]]), torch.tensor([angle]))
+        env.base.agent.place(torch.tensor([0]), torch.tensor([[x, y]]), torch.tensor([heading + look * QUARTER]))
         env.base.world.read()
         env.base.episode.see(env.base.agent)
         env.look()
@@ -134,9 +133,9 @@ def demonstrate(env: SkillEnv, count: int, chance: np.random.Generator) -> list[
     """The frames of `count` pick-ups that worked, or of all that did if the scenes have fewer."""
     frames, made, tried, began = list[Frame](), 0, 0, time.perf_counter()
     for index in starts(env, chance.permutation(env.base.task.scenes(TRAIN)).tolist()):
-        new = list[Frame]()
-        result = env.run(disturbed(env.stage, index, chance, new))
-        frames, made, tried = frames + new * result.ok, made + result.ok, tried + 1
+        new: list[list[Frame]] = [[], []]
+        result = env.run(disturbed(env.stage, index, chance, new, pick_up(env.stage, index)))
+        frames, made, tried = frames + new[0] * result.ok, made + result.ok, tried + 1
         if made >= count:
             break
     minutes = (time.perf_counter() - began) / 60.0
@@ -144,12 +143,11 @@ def demonstrate(env: SkillEnv, count: int, chance: np.random.Generator) -> list[
     return frames
 
 
-def disturbed(stage: Stage, index: int, chance: np.random.Generator, frames: list[Frame]) -> Skill:
-    """The skill `pick_up` with noise on the targets of the arm; `frames` get those until the thing is in the hand."""
+def disturbed(stage: Stage, index: int, chance: np.random.Generator, frames: list[list[Frame]], doing: Skill) -> Skill:
+    """What is `doing`, with noise on the arm's targets; of `frames` the last list gets those with the thing in hand."""
     now, noise, size, began = PickUp(stage, index), np.zeros(7), NOISE * chance.uniform(0.3, 1.7), stage.frame
-    for action in pick_up(stage, index):
-        if stage.held != index:
-            frames.append((now.seen(), now.label(action)))
+    for action in doing:
+        frames[stage.held == index].append((now.seen(), now.label(action)))
         noise = KEPT * noise + math.sqrt(1.0 - KEPT**2) * size * chance.normal(size=7)
         now.targets = action[ARM] + noise
         yield np.concatenate([now.targets, action[GRIPPER:]]).astype(np.float32)
@@ -161,7 +159,8 @@ class Policy(nn.Module):
 
     def __init__(self, seen: Tensor) -> None:
         super().__init__()
-        self.mean, self.spread = seen.mean(0), seen.std(0) + 0.02
+        for name, numbers in (("mean", seen.mean(0)), ("spread", seen.std(0) + 0.02)):
+            self.register_buffer(name, numbers)
         layers: list[nn.Module] = []
         for width in (seen.shape[1], HIDDEN):
             layers += [nn.Linear(width, HIDDEN), nn.ReLU(), nn.Dropout(DROPOUT)]

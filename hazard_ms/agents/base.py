@@ -21,7 +21,9 @@ import numpy as np
 from hazard_ms.agents.thinking import Thought
 from hazard_ms.registry import AGENTS, load, load_plugin
 from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.skills.actions import skill
 from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import EXPLORE, Action, Decision
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.parameters import parameters
@@ -56,6 +58,13 @@ class Agent(abc.ABC):
     @abc.abstractmethod
     def act(self, decision: Decision) -> Action:
         """The next action; called again when that has ended."""
+
+    def skill(self, stage: Stage, action: Action) -> Skill:
+        """What does `action`, frame by frame: the benchmark's skill, unless an agent moves the robot by itself.
+
+        Decisions of those that do cannot be submitted to a leaderboard, which plays them with the benchmark's.
+        """
+        return skill(stage, action)
 
 
 class PrivilegedAgent(Agent):

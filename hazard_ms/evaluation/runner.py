@@ -68,6 +68,7 @@ class Runner:
                 self.agent.attach(self.env)
             self.agent.reset(self.env.brief())
         self.env.watch, self.env.until_frame = self._frame, until_frame
+        self.env.skill = self.agent.skill
         for watcher in self.watchers:
             watcher.begin(self.env, decision)
         try:

@@ -31,9 +31,10 @@ class SkillEnv:
     Wrappers of the environment, such as ManiSkill's RecordEpisode, see every frame. Without any, frames are quicker:
     they leave out the observation.
 
-    `watch` is called after every frame with the low-level action, for films and recorders. At `until_frame` an action
-    is broken off, and `step` says that the episode is truncated: for pictures of a frame. Looks are entered into all
-    `maps`, of which the first is `seen`: privileged agents write into that one, so recorders may add their own.
+    `skill` makes the generator that does an action: the benchmark's, unless it is set. `watch` is called after every
+    frame with the low-level action, for films and recorders. At `until_frame` an action is broken off, and `step` says
+    that the episode is truncated: for pictures of a frame. Looks are entered into all `maps`, of which the first is
+    `seen`: privileged agents write into that one, so recorders may add their own.
     """
 
     def __init__(self, env: gym.Env, watch: Callable[[LowLevel], None] | None = None, perception: str = TRUTH) -> None:
@@ -58,7 +59,7 @@ class SkillEnv:
         self._bare = is_bare(env)
         self._limit = None if env.spec is None else env.spec.max_episode_steps
         self.base = base
-        self.watch = watch
+        self.watch, self.skill = watch, skill
         self._perception = perception_of(perception)
         self.until_frame: int | None = None
         self.colours = True  # whether decisions have pictures with colours: other looks take a third of the time
@@ -143,7 +144,7 @@ class SkillEnv:
         if not isinstance(action, Action):
             raise ValueError(f"an action must be an Action(verb, target), got {action!r}")
         check(action, self.stage, self.verbs)
-        self._reward, doing = 0.0, skill(self.stage, action)
+        self._reward, doing = 0.0, self.skill(self.stage, action)
         result = self.run(doing)
         if action.verb == PICK_UP and action.target is not None:
             index = self._labeller.index(action.target)

@@ -19,6 +19,7 @@ from hazard_ms.evaluation.result import Link
 from hazard_ms.evaluation.runner import FRAME_REACHED, Runner, environment
 from hazard_ms.evaluation.watchers import Progress, Watcher
 from hazard_ms.skills.brief import Brief, random_seed
+from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import DROP, EXPLORE, STOP, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 
@@ -55,6 +56,18 @@ class Idle(Looker):
         if self._every is None or self._made % self._every:
             return Action(DROP)
         return Action(STOP if self._made >= 180 else EXPLORE)
+
+
+class Turns(Looker):
+    """Moves by itself when it looks around: it turns for seven frames and is done."""
+
+    def skill(self, stage: Stage, action: Action) -> Skill:
+        return self.turning(stage) if action.verb == EXPLORE else super().skill(stage, action)
+
+    def turning(self, stage: Stage) -> Skill:
+        for _ in range(7):
+            yield stage.act(turn=0.02)
+        return Result(True, frames=7)
 
 
 class Talks(Looker):
@@ -125,6 +138,15 @@ def test_an_episode_in_which_no_time_passes_ends(env: SkillEnv, every: int | Non
         assert all(d.frames == 0 for d in played.decisions)
     else:
         assert (played.ended, len(played.decisions)) == ("stopped", 180)
+
+
+def test_an_agent_may_move_by_itself(env: SkillEnv) -> None:
+    """And the next agent in the same environment is played by the benchmark's skills."""
+    witness = Witness()
+    played = Runner(env, Turns(), [witness]).run(SEED)
+    assert [(d.verb, d.ok, d.frames) for d in played.decisions[:2]] == [(EXPLORE, True, 7)] * 2
+    assert sum(kind == "frame" for kind, _ in witness.told) == env.frame == 14
+    assert Runner(env, Looker()).run(SEED).decisions[0].frames > 40
 
 
 def test_an_agent_cannot_end_the_process(env: SkillEnv) -> None:

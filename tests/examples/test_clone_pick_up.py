@@ -37,16 +37,17 @@ def arena() -> Iterator[Arena]:
 def demonstrated(example: Any, arena: Arena) -> tuple[np.ndarray, list[LowLevel]]:
     """Labels, [T, 10], of a pick-up of the bowl, and all actions that were sent."""
     arena.restart(*BY_THE_BOWL)
-    frames: list[Any] = []
+    frames: list[list[Any]] = [[], []]
     sent: list[LowLevel] = []
     step = arena.step
     arena.step = lambda action: (sent.append(action), step(action))  # type: ignore[method-assign,assign]
     try:
         index = arena.index("bowl")
-        assert arena.run(example.disturbed(arena.stage, index, np.random.default_rng(1), frames)).ok
+        doing = example.pick_up(arena.stage, index)
+        assert arena.run(example.disturbed(arena.stage, index, np.random.default_rng(1), frames, doing)).ok
     finally:
         del arena.step
-    return np.array([label for _, label in frames]), sent
+    return np.array([label for _, label in frames[0]]), sent
 
 
 def test_whoever_does_what_the_labels_say_picks_the_thing_up(

@@ -30,7 +30,10 @@ pytestmark = [
     pytest.mark.skipif(not PYTHON, reason="LeRobot is not there: HAZARD_MS_LEROBOT=1 ./run test --long"),
 ]
 ROOT = Path(__file__).parents[2]
-SMALL = ("dim_model=64", "n_heads=2", "dim_feedforward=128", "chunk_size=8", "n_action_steps=8")
+SMALL = {  # so that a few steps take seconds
+    "act": ("dim_model=64", "n_heads=2", "dim_feedforward=128", "chunk_size=8", "n_action_steps=8"),
+    "diffusion": ("down_dims=[32,64]", "horizon=8", "n_action_steps=4", "num_train_timesteps=10"),
+}
 PLACE = ("--env.discover_packages_path=hazard_ms.lerobot", "--env.type=hazard", "--env.task=HazardFire-v1")
 
 
@@ -75,16 +78,17 @@ def evaluated(home: Path, name: str, *words: str) -> dict[str, Any]:
     return found
 
 
-def test_a_policy_is_trained_on_our_data_and_evaluated_in_our_environment(home: Path) -> None:
+@pytest.mark.parametrize("kind", SMALL)
+def test_a_policy_is_trained_on_our_data_and_evaluated_in_our_environment(home: Path, kind: str) -> None:
     words = ("--dataset.repo_id=hazard/backpack", f"--dataset.root={home / 'set'}", "--dataset.video_backend=pyav")
-    words += ("--policy.type=act", "--policy.device=cpu", "--policy.push_to_hub=false", "--wandb.enable=false")
-    words += (*(f"--policy.{each}" for each in SMALL), "--policy.pretrained_backbone_weights=null")
+    words += (f"--policy.type={kind}", "--policy.device=cpu", "--policy.push_to_hub=false", "--wandb.enable=false")
+    words += (*(f"--policy.{each}" for each in SMALL[kind]), "--policy.pretrained_backbone_weights=null")
     words += ("--batch_size=2", "--steps=2", "--num_workers=0", "--log_freq=1", "--eval_freq=0")
-    assert "End of training" in run("lerobot-train", home, *words, "--output_dir=trained")
-    policy = home / "trained" / "checkpoints" / "last" / "pretrained_model"
-    found = evaluated(home, "scored", f"--policy.path={policy}", "--env.episode_length=5")
+    assert "End of training" in run("lerobot-train", home, *words, f"--output_dir=trained-{kind}")
+    policy = home / f"trained-{kind}" / "checkpoints" / "last" / "pretrained_model"
+    found = evaluated(home, f"scored-{kind}", f"--policy.path={policy}", "--env.episode_length=5")
     assert found["overall"]["n_episodes"] == 2 and found["overall"]["pc_success"] == 0.0  # in five frames, by two steps
-    assert len(list((home / "scored" / "videos").rglob("*.mp4"))) == 2
+    assert len(list((home / f"scored-{kind}" / "videos").rglob("*.mp4"))) == 2
 
 
 def test_demonstrations_that_are_played_again_succeed_as_they_did(home: Path) -> None:

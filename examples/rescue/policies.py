@@ -1,0 +1,194 @@
+"""A whole rescue without a planned motion: three small networks walk, reach and stow, and an agent decides what for.
+
+    python examples/rescue/learn.py demonstrate demos.npz --tasks HazardFire-v1 HazardFlood-v1
+    python examples/rescue/learn.py train demos.npz --out learned/rescue
+    hazard-ms evaluate -e HazardFire-v1 --split test \\
+        --agents greedy examples/rescue/policies.py:Policies:weights=learned/rescue
+
+Skills plan: a walk searches the map for a path, a reach solves the arm's kinematics and looks for a way past furniture.
+Here `greedy`, or any other agent, still decides what to fetch, but a network plays each of its actions: it reads
+numbers and says, thirty times a second, how base, arm and hand move. Only `explore`, a turn once around, is as it was.
+
+Reaches and stows are those of clone_pick_up.py; a walk reads the map around the robot as pictures that turn with it.
+They are for Fetch, for tasks whose safe place is its bag, and for things that are told as they are (no detector).
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from safetensors.torch import load_file
+from torch import Tensor, nn
+
+from hazard_ms import Action, Agent
+from hazard_ms.agents.base import agent
+from hazard_ms.skills import actions, failures
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.context import Skill, Stage
+from hazard_ms.skills.decision import DROP, PICK_UP, WALK_ONE_STEP, WALK_TO, Decision, Result
+from hazard_ms.skills.motor.motion import Watch, wrap
+from hazard_ms.skills.motor.walking import ARRIVED, WALK_FRAMES, known
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+import clone_pick_up as reaching  # noqa: E402
+
+VERBS = {WALK_TO: "walk", WALK_ONE_STEP: "walk", PICK_UP: "reach", DROP: "stow"}
+CELLS, SIZES = 32, (0.1, 0.3)  # of the pictures of the map: along a side; widths [m]
+FAR, HIGH = 5.0, 1.0  # [m] from where on distances, and heights, count alike
+LOOK, STOW_FRAMES = 30, 90  # frames of a walk from look to look; of a stow at most, which takes half of them
+FACING, REACH = 0.15, 1.2  # bearing [rad] and distance [m] from a thing at which a walk may end
+HIDDEN = 256
+ARM = ("reach", "stow")  # networks that move arm, hand and base, from 38 numbers
+
+_side = (np.arange(CELLS) - CELLS / 2 + 0.5)[::-1]
+AHEAD, LEFT = (part.copy() for part in np.meshgrid(_side, _side, indexing="ij"))  # of cells from the robot, in cells
+
+
+class Walk:
+    """A walk to a thing as the policy knows it, in the frame of the robot's base."""
+
+    def __init__(self, stage: Stage, index: int) -> None:
+        self.stage, self.index = stage, index
+        self.sent = np.zeros(2, np.float32)  # drive and turn of the last frame, as shares of full speed
+        self.before = stage.robot.base()
+
+    def way(self) -> tuple[float, float, float]:
+        """Distance to the thing [m], its bearing [rad], and what is left of the distance to where a walk ends [m]."""
+        x, y, heading = self.stage.robot.base()
+        thing = self.stage.seen.objects[self.index]
+        off = thing.position[:2] - (x, y)
+        far = float(np.hypot(*off))
+        edge = min(thing.radius, self.stage.labeller.half_width(self.index))
+        return far, wrap(math.atan2(off[1], off[0]) - heading), far - ARRIVED - edge
+
+    def numbers(self) -> np.ndarray:
+        """What it knows beside the map, [9]."""
+        far, bearing, left = self.way()
+        x, y, heading = self.stage.robot.base()
+        moved = math.hypot(x - self.before[0], y - self.before[1]), wrap(heading - self.before[2])
+        build, self.before = self.stage.robot.build, (x, y, heading)
+        speed = moved[0] / build.forward_step, moved[1] / build.turn_step
+        seen = (min(far, FAR), min(max(left, -1.0), 1.0), math.cos(bearing), math.sin(bearing), bearing)
+        return np.array([*seen, *speed, *self.sent], np.float32)
+
+    def maps(self) -> np.ndarray:
+        """Heights, and what was seen, around the robot in cells of SIZES, ahead upwards, uint8 [4, CELLS, CELLS]."""
+        seen, (x, y, heading) = self.stage.seen, self.stage.robot.base()
+        height, made = self.stage.obstacles(), []
+        c, s = math.cos(heading), math.sin(heading)
+        for size in SIZES:
+            at = np.stack([x + size * (c * AHEAD - s * LEFT), y + size * (s * AHEAD + c * LEFT)], -1)
+            cell = np.floor((at - seen.origin) / seen.cell).astype(int)[..., ::-1]
+            inside = ((cell >= 0) & (cell < height.shape)).all(-1)
+            row, column = np.where(inside[..., None], cell, 0).transpose(2, 0, 1)
+            made += [np.where(inside, np.clip(height[row, column] / HIGH, 0.0, 1.0), 0.0)]
+            made += [inside & seen.explored[row, column]]
+        return (255.0 * np.stack(made)).astype(np.uint8)
+
+
+class Walker(nn.Module):
+    """From maps, [N, 4, CELLS, CELLS], and numbers, [N, 9], to drive, turn, and whether the walk is over, [N, 3]."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        layers: list[nn.Module] = []
+        for planes, width in ((4, 24), (24, 48), (48, 48)):
+            layers += [nn.Conv2d(planes, width, 3, 2, 1), nn.ReLU()]
+        self.eye = nn.Sequential(*layers, nn.Flatten(), nn.Linear(48 * (CELLS // 8) ** 2, HIDDEN), nn.ReLU())
+        self.out = nn.Sequential(
+            *(nn.Linear(HIDDEN + 9, HIDDEN), nn.ReLU(), nn.Dropout(0.1), nn.Linear(HIDDEN, HIDDEN), nn.ReLU()),
+            nn.Linear(HIDDEN, 3),
+        )
+
+    def forward(self, maps: Tensor, numbers: Tensor) -> Tensor:
+        return self.out(torch.cat([self.eye(maps.float() / 255.0), numbers], 1))
+
+    @torch.no_grad()
+    def say(self, walk: Walk) -> np.ndarray:
+        """Drive and turn, from -1 to 1, and above 0 if the walk is over, [3]."""
+        return self(torch.from_numpy(walk.maps())[None], torch.from_numpy(walk.numbers())[None])[0].numpy()
+
+
+def walked(stage: Stage, index: int, walker: Walker) -> Skill:
+    """A walk to the thing `index` as the `walker` says."""
+    walk, watch, build = Walk(stage, index), Watch(), stage.robot.build
+    for frame in range(WALK_FRAMES):
+        if not known(stage, index):
+            return Result(False, failures.UNKNOWN, frame)
+        far, bearing, left = walk.way()
+        drive, turn, over = walker.say(walk)
+        if abs(bearing) < FACING and (left < 0.0 or (over > 0.0 and far < REACH)):
+            stage.look()
+            return Result(True, frames=frame)
+        walk.sent = np.clip([drive, turn], -1.0, 1.0).astype(np.float32)
+        x, y, _ = stage.robot.base()
+        if watch.stuck(x, y, float(walk.sent[0]) * build.forward_step):
+            stage.bump()
+        yield stage.act(float(walk.sent[0]) * build.forward_step, float(walk.sent[1]) * build.turn_step)
+        if frame % LOOK == LOOK - 1:
+            stage.look()
+    return Result(False, failures.MAX_FRAMES, WALK_FRAMES)
+
+
+def stowed(stage: Stage, policy: Any) -> Skill:
+    """What the hand holds is brought to the bag as the `policy` says, and let go of."""
+    held = stage.held
+    if held < 0:
+        return Result(False, failures.NOT_HOLDING)
+    now = reaching.PickUp(stage, held)
+    for frame in range(STOW_FRAMES):
+        if bool(stage.world.safe[0, held]):
+            return Result(True, frames=frame)
+        if stage.held != held:
+            return Result(False, failures.NOT_RESCUED, frame)
+        yield now.action(policy.output(now))
+    return Result(False, failures.NOT_RESCUED, STOW_FRAMES)
+
+
+class Deciding(Agent):
+    """Decides as another agent does."""
+
+    def __init__(self, decides: str = "greedy") -> None:
+        """Raises ValueError for an agent that sees what is hidden."""
+        self.inner = agent(decides)
+        if self.inner.privileged:
+            raise ValueError(f"decides must be an agent that sees what the robot sees, got {decides!r}")
+        self.colours = self.inner.colours
+
+    def reset(self, brief: Brief) -> None:
+        """Begin an episode."""
+        self.inner.reset(brief)
+
+    def act(self, decision: Decision) -> Action:
+        """What the other agent does."""
+        action, self.note = self.inner.act(decision), self.inner.note
+        return action
+
+
+class Policies(Deciding):
+    """Moves by the networks in the folder `weights`."""
+
+    def __init__(self, weights: str, decides: str = "greedy") -> None:
+        super().__init__(decides)
+        torch.set_num_threads(1)  # quicker for networks as small as these
+        self.models: dict[str, Any] = {"walk": Walker(), **{n: reaching.Policy(torch.zeros(2, 38)) for n in ARM}}
+        for name, model in self.models.items():
+            model.load_state_dict(load_file(Path(weights) / f"{name}.safetensors"))
+            model.eval()
+
+    def skill(self, stage: Stage, action: Action) -> Skill:
+        """The network that does `action`, or the benchmark's skill where none has learned it."""
+        verb = VERBS.get(action.verb)
+        if verb == "stow" and action.target is None:
+            return stowed(stage, self.models["stow"])
+        if verb not in ("walk", "reach") or action.target not in stage.labeller.names:
+            return actions.skill(stage, action)
+        index = stage.labeller.index(action.target)
+        if verb == "walk":
+            return walked(stage, index, self.models["walk"])
+        return reaching.played(self.models["reach"].output)(stage, index)

@@ -1,0 +1,160 @@
+"""The example of a rescue by policies: what they read, what they learn from, and that they play."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action
+from hazard_ms.skills.motor.grasping import pick_up
+from tests.worlds.arena import Arena
+from tests.worlds.registering import loaded
+from tests.worlds.skill_room import BOXES
+
+FOLDER = Path(__file__).parents[2] / "examples" / "rescue"
+BY_THE_BOWL = (0.8, -0.5, -np.pi / 2)  # x, y [m] and heading [rad]
+
+
+@pytest.fixture(scope="module")
+def learn() -> Iterator[Any]:
+    with loaded(FOLDER / "learn.py") as module:
+        yield module
+    for name in ("policies", "clone_pick_up"):
+        del sys.modules[name]
+
+
+@pytest.fixture(scope="module")
+def arena() -> Iterator[Arena]:
+    made = Arena(BOXES)
+    yield made
+    made.close()
+
+
+class Straight:
+    """Turns to the thing and drives straight to it, as whoever sees no furniture may."""
+
+    def say(self, walk: Any) -> np.ndarray:
+        _, bearing, _ = walk.way()
+        return np.array([float(abs(bearing) < 0.3), bearing / 0.1, -1.0])
+
+
+def test_a_walk_reads_a_map_that_turns_with_the_robot(arena: Arena, learn: Any) -> None:
+    """The table stands 1.1 to 1.9 m ahead of the origin, 1.2 m wide: cells of 0.1 m, those ahead come first."""
+    for heading, side in ((0.0, "ahead"), (np.pi / 2, "right"), (-np.pi / 2, "left")):
+        arena.restart(0.0, 0.0, heading)
+        height, explored, coarse, _ = learn.Walk(arena.stage, arena.index("mug")).maps()
+        table = {"ahead": (slice(0, 4), slice(12, 20)), "left": (slice(12, 20), slice(0, 4))}
+        table["right"] = (slice(12, 20), slice(28, 32))
+        assert (height[table[side]] > 150).all(), side
+        assert all((height[part] == 0).all() for other, part in table.items() if other != side)
+        assert (explored == 255).all() and (height[14:18, 14:18] == 0).all()
+        assert {"ahead": coarse[10:12, 15:17], "left": coarse[15:17, 10:12], "right": coarse[15:17, 20:22]}[
+            side
+        ].min() > 150
+
+
+def test_its_numbers_say_where_the_thing_is_and_how_it_moves(arena: Arena, learn: Any) -> None:
+    arena.restart(0.8, -0.5, 0.0)
+    walk = learn.Walk(arena.stage, arena.index("bowl"))  # 0.7 m to the right
+    far, left, cos, sin, bearing, *moving = walk.numbers()
+    assert far == pytest.approx(0.7, abs=0.01) and bearing == pytest.approx(-np.pi / 2, abs=0.02)
+    assert (cos, sin) == pytest.approx((0.0, -1.0), abs=0.02) and 0.0 < left < 0.2 and moving == [0.0] * 4
+    mirrored = walk.numbers() * learn.MIRRORED.numpy()
+    assert mirrored[3:5].tolist() == (-walk.numbers()[3:5]).tolist() and mirrored[:3].tolist() == [far, left, cos]
+    for _ in range(10):
+        walk.sent = np.array([0.0, 1.0], np.float32)
+        arena.step(arena.stage.act(turn=arena.agent.build.turn_step))
+        numbers = walk.numbers()
+    assert numbers[5] == pytest.approx(0.0, abs=0.05) and 0.8 < numbers[6] < 1.1 and numbers[7:].tolist() == [0.0, 1.0]
+
+
+@pytest.mark.parametrize("name, ok", [("bowl", True), ("walled", False)])
+def test_a_walk_ends_where_it_should_or_after_its_frames(arena: Arena, learn: Any, name: str, ok: bool) -> None:
+    arena.restart(*(BY_THE_BOWL if ok else (1.0, 1.0, 0.0)))
+    walked = learn.Deciding.__subclasses__()[0].skill.__globals__["walked"]
+    result = arena.run(walked(arena.stage, arena.index(name), Straight()))
+    assert result.ok == ok and (ok or result.frames == 100)
+    assert not ok or learn.Walk(arena.stage, arena.index(name)).way()[2] < 0.0
+
+
+def noted(learn: Any, arena: Arena, action: Action, swerve: float) -> tuple[Any, list[np.ndarray], Any]:
+    """What a teacher notes, what was sent, and how it ended."""
+    teacher, sent, step = learn.Teacher(), list[np.ndarray](), arena.step
+    arena.step = lambda action: (sent.append(action.copy()), step(action))  # type: ignore[method-assign,assign]
+    before, learn.SWERVE = learn.SWERVE, swerve
+    try:
+        result = arena.run(teacher.skill(arena.stage, action))
+    finally:
+        learn.SWERVE = before
+        del arena.step
+    return teacher, sent, result
+
+
+@pytest.mark.parametrize("swerve", [0.0, 0.7])
+def test_labels_of_walks_are_what_the_skill_wants_not_the_noise(arena: Arena, learn: Any, swerve: float) -> None:
+    arena.restart(1.2, -2.6, 0.0)
+    thing = arena.stage.labeller.names[arena.index("bowl")]
+    teacher, sent, result = noted(learn, arena, Action(WALK_TO, thing), swerve)
+    labels = np.array([label for _, _, label in teacher.walks])
+    went = np.array(sent)[:: learn.EVERY, 11:13]
+    assert result.ok and labels[-learn.ENDS :].tolist() == [[0.0, 0.0, 1.0]] * learn.ENDS
+    wanted = labels[: -learn.ENDS, :2]
+    assert (labels[: -learn.ENDS, 2] == 0.0).all() and np.abs(wanted).max() <= 1.0
+    np.testing.assert_array_equal(wanted[:, 0], went[:, 0])
+    off = np.abs(wanted[:, 1] - went[:, 1]).mean()
+    assert off == 0.0 if swerve == 0.0 else off > 0.05
+
+
+def test_reaches_and_stows_are_told_apart_and_failures_are_left_out(arena: Arena, learn: Any) -> None:
+    arena.restart(*BY_THE_BOWL)
+    names = arena.stage.labeller.names
+    teacher, sent, result = noted(learn, arena, Action(PICK_UP, names[arena.index("bowl")]), 0.0)
+    reached, stowed = (len(teacher.frames[name]) for name in learn.ARM)
+    assert result.ok and reached > 20 and stowed > 5 and reached + stowed == len(sent)
+    assert not teacher.skill(arena.stage, Action(PICK_UP, names[arena.index("bowl")])).close()
+    held, sent, result = noted(learn, arena, Action(DROP), 0.0)
+    assert result.ok and len(held.frames["stow"]) == len(sent) and not held.frames["reach"]
+    teacher, sent, result = noted(learn, arena, Action(PICK_UP, names[arena.index("far")]), 0.0)
+    assert not result.ok and not any(teacher.frames.values())
+
+
+def test_who_does_what_the_labels_say_stows_the_thing(
+    arena: Arena, learn: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(learn.reaching, "NOISE", 0.0)
+    index = arena.index("bowl")
+    arena.restart(*BY_THE_BOWL)
+    assert arena.run(pick_up(arena.stage, index)).ok
+    teacher, _, _ = noted(learn, arena, Action(DROP), 0.0)
+    labels = iter([label for _, label in teacher.frames["stow"]])
+    arena.restart(*BY_THE_BOWL)
+    assert arena.run(pick_up(arena.stage, index)).ok
+    policy = type("Told", (), {"output": lambda self, now: next(labels)})()
+    stowed = sys.modules["policies"].stowed
+    assert arena.run(stowed(arena.stage, policy)).ok and bool(arena.world.safe[0, index])
+    assert not arena.run(stowed(arena.stage, policy)).ok  # nothing is held
+
+
+@pytest.mark.render
+@pytest.mark.long
+def test_networks_learn_from_an_episode_and_move_the_robot(learn: Any, tmp_path: Path, monkeypatch: Any) -> None:
+    monkeypatch.setattr(learn, "EPOCHS", 2)
+    monkeypatch.setattr(learn.reaching, "EPOCHS", 2)
+    learn.demonstrate(tmp_path / "demos.npz", ["HazardFire-v1"], [4, 5])
+    learn.train([tmp_path / "demos.npz"], tmp_path / "made")
+    assert {path.stem for path in (tmp_path / "made").iterdir()} == {"walk", "reach", "stow"}
+    name = f"{FOLDER / 'policies.py'}:Policies:weights={tmp_path / 'made'}"
+    played = learn.play(learn.EpisodeOptions("HazardFire-v1", seed=4, agent=name, effects="off"))
+    assert played.agent == name and played.frames > 300
+    walks = [one for one in played.decisions if one.verb == WALK_TO]
+    assert walks and all(one.frames <= 100 for one in walks)
+
+
+def test_it_refuses_agents_that_see_what_is_hidden(learn: Any) -> None:
+    with pytest.raises(ValueError, match="decides must be an agent that sees what the robot sees, got 'oracle'"):
+        learn.Deciding("oracle")

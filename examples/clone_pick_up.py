@@ -7,9 +7,8 @@ The skill `pick_up` plans: it solves the arm's kinematics, and looks for a route
 no plan. Thirty times a second it reads 38 numbers and says how to move the arm's joints and the base, and whether to
 shut the hand. What it does is nevertheless a skill like any other, a generator of actions that `SkillEnv.run` plays.
 
-A policy that only ever saw perfect demonstrations does not know what to do about its own small errors. So the skill is
-disturbed while it demonstrates, and the label of each frame is what it would have done undisturbed (DART: Laskey et
-al., CoRL 2017).
+So that it knows what to do about its own small errors, the skill is disturbed while it demonstrates; the label of each
+frame is what it would have done undisturbed (DART: Laskey et al., CoRL 2017).
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ FRAMES = 120  # after which a policy has failed; 99 % of demonstrations have the
 LOOKS, QUARTER = 4, math.tau / 4  # looks that show everything around, with a field of view of 120 degrees; [rad]
 HEIGHTS, FAR = (0.15, 0.4, 0.6, 0.8), 1.3  # [m] things this high count in the room ahead, which is measured this far
 NOISE, KEPT = 0.08, 0.75  # [rad] of the disturbance of each joint, and the share of it left after a frame [ours]
-HIDDEN, EPOCHS, BATCH, RATE, DROPOUT = 256, 20, 256, 2e-3, 0.1  # [ours]
+WAYS, HIDDEN, EPOCHS, BATCH, RATE, DROPOUT = 4, 256, 20, 256, 2e-3, 0.1  # [ours]
 
 Floats = NDArray[np.float32]
 Frame = tuple[Floats, Floats]  # what was seen, [38], and its label, [10]
@@ -62,8 +61,7 @@ class PickUp:
         """What the policy reads, [38]: the arm, the hand, the thing, the room ahead, how far the base has moved."""
         stage = self.stage
         x, y, heading = stage.robot.base()
-        to_base = turned(-heading)
-        arm = stage.robot.arm()
+        to_base, arm = turned(-heading), stage.robot.arm()
         at, rotation, _ = stage.robot.kinematics(arm)
         hand, thing = (to_base @ (point - (x, y, 0.0)) for point in (at, stage.position(self.index)))
         moved = turned(-self.start[2]) @ (x - self.start[0], y - self.start[1], 0.0)
@@ -138,8 +136,7 @@ def demonstrate(env: SkillEnv, count: int, chance: np.random.Generator) -> list[
         frames, made, tried = frames + new[0] * result.ok, made + result.ok, tried + 1
         if made >= count:
             break
-    minutes = (time.perf_counter() - began) / 60.0
-    print(f"\n{made} demonstrations from {tried} pick-ups in {TRAIN}: {minutes:.1f} min, {made / minutes:.0f} a minute")
+    print(f"\n{made} demonstrations from {tried} pick-ups in {TRAIN}: {(time.perf_counter() - began) / 60.0:.1f} min")
     return frames
 
 
@@ -155,30 +152,34 @@ def disturbed(stage: Stage, index: int, chance: np.random.Generator, frames: lis
 
 
 class Policy(nn.Module):
-    """Two hidden layers between what is seen, [N, 38], and the output, [N, 10]."""
+    """Two hidden layers between what is seen, [N, 38], and WAYS outputs, [N, WAYS, 10], of which one is chosen."""
 
     def __init__(self, seen: Tensor) -> None:
         super().__init__()
         for name, numbers in (("mean", seen.mean(0)), ("spread", seen.std(0) + 0.02)):
             self.register_buffer(name, numbers)
-        layers: list[nn.Module] = []
-        for width in (seen.shape[1], HIDDEN):
-            layers += [nn.Linear(width, HIDDEN), nn.ReLU(), nn.Dropout(DROPOUT)]
-        self.layers = nn.Sequential(*layers, nn.Linear(HIDDEN, 10))
+        then, last = (nn.ReLU(), nn.Dropout(DROPOUT)), nn.Linear(HIDDEN, 11 * WAYS)
+        self.layers = nn.Sequential(nn.Linear(38, HIDDEN), *then, nn.Linear(HIDDEN, HIDDEN), *then, last)
 
-    def forward(self, seen: Tensor) -> Tensor:
-        return self.layers(((seen - self.mean) / self.spread).clamp(-5.0, 5.0))
+    def forward(self, seen: Tensor) -> tuple[Tensor, Tensor]:
+        said = self.layers(((seen - self.mean) / self.spread).clamp(-5.0, 5.0)).unflatten(1, (WAYS, 11))
+        return said[..., :10], said[..., 10]
 
     @torch.no_grad()
     def output(self, now: PickUp) -> Floats:
-        return self(torch.from_numpy(now.seen())[None])[0].numpy()
+        ways, likely = self(torch.from_numpy(now.seen())[None])
+        return ways[0, int(likely.argmax())].numpy()
 
 
-def loss(output: Tensor, label: Tensor) -> Tensor:
-    """The error: of steps and drive without squares, so that of two ways one is learnt, and not their middle."""
-    off = (output - label).abs()
-    shut = nn.functional.binary_cross_entropy_with_logits(output[:, 9], (label[:, 9] > 0.0).float())
-    return off[:, :7].mean() + 0.5 * off[:, 7:9].mean() + shut
+def loss(said: tuple[Tensor, Tensor], label: Tensor) -> Tensor:
+    """The error of the nearest way: one turns the base, another reaches at once, and their middle does neither."""
+    ways, likely = said
+    label = label[:, None].expand_as(ways)
+    shut = nn.functional.binary_cross_entropy_with_logits(ways[..., 9], (label[..., 9] > 0.0).float(), reduction="none")
+    off = (ways - label).square()  # without squares, where an arm mostly rests, it would rest for ever
+    off = off[..., :7].mean(-1) + 0.5 * off[..., 7:9].mean(-1) + 0.3 * shut
+    near, which = off.min(1)
+    return near.mean() + 0.1 * off.mean() + 0.2 * nn.functional.cross_entropy(likely, which)
 
 
 def train(frames: Sequence[Frame], seed: int) -> Policy:

@@ -42,7 +42,7 @@ CELLS, SIZES = 32, (0.1, 0.3)  # of the pictures of the map: along a side; width
 FAR, HIGH = 5.0, 1.0  # [m] from where on distances, and heights, count alike
 LOOK, STOW_FRAMES = 30, 90  # frames of a walk from look to look; of a stow at most, which takes half of them
 FACING, REACH = 0.15, 1.2  # bearing [rad] and distance [m] from a thing at which a walk may end
-HIDDEN = 256
+HIDDEN, NUMBERS = 256, 5
 ARM = ("reach", "stow")  # networks that move arm, hand and base, from 38 numbers
 
 _side = (np.arange(CELLS) - CELLS / 2 + 0.5)[::-1]
@@ -50,12 +50,14 @@ AHEAD, LEFT = (part.copy() for part in np.meshgrid(_side, _side, indexing="ij"))
 
 
 class Walk:
-    """A walk to a thing as the policy knows it, in the frame of the robot's base."""
+    """A walk to a thing as the policy knows it, in the frame of the robot's base.
+
+    It is not told how fast it moves, or what it sent last: skills mostly go on as before, so a policy that is told
+    learns that and nothing else, and stands still for ever where it once does.
+    """
 
     def __init__(self, stage: Stage, index: int) -> None:
         self.stage, self.index = stage, index
-        self.sent = np.zeros(2, np.float32)  # drive and turn of the last frame, as shares of full speed
-        self.before = stage.robot.base()
 
     def way(self) -> tuple[float, float, float]:
         """Distance to the thing [m], its bearing [rad], and what is left of the distance to where a walk ends [m]."""
@@ -67,14 +69,10 @@ class Walk:
         return far, wrap(math.atan2(off[1], off[0]) - heading), far - ARRIVED - edge
 
     def numbers(self) -> np.ndarray:
-        """What it knows beside the map, [9]."""
+        """What it knows beside the map: where the thing is, [NUMBERS]."""
         far, bearing, left = self.way()
-        x, y, heading = self.stage.robot.base()
-        moved = math.hypot(x - self.before[0], y - self.before[1]), wrap(heading - self.before[2])
-        build, self.before = self.stage.robot.build, (x, y, heading)
-        speed = moved[0] / build.forward_step, moved[1] / build.turn_step
         seen = (min(far, FAR), min(max(left, -1.0), 1.0), math.cos(bearing), math.sin(bearing), bearing)
-        return np.array([*seen, *speed, *self.sent], np.float32)
+        return np.array(seen, np.float32)
 
     def maps(self) -> np.ndarray:
         """Heights, and what was seen, around the robot in cells of SIZES, ahead upwards, uint8 [4, CELLS, CELLS]."""
@@ -92,7 +90,10 @@ class Walk:
 
 
 class Walker(nn.Module):
-    """From maps, [N, 4, CELLS, CELLS], and numbers, [N, 9], to drive, turn, and whether the walk is over, [N, 3]."""
+    """From maps, [N, 4, CELLS, CELLS], and NUMBERS, [N, 5], to WAYS to go on, of which one is chosen.
+
+    They are drive and turn, [N, WAYS, 2], from -1 to 1; how likely each is, [N, WAYS]; above 0 if it has arrived, [N].
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -101,17 +102,21 @@ class Walker(nn.Module):
             layers += [nn.Conv2d(planes, width, 3, 2, 1), nn.ReLU()]
         self.eye = nn.Sequential(*layers, nn.Flatten(), nn.Linear(48 * (CELLS // 8) ** 2, HIDDEN), nn.ReLU())
         self.out = nn.Sequential(
-            *(nn.Linear(HIDDEN + 9, HIDDEN), nn.ReLU(), nn.Dropout(0.1), nn.Linear(HIDDEN, HIDDEN), nn.ReLU()),
-            nn.Linear(HIDDEN, 3),
+            *(nn.Linear(HIDDEN + NUMBERS, HIDDEN), nn.ReLU(), nn.Dropout(0.1), nn.Linear(HIDDEN, HIDDEN), nn.ReLU()),
+            nn.Linear(HIDDEN, 3 * reaching.WAYS + 1),
         )
 
-    def forward(self, maps: Tensor, numbers: Tensor) -> Tensor:
-        return self.out(torch.cat([self.eye(maps.float() / 255.0), numbers], 1))
+    def forward(self, maps: Tensor, numbers: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        said = self.out(torch.cat([self.eye(maps.float() / 255.0), numbers], 1))
+        ways = said[:, 1:].unflatten(1, (reaching.WAYS, 3))
+        return ways[..., :2], ways[..., 2], said[:, 0]
 
     @torch.no_grad()
-    def say(self, walk: Walk) -> np.ndarray:
-        """Drive and turn, from -1 to 1, and above 0 if the walk is over, [3]."""
-        return self(torch.from_numpy(walk.maps())[None], torch.from_numpy(walk.numbers())[None])[0].numpy()
+    def say(self, walk: Walk) -> tuple[float, float, float]:
+        """Drive and turn of the likeliest way, and above 0 if the walk is over."""
+        ways, likely, over = self(torch.from_numpy(walk.maps())[None], torch.from_numpy(walk.numbers())[None])
+        drive, turn = ways[0, int(likely.argmax())].clamp(-1.0, 1.0).tolist()
+        return drive, turn, float(over)
 
 
 def walked(stage: Stage, index: int, walker: Walker) -> Skill:
@@ -125,11 +130,10 @@ def walked(stage: Stage, index: int, walker: Walker) -> Skill:
         if abs(bearing) < FACING and (left < 0.0 or (over > 0.0 and far < REACH)):
             stage.look()
             return Result(True, frames=frame)
-        walk.sent = np.clip([drive, turn], -1.0, 1.0).astype(np.float32)
         x, y, _ = stage.robot.base()
-        if watch.stuck(x, y, float(walk.sent[0]) * build.forward_step):
+        if watch.stuck(x, y, drive * build.forward_step):
             stage.bump()
-        yield stage.act(float(walk.sent[0]) * build.forward_step, float(walk.sent[1]) * build.turn_step)
+        yield stage.act(drive * build.forward_step, turn * build.turn_step)
         if frame % LOOK == LOOK - 1:
             stage.look()
     return Result(False, failures.MAX_FRAMES, WALK_FRAMES)

@@ -32,14 +32,14 @@ from hazard_ms.skills.motor.walking import known, walk_to
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
 import clone_pick_up as reaching  # noqa: E402
-from policies import ARM, REACH, VERBS, Deciding, Policies, Walk, Walker  # noqa: E402
+from policies import ARM, LOOK, REACH, VERBS, Deciding, Policies, Walk, Walker  # noqa: E402
 
 SWERVE, KEPT = 0.7, 0.9  # noise in how fast it turns, as a share of full speed; the share of it left after a frame
 EPOCHS, BATCH, RATE = 12, 256, 1e-3
 ASIDE, AWAY = 1.2, 0.3  # a reach whose base turns [rad] or drives [m] farther is left out: it goes to another place
 CORRECTED = 4  # frames of a network of which one is labelled
 EVERY, ENDS = 2, 4  # frames of walks of which one is learned from: the next looks the same; times that an end counts
-MIRRORED = torch.tensor([1.0, 1.0, 1.0, -1.0, -1.0])  # a walk's numbers where left is right
+MIRRORED = torch.tensor([1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0])  # a walk's numbers where left is right
 
 
 class Notes:
@@ -80,6 +80,8 @@ class Teacher(Deciding):
         walk, noise, size, results = Walk(stage, index), 0.0, SWERVE * self.chance.random(), list[Result]()
         for used, action in enumerate(noting(doing, results)):
             wanted = action[reaching.BASE].copy()
+            if known(stage, index) and used % LOOK == 0:
+                walk.plan()
             if known(stage, index) and used % EVERY == 0:
                 self.notes.walks.append((walk.maps(), walk.numbers(), np.append(wanted, 0.0).astype(np.float32)))
             noise = KEPT * noise + math.sqrt(1.0 - KEPT**2) * size * self.chance.normal()
@@ -125,6 +127,8 @@ class Pupil(Policies):
         """What is `doing`, with some of its frames labelled."""
         walk, now, results = Walk(stage, index), reaching.PickUp(stage, index), list[Result]()
         for frame, action in enumerate(noting(doing, results)):
+            if verb == "walk" and frame % LOOK == 0:
+                walk.plan()
             if frame % CORRECTED == 0:
                 other = copy.copy(stage)  # whose arm may be moved in thought
                 label = first(walk_to(other, index)) if verb == "walk" else grasp(other, index, now.targets)

@@ -5,9 +5,10 @@
     hazard-ms evaluate -e HazardFire-v1 --split test \\
         --agents greedy examples/rescue/policies.py:Policies:weights=learned/rescue
 
-Skills plan: a walk searches the map for a path, a reach solves the arm's kinematics and looks for a way past furniture.
-Here `greedy`, or any other agent, still decides what to fetch, but a network plays each of its actions: it reads
-numbers and says, thirty times a second, how base, arm and hand move. Only `explore`, a turn once around, is as it was.
+Skills plan: a walk follows a path point by point, a reach solves the arm's kinematics and looks for a way past furniture.
+Here `greedy`, or any other agent, still decides what to fetch, but a network plays each of its actions: it reads numbers
+and says, thirty times a second, how base, arm and hand move. A search over the map tells walks where the way leads, once
+a second, as in a navigation stack. Only `explore`, a turn once around, is as it was.
 
 Reaches and stows are those of clone_pick_up.py; a walk reads the map around the robot as pictures that turn with it.
 They are for Fetch, for tasks whose safe place is its bag, and for things that are told as they are (no detector).
@@ -32,7 +33,7 @@ from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import DROP, PICK_UP, WALK_ONE_STEP, WALK_TO, Decision, Result
 from hazard_ms.skills.motor.motion import Watch, wrap
-from hazard_ms.skills.motor.walking import ARRIVED, WALK_FRAMES, known
+from hazard_ms.skills.motor.walking import ARRIVED, WALK_FRAMES, known, way_to
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import clone_pick_up as reaching  # noqa: E402
@@ -40,9 +41,10 @@ import clone_pick_up as reaching  # noqa: E402
 VERBS = {WALK_TO: "walk", WALK_ONE_STEP: "walk", PICK_UP: "reach", DROP: "stow"}
 CELLS, SIZES = 32, (0.1, 0.3)  # of the pictures of the map: along a side; widths [m]
 FAR, HIGH = 5.0, 1.0  # [m] from where on distances, and heights, count alike
-LOOK, STOW_FRAMES = 30, 90  # frames of a walk from look to look; of a stow at most, which takes half of them
+LOOK, PASSED = 30, 0.12  # frames of a walk from look to look; distance at which a point of its path is behind it [m]
+STOW_FRAMES = 90  # of a stow at most, which takes half of them
 FACING, REACH = 0.15, 1.2  # bearing [rad] and distance [m] from a thing at which a walk may end
-HIDDEN, NUMBERS = 256, 5
+HIDDEN, NUMBERS = 256, 9
 ARM = ("reach", "stow")  # networks that move arm, hand and base, from 38 numbers
 
 _side = (np.arange(CELLS) - CELLS / 2 + 0.5)[::-1]
@@ -58,6 +60,22 @@ class Walk:
 
     def __init__(self, stage: Stage, index: int) -> None:
         self.stage, self.index = stage, index
+        self.points: list[np.ndarray] = []  # of the path, which are still ahead [m]
+
+    def plan(self) -> None:
+        """Search the map for a path to the thing."""
+        place = self.stage.seen.objects[self.index].position
+        far, _, left = self.way()
+        path = way_to(self.stage, (float(place[0]), float(place[1])), far - left, REACH)
+        self.points = [] if path is None else list(path.points)
+
+    def ahead(self) -> tuple[float, float]:
+        """Distance [m] and bearing [rad] of the next point of the path; of the thing where none is left."""
+        x, y, heading = self.stage.robot.base()
+        while self.points and math.dist(self.points[0], (x, y)) < PASSED:
+            self.points.pop(0)
+        off = (self.points[0] if self.points else self.stage.seen.objects[self.index].position[:2]) - (x, y)
+        return float(np.hypot(*off)), wrap(math.atan2(off[1], off[0]) - heading)
 
     def way(self) -> tuple[float, float, float]:
         """Distance to the thing [m], its bearing [rad], and what is left of the distance to where a walk ends [m]."""
@@ -69,10 +87,11 @@ class Walk:
         return far, wrap(math.atan2(off[1], off[0]) - heading), far - ARRIVED - edge
 
     def numbers(self) -> np.ndarray:
-        """What it knows beside the map: where the thing is, [NUMBERS]."""
+        """What it knows beside the map: where the thing is, and the next point of the path, [NUMBERS]."""
         far, bearing, left = self.way()
+        point, aside = self.ahead()
         seen = (min(far, FAR), min(max(left, -1.0), 1.0), math.cos(bearing), math.sin(bearing), bearing)
-        return np.array(seen, np.float32)
+        return np.array([*seen, min(point, 1.0), math.cos(aside), math.sin(aside), aside], np.float32)
 
     def maps(self) -> np.ndarray:
         """Heights, and what was seen, around the robot in cells of SIZES, ahead upwards, uint8 [4, CELLS, CELLS]."""
@@ -90,7 +109,7 @@ class Walk:
 
 
 class Walker(nn.Module):
-    """From maps, [N, 4, CELLS, CELLS], and NUMBERS, [N, 5], to WAYS to go on, of which one is chosen.
+    """From maps, [N, 4, CELLS, CELLS], and NUMBERS, [N, 9], to WAYS to go on, of which one is chosen.
 
     They are drive and turn, [N, WAYS, 2], from -1 to 1; how likely each is, [N, WAYS]; above 0 if it has arrived, [N].
     """
@@ -125,6 +144,8 @@ def walked(stage: Stage, index: int, walker: Walker) -> Skill:
     for frame in range(WALK_FRAMES):
         if not known(stage, index):
             return Result(False, failures.UNKNOWN, frame)
+        if frame % LOOK == 0:
+            walk.plan()
         far, bearing, left = walk.way()
         drive, turn, over = walker.say(walk)
         if abs(bearing) < FACING and (left < 0.0 or (over > 0.0 and far < REACH)):

@@ -60,9 +60,9 @@ class Agent(abc.ABC):
         """The next action; called again when that has ended."""
 
     def skill(self, stage: Stage, action: Action) -> Skill:
-        """What does `action`, frame by frame: the benchmark's skill, unless an agent moves the robot by itself.
+        """Make the skill that does `action`: the benchmark's, unless an agent moves the robot by itself.
 
-        Decisions of those that do cannot be submitted to a leaderboard, which plays them with the benchmark's.
+        Decisions of an agent that does cannot be submitted to a leaderboard, which plays them with the benchmark's skills.
         """
         return skill(stage, action)
 

@@ -41,9 +41,9 @@ HEAD = """# Policies from pictures
 Made by `./run python results/imitation.py` from `imitation.csv`. Success in percent with 95 % intervals (Wilson 1927)
 in rooms of `test`, which no demonstration shows. The policies see pictures of head and wrist, and feel their joints;
 `{teacher}`, which demonstrated, is told where things are. Hazards have the preset `paper`. The policies of pick-ups
-learned from 396 demonstrations without and 440 with `--perturb control:2`: `pick_up-1` and `pick_up-2` for 18 minutes of
-one core with the seeds 1 and 2 (3,700 steps on an idle core, 2,886 on a shared one), `pick_up-0` for 16 with the seed 0,
-after 60 in which it was judged by absolute errors.
+learned from 396 demonstrations without and 440 with `--perturb control:2`: `pick_up-1` and `pick_up-2` for 18 minutes
+of one core with the seeds 1 and 2 (3,700 steps on an idle core, 2,886 on a shared one), `pick_up-0` for 16 with the
+seed 0, after 60 in which it was judged by absolute errors.
 Written at
 {machine}.
 

@@ -37,7 +37,7 @@ from policies import ARM, LOOK, REACH, VERBS, Deciding, Policies, Walk, Walker  
 SWERVE, KEPT = 0.7, 0.9  # noise in how fast it turns, as a share of full speed; the share of it left after a frame
 EPOCHS, BATCH, RATE = 12, 256, 1e-3
 ASIDE, AWAY = 1.2, 0.3  # a reach whose base turns [rad] or drives [m] farther is left out: it goes to another place
-CORRECTED = 4  # frames of a network of which one is labelled
+CORRECTED = 4  # frames of a network of which one is labelled, for all of them
 EVERY, ENDS = 2, 4  # frames of walks of which one is learned from: the next looks the same; times that an end counts
 MIRRORED = torch.tensor([1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0])  # a walk's numbers where left is right
 
@@ -133,10 +133,10 @@ class Pupil(Policies):
                 other = copy.copy(stage)  # whose arm may be moved in thought
                 label = first(walk_to(other, index)) if verb == "walk" else grasp(other, index, now.targets)
                 if verb == "reach" and label is not None:
-                    self.notes.frames["reach"].append((now.seen(), now.label(label)))
+                    self.notes.frames["reach"] += [(now.seen(), now.label(label))] * CORRECTED
                 elif verb == "walk" and (label is not None or walk.way()[0] < REACH):
                     said = (0.0, 0.0, 1.0) if label is None else (*label[reaching.BASE], 0.0)
-                    self.notes.walks.append((walk.maps(), walk.numbers(), np.array(said, np.float32)))
+                    self.notes.walks += [(walk.maps(), walk.numbers(), np.array(said, np.float32))] * CORRECTED
             yield action
             now.targets = np.array(action[reaching.ARM], np.float64)
         return results[0]

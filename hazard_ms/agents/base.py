@@ -62,7 +62,7 @@ class Agent(abc.ABC):
     def skill(self, stage: Stage, action: Action) -> Skill:
         """Make the skill that does `action`: the benchmark's, unless an agent moves the robot by itself.
 
-        Decisions of an agent that does cannot be submitted to a leaderboard, which plays them with the benchmark's skills.
+        Decisions of an agent that does cannot be submitted to a leaderboard, where the benchmark's skills play them.
         """
         return skill(stage, action)
 

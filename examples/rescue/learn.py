@@ -39,7 +39,7 @@ EPOCHS, BATCH, RATE = 12, 256, 1e-3
 ASIDE, AWAY = 1.2, 0.3  # a reach whose base turns [rad] or drives [m] farther is left out: it goes to another place
 CORRECTED = 4  # frames of a network of which one is labelled, for all of them
 EVERY, ENDS = 2, 4  # frames of walks of which one is learned from: the next looks the same; times that an end counts
-MIRRORED = torch.tensor([1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0])  # a walk's numbers where left is right
+MIRRORED = torch.tensor([1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0])  # a walk's numbers where left is right
 
 
 class Notes:

@@ -41,10 +41,10 @@ import clone_pick_up as reaching  # noqa: E402
 VERBS = {WALK_TO: "walk", WALK_ONE_STEP: "walk", PICK_UP: "reach", DROP: "stow"}
 CELLS, SIZES = 32, (0.1, 0.3)  # of the pictures of the map: along a side; widths [m]
 FAR, HIGH = 5.0, 1.0  # [m] from where on distances, and heights, count alike
-LOOK, PASSED = 30, 0.12  # frames of a walk from look to look; distance at which a point of its path is behind it [m]
+LOOK, PASSED = 60, 0.12  # frames of a walk from look to look; distance at which a point of its path is behind it [m]
 STOW_FRAMES = 90  # of a stow at most, which takes half of them
 FACING, REACH = 0.15, 1.2  # bearing [rad] and distance [m] from a thing at which a walk may end
-HIDDEN, NUMBERS = 256, 9
+HIDDEN, NUMBERS = 256, 10
 ARM = ("reach", "stow")  # networks that move arm, hand and base, from 38 numbers
 
 _side = (np.arange(CELLS) - CELLS / 2 + 0.5)[::-1]
@@ -91,7 +91,8 @@ class Walk:
         far, bearing, left = self.way()
         point, aside = self.ahead()
         seen = (min(far, FAR), min(max(left, -1.0), 1.0), math.cos(bearing), math.sin(bearing), bearing)
-        return np.array([*seen, min(point, 1.0), math.cos(aside), math.sin(aside), aside], np.float32)
+        ends = float(not self.points)  # where the path ends it turns to the thing
+        return np.array([*seen, min(point, 1.0), math.cos(aside), math.sin(aside), aside, ends], np.float32)
 
     def maps(self) -> np.ndarray:
         """Heights, and what was seen, around the robot in cells of SIZES, ahead upwards, uint8 [4, CELLS, CELLS]."""
@@ -109,7 +110,7 @@ class Walk:
 
 
 class Walker(nn.Module):
-    """From maps, [N, 4, CELLS, CELLS], and NUMBERS, [N, 9], to WAYS to go on, of which one is chosen.
+    """From maps, [N, 4, CELLS, CELLS], and NUMBERS, [N, 10], to WAYS to go on, of which one is chosen.
 
     They are drive and turn, [N, WAYS, 2], from -1 to 1; how likely each is, [N, WAYS]; above 0 if it has arrived, [N].
     """

@@ -65,10 +65,10 @@ def test_its_numbers_say_where_the_thing_is(arena: Arena, learn: Any) -> None:
     far, left, cos, sin, bearing, *way = walk.numbers()
     assert far == pytest.approx(0.7, abs=0.01) and bearing == pytest.approx(-np.pi / 2, abs=0.02)
     assert (cos, sin) == pytest.approx((0.0, -1.0), abs=0.02) and 0.0 < left < 0.2
-    assert way == pytest.approx([0.7, 0.0, -1.0, -np.pi / 2], abs=0.03)  # no path yet: straight to the thing
+    assert way == pytest.approx([0.7, 0.0, -1.0, -np.pi / 2, 1.0], abs=0.03)  # no path yet: straight to the thing
     mirrored = walk.numbers() * learn.MIRRORED.numpy()
     assert mirrored[[3, 4, 7, 8]].tolist() == (-walk.numbers()[[3, 4, 7, 8]]).tolist()
-    assert mirrored[[0, 1, 2, 5, 6]].tolist() == walk.numbers()[[0, 1, 2, 5, 6]].tolist()
+    assert mirrored[[0, 1, 2, 5, 6, 9]].tolist() == walk.numbers()[[0, 1, 2, 5, 6, 9]].tolist()
 
 
 def test_a_path_leads_round_the_table_and_its_points_are_left_behind(arena: Arena, learn: Any) -> None:
@@ -77,7 +77,11 @@ def test_a_path_leads_round_the_table_and_its_points_are_left_behind(arena: Aren
     walk.plan()
     first = walk.points[0]
     before = len(walk.points)
-    assert before > 1 and walk.ahead()[0] == pytest.approx(float(np.hypot(*(first - (1.5, -1.2)))), abs=0.02)
+    assert (
+        before > 1
+        and walk.numbers()[9] == 0.0
+        and walk.ahead()[0] == pytest.approx(float(np.hypot(*(first - (1.5, -1.2)))), abs=0.02)
+    )
     arena.restart(float(first[0]), float(first[1]), 0.0)
     walk.stage = arena.stage
     walk.ahead()

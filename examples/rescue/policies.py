@@ -8,7 +8,7 @@
 Skills plan: walks follow a path point by point, a reach solves the arm's kinematics and looks for a way past furniture.
 Here `greedy`, or any other agent, still decides what to fetch, but a network plays each of its actions: it reads
 numbers and says, thirty times a second, how base, arm and hand move. A search over the map tells walks where the way
-leads, once a second, as in a navigation stack. Only `explore`, a turn once around, is as it was.
+leads, once in two seconds, as in a navigation stack. Only `explore`, a turn once around, is as it was.
 
 Reaches and stows are those of clone_pick_up.py; a walk reads the map around the robot as pictures that turn with it.
 They are for Fetch, for tasks whose safe place is its bag, and for things that are told as they are (no detector).

@@ -88,7 +88,7 @@ def test_who_walks_also_sees_what_is_far_and_feels_how_fast_it_turns(example: An
     np.testing.assert_array_equal(rows.pictures[2][0].numpy(), whole[96:160].transpose(2, 0, 1))  # pixel by pixel
 
 
-@pytest.mark.parametrize("walks", [False, True])
+@pytest.mark.parametrize("walks", [pytest.param(False, marks=pytest.mark.long), True])
 def test_it_learns_goes_on_and_plays(
     example: Any,
     dataset: Path,
@@ -99,7 +99,7 @@ def test_it_learns_goes_on_and_plays(
 ) -> None:
     monkeypatch.setattr(example, "BATCH", 8)
     losses = []
-    for minutes in (0.02, 0.2):
+    for minutes in (0.02, 0.1):
         example.train([dataset], minutes, tmp_path / "made", walks)
         losses.append(float(capsys.readouterr().out.split()[-1]))
     assert losses[1] < 0.8 * losses[0]

@@ -41,7 +41,7 @@ FRAMES = 120  # after which a policy has failed; 99 % of demonstrations have the
 LOOKS, QUARTER = 4, math.tau / 4  # looks that show everything around, with a field of view of 120 degrees; [rad]
 HEIGHTS, FAR = (0.15, 0.4, 0.6, 0.8), 1.3  # [m] things this high count in the room ahead, which is measured this far
 NOISE, KEPT = 0.08, 0.75  # [rad] of the disturbance of each joint, and the share of it left after a frame [ours]
-WAYS, HIDDEN, EPOCHS, BATCH, RATE, DROPOUT = 4, 256, 20, 256, 2e-3, 0.1  # [ours]
+HIDDEN, EPOCHS, BATCH, RATE, DROPOUT = 256, 20, 256, 2e-3, 0.1  # [ours]
 
 Floats = NDArray[np.float32]
 Frame = tuple[Floats, Floats]  # what was seen, [38], and its label, [10]
@@ -152,47 +152,42 @@ def disturbed(stage: Stage, index: int, chance: np.random.Generator, frames: lis
 
 
 class Policy(nn.Module):
-    """Two hidden layers between what is seen, [N, 38], and WAYS outputs, [N, WAYS, 10], of which one is chosen."""
+    """Two hidden layers between what is seen, [N, 38], and the output, [N, 10]."""
 
     def __init__(self, seen: Tensor) -> None:
         super().__init__()
-        for name, numbers in (("mean", seen.mean(0)), ("spread", seen.std(0) + 0.02)):
-            self.register_buffer(name, numbers)
-        then, last = (nn.ReLU(), nn.Dropout(DROPOUT)), nn.Linear(HIDDEN, 11 * WAYS)
-        self.layers = nn.Sequential(nn.Linear(38, HIDDEN), *then, nn.Linear(HIDDEN, HIDDEN), *then, last)
+        self.mean, self.spread = seen.mean(0), seen.std(0) + 0.02
+        layers: list[nn.Module] = []
+        for width in (seen.shape[1], HIDDEN):
+            layers += [nn.Linear(width, HIDDEN), nn.ReLU(), nn.Dropout(DROPOUT)]
+        self.layers = nn.Sequential(*layers, nn.Linear(HIDDEN, 10))
 
-    def forward(self, seen: Tensor) -> tuple[Tensor, Tensor]:
-        said = self.layers(((seen - self.mean) / self.spread).clamp(-5.0, 5.0)).unflatten(1, (WAYS, 11))
-        return said[..., :10], said[..., 10]
+    def forward(self, seen: Tensor) -> Tensor:
+        return self.layers(((seen - self.mean) / self.spread).clamp(-5.0, 5.0))
 
     @torch.no_grad()
     def output(self, now: PickUp) -> Floats:
-        ways, likely = self(torch.from_numpy(now.seen())[None])
-        return ways[0, int(likely.argmax())].numpy()
+        return self(torch.from_numpy(now.seen())[None])[0].numpy()
 
 
-def loss(said: tuple[Tensor, Tensor], label: Tensor) -> Tensor:
-    """The error of the nearest way: one turns the base, another reaches at once, and their middle does neither."""
-    ways, likely = said
-    label = label[:, None].expand_as(ways)
-    shut = nn.functional.binary_cross_entropy_with_logits(ways[..., 9], (label[..., 9] > 0.0).float(), reduction="none")
-    off = (ways - label).square()  # without squares, where an arm mostly rests, it would rest for ever
-    off = off[..., :7].mean(-1) + 0.5 * off[..., 7:9].mean(-1) + 0.3 * shut
-    near, which = off.min(1)
-    return near.mean() + 0.1 * off.mean() + 0.2 * nn.functional.cross_entropy(likely, which)
+def loss(output: Tensor, label: Tensor) -> Tensor:
+    """The error: of steps and drive without squares, so that of two ways one is learnt, and not their middle."""
+    off = (output - label).abs()
+    shut = nn.functional.binary_cross_entropy_with_logits(output[:, 9], (label[:, 9] > 0.0).float())
+    return off[:, :7].mean() + 0.5 * off[:, 7:9].mean() + shut
 
 
-def train(frames: Sequence[Frame], seed: int) -> Policy:
-    """A policy that has learnt from all `frames`."""
+def train(frames: Sequence[Frame], seed: int, made: Any = Policy, off: Any = loss) -> Any:
+    """A policy of the class `made` that has learnt from all `frames`; `off`: the error of what it says."""
     torch.manual_seed(seed)
     seen, labels = (torch.from_numpy(np.stack(part)) for part in zip(*frames, strict=True))
-    policy = Policy(seen)
+    policy = made(seen)
     optimiser = torch.optim.AdamW(policy.parameters(), RATE)
     rates = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=EPOCHS * -(-len(seen) // BATCH))
     for _ in range(EPOCHS):
         for some in torch.randperm(len(seen)).split(BATCH):
             optimiser.zero_grad()
-            loss(policy(seen[some]), labels[some]).backward()
+            off(policy(seen[some]), labels[some]).backward()
             optimiser.step()
             rates.step()
     return policy.eval()

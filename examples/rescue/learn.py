@@ -32,7 +32,7 @@ from hazard_ms.skills.motor.walking import known, walk_to
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
 import clone_pick_up as reaching  # noqa: E402
-from policies import ARM, LOOK, REACH, VERBS, Deciding, Policies, Walk, Walker  # noqa: E402
+from policies import ARM, LOOK, REACH, VERBS, Deciding, Hand, Policies, Walk, Walker, error  # noqa: E402
 
 SWERVE, KEPT = 0.7, 0.9  # noise in how fast it turns, as a share of full speed; the share of it left after a frame
 EPOCHS, BATCH, RATE = 12, 256, 1e-3
@@ -189,7 +189,7 @@ def train(demos: list[Path], out: Path, seed: int = 0) -> None:
     data = {name: np.concatenate([file[name] for file in files if name in file]) for name in files[0].files}
     out.mkdir(parents=True, exist_ok=True)
     for name in ARM:
-        policy = reaching.train(list(zip(data[f"{name}_0"], data[f"{name}_1"], strict=True)), seed)
+        policy = reaching.train(list(zip(data[f"{name}_0"], data[f"{name}_1"], strict=True)), seed, Hand, error)
         save_file(policy.state_dict(), out / f"{name}.safetensors")
         print(f"{name}: {len(data[f'{name}_0'])} frames", flush=True)
     torch.manual_seed(seed)

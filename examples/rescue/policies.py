@@ -44,7 +44,7 @@ FAR, HIGH = 5.0, 1.0  # [m] from where on distances, and heights, count alike
 LOOK, PASSED = 60, 0.12  # frames of a walk from look to look; distance at which a point of its path is behind it [m]
 STOW_FRAMES = 90  # of a stow at most, which takes half of them
 FACING, REACH = 0.15, 1.2  # bearing [rad] and distance [m] from a thing at which a walk may end
-HIDDEN, NUMBERS = 256, 10
+HIDDEN, NUMBERS, WAYS = 256, 10, 4
 ARM = ("reach", "stow")  # networks that move arm, hand and base, from 38 numbers
 
 _side = (np.arange(CELLS) - CELLS / 2 + 0.5)[::-1]
@@ -91,8 +91,7 @@ class Walk:
         far, bearing, left = self.way()
         point, aside = self.ahead()
         seen = (min(far, FAR), min(max(left, -1.0), 1.0), math.cos(bearing), math.sin(bearing), bearing)
-        ends = float(not self.points)  # where the path ends it turns to the thing
-        return np.array([*seen, min(point, 1.0), math.cos(aside), math.sin(aside), aside, ends], np.float32)
+        return np.array([*seen, min(point, 1.0), math.cos(aside), math.sin(aside), aside, not self.points], np.float32)
 
     def maps(self) -> np.ndarray:
         """Heights, and what was seen, around the robot in cells of SIZES, ahead upwards, uint8 [4, CELLS, CELLS]."""
@@ -123,12 +122,12 @@ class Walker(nn.Module):
         self.eye = nn.Sequential(*layers, nn.Flatten(), nn.Linear(48 * (CELLS // 8) ** 2, HIDDEN), nn.ReLU())
         self.out = nn.Sequential(
             *(nn.Linear(HIDDEN + NUMBERS, HIDDEN), nn.ReLU(), nn.Dropout(0.1), nn.Linear(HIDDEN, HIDDEN), nn.ReLU()),
-            nn.Linear(HIDDEN, 3 * reaching.WAYS + 1),
+            nn.Linear(HIDDEN, 3 * WAYS + 1),
         )
 
     def forward(self, maps: Tensor, numbers: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         said = self.out(torch.cat([self.eye(maps.float() / 255.0), numbers], 1))
-        ways = said[:, 1:].unflatten(1, (reaching.WAYS, 3))
+        ways = said[:, 1:].unflatten(1, (WAYS, 3))
         return ways[..., :2], ways[..., 2], said[:, 0]
 
     @torch.no_grad()
@@ -137,6 +136,37 @@ class Walker(nn.Module):
         ways, likely, over = self(torch.from_numpy(walk.maps())[None], torch.from_numpy(walk.numbers())[None])
         drive, turn = ways[0, int(likely.argmax())].clamp(-1.0, 1.0).tolist()
         return drive, turn, float(over)
+
+
+class Hand(nn.Module):
+    """Two hidden layers between what is seen, [N, 38], and WAYS outputs, [N, WAYS, 10], of which one is chosen."""
+
+    def __init__(self, seen: Tensor) -> None:
+        super().__init__()
+        for name, numbers in (("mean", seen.mean(0)), ("spread", seen.std(0) + 0.02)):
+            self.register_buffer(name, numbers)
+        then, last = (nn.ReLU(), nn.Dropout(reaching.DROPOUT)), nn.Linear(HIDDEN, 11 * WAYS)
+        self.layers = nn.Sequential(nn.Linear(38, HIDDEN), *then, nn.Linear(HIDDEN, HIDDEN), *then, last)
+
+    def forward(self, seen: Tensor) -> tuple[Tensor, Tensor]:
+        said = self.layers(((seen - self.mean) / self.spread).clamp(-5.0, 5.0)).unflatten(1, (WAYS, 11))
+        return said[..., :10], said[..., 10]
+
+    @torch.no_grad()
+    def output(self, now: reaching.PickUp) -> np.ndarray:
+        ways, likely = self(torch.from_numpy(now.seen())[None])
+        return ways[0, int(likely.argmax())].numpy()
+
+
+def error(said: tuple[Tensor, Tensor], label: Tensor) -> Tensor:
+    """The error of the nearest way: one turns the base, another reaches at once, and their middle does neither."""
+    ways, likely = said
+    label = label[:, None].expand_as(ways)
+    shut = nn.functional.binary_cross_entropy_with_logits(ways[..., 9], (label[..., 9] > 0.0).float(), reduction="none")
+    off = (ways - label).square()  # without squares, where an arm mostly rests, it would rest for ever
+    off = off[..., :7].mean(-1) + 0.5 * off[..., 7:9].mean(-1) + 0.3 * shut
+    near, which = off.min(1)
+    return near.mean() + 0.1 * off.mean() + 0.2 * nn.functional.cross_entropy(likely, which)
 
 
 def walked(stage: Stage, index: int, walker: Walker) -> Skill:
@@ -202,7 +232,7 @@ class Policies(Deciding):
     def __init__(self, weights: str, decides: str = "greedy") -> None:
         super().__init__(decides)
         torch.set_num_threads(1)  # quicker for networks as small as these
-        self.models: dict[str, Any] = {"walk": Walker(), **{n: reaching.Policy(torch.zeros(2, 38)) for n in ARM}}
+        self.models: dict[str, Any] = {"walk": Walker(), **{n: Hand(torch.zeros(2, 38)) for n in ARM}}
         for name, model in self.models.items():
             model.load_state_dict(load_file(Path(weights) / f"{name}.safetensors"))
             model.eval()

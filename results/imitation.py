@@ -42,8 +42,8 @@ Made by `./run python results/imitation.py` from `imitation.csv`. Success in per
 in rooms of `test`, which no demonstration shows. The policies see pictures of head and wrist, and feel their joints;
 `{teacher}`, which demonstrated, is told where things are. Hazards have the preset `paper`. The policies of pick-ups
 learned from 396 demonstrations without and 440 with `--perturb control:2`: `pick_up-1` and `pick_up-2` for 18 minutes
-of one core with the seeds 1 and 2 (3,700 steps on an idle core, 2,886 on a shared one), `pick_up-0` for 16 with the
-seed 0, after 60 in which it was judged by absolute errors.
+with the seeds 1 and 2 (about 3,700 and 2,886 steps, beside other work), `pick_up-0` for 16 with the seed 0, after 60 in
+which it was judged by absolute errors.
 Written at
 {machine}.
 
@@ -56,7 +56,8 @@ RESCUED = """
 {decides} decides in all rows; in the others each of its walks, reaches and stows is flown by a policy, that of
 `examples/rescue`. `value` is the benchmark's Value in percent with its 95 % interval, then as a share of {decides}'s in
 the same rooms of `test`. The policies learned from the same demonstrations, of {decides} in rooms of `train`, with the
-seed in their names.
+seed in their names. Traces of the first eight rooms were read while the method was made. Their frames were recorded at
+several commits of that example and put together by hand; its commands were not run from end to end.
 
 | | {tasks} |
 |---|---|---|

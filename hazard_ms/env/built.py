@@ -160,7 +160,7 @@ class BuiltEnv(BaseEnv):
     def _before_control_step(self) -> None:
         self.leaves.move()
         if self.perturbation.control:
-            lead_astray(self.agent, self.world.chance, self.perturbation.control)
+            lead_astray(self.agent, self.world.chance, self.perturbation.control, self.control_freq)
         if self.affects_agent:
             down = self.episode.lying()
             if down is not None and not none_set(down):

@@ -1,5 +1,6 @@
-"""Noise in the control of arms, for evaluations and demonstrations in which joints do not go quite where they are sent.
+"""Noise in control, for evaluations and demonstrations in which arm and base do not go quite where they are sent.
 
+Arms go beside where they are sent, smoothly. A base that drives slips now and then: it turns to a side for a moment.
 What is recorded as the action is what was sent. So demonstrations under such noise show how a teacher comes back from
 where noise has led it, with labels that are free of noise (DART: Laskey et al., CoRL 2017, arXiv 1703.09327).
 """
@@ -18,6 +19,9 @@ from hazard_ms.spec.perturbation import LEAST_SHARE
 MOST = (0.0, 0.03, 0.06, 0.12)  # greatest standard deviation of each joint by level, 0 to 3 [rad] [ours]
 SPEEDS = "pd_joint_vel"  # ManiSkill's control mode that sends joints nowhere
 KNOT = 5  # frames from one independent draw to the next, between which noise is led smoothly [ours]
+TURNED = (0.0, 0.26, 0.52, 1.05)  # most that a base turns in one slip by level: 15, 30, 60 degrees [rad] [ours]
+SLIP, APART, SHARE = 8, 30, 0.5  # frames of a slip; of a stretch in which one may be, and how many have one [ours]
+BASE = 3  # joints that move the base of a robot: x, y, turn
 
 
 def check_mode(level: int, control_mode: str | None) -> None:
@@ -26,11 +30,13 @@ def check_mode(level: int, control_mode: str | None) -> None:
         raise ValueError(f"control in perturb must be 0 in the control mode {SPEEDS}, got {level}")
 
 
-def lead_astray(agent: Any, chance: Chance, level: int) -> None:
+def lead_astray(agent: Any, chance: Chance, level: int, fps: int) -> None:
     """Let the drives of all arms of `agent`, a robot, aim beside where this frame's action sends them, by `arm_noise`.
 
-    Call it after the action is set and before physics steps.
+    A base that is sent to move turns by `slip` instead of as it is sent, where it slips. `fps`: frames a second. Call
+    it after the action is set and before physics steps.
     """
+    _turn(agent, *slip(chance, level), fps)
     numbers = agent.arm_joints
     joints = [agent.robot.active_joints[number] for number in numbers]
     targets = torch.stack([joint.drive_target.reshape(-1) for joint in joints], dim=-1)
@@ -50,6 +56,33 @@ def arm_noise(chance: Chance, joints: int, level: int) -> Tensor:
     noise = ((1.0 - share) * one + share * two) / rounding.sqrt((1.0 - share) ** 2 + share**2)
     drawn = _at(chance, torch.zeros_like(knot)).uniform("perturbed control amount", 1)
     return MOST[level] * (LEAST_SHARE + (1.0 - LEAST_SHARE) * drawn) * noise
+
+
+def slip(chance: Chance, level: int) -> tuple[Tensor, Tensor]:
+    """Whether the base slips in this frame if it drives, [E], bool, and by how much it then turns in it [rad], [E].
+
+    A function of the seed and of the frame alone: half of all stretches of APART frames have a slip of SLIP frames, to
+    either side, under a perturbation of `level`.
+    """
+    drawn = _at(chance, chance.frame // APART).uniform("perturbed drive", 4)
+    begin = (drawn[:, 1] * (APART - SLIP + 1)).floor()
+    since = chance.frame % APART - begin
+    slips = (drawn[:, 0] < SHARE) & (since >= 0) & (since < SLIP)
+    amount = TURNED[level] * (LEAST_SHARE + (1.0 - LEAST_SHARE) * drawn[:, 2])
+    return slips, torch.where(drawn[:, 3] < 0.5, -amount, amount) / SLIP
+
+
+def _turn(agent: Any, slips: Tensor, angle: Tensor, fps: int) -> None:
+    """Turn the bases that slip and are sent to move by `angle` [rad] in this frame, [E], whatever they are sent."""
+    joints = agent.robot.active_joints[:BASE]
+    speeds = torch.stack([joint.drive_velocity_target.reshape(-1) for joint in joints], dim=-1)
+    slips = slips & (speeds != 0.0).any(dim=-1)
+    speeds[:, -1] = torch.where(slips, angle * fps, speeds[:, -1])
+    agent.robot.set_joint_drive_velocity_targets(
+        speeds, joints, torch.arange(BASE, dtype=torch.int32, device=agent.device)
+    )
+    if agent.scene.gpu_sim_enabled:
+        agent.scene.px.gpu_apply_articulation_target_velocity()
 
 
 def _at(chance: Chance, frames: Tensor) -> Chance:

@@ -11,8 +11,8 @@ controllers in each of the coming tenths, of which the first few are carried out
 demonstrations are those of a program, of which the paper finds that they need none). A small network of convolutions
 takes the place of a pretrained ResNet, so that two cores suffice: of each picture it tells where in it some features
 are that it has learnt (Levine et al., "End-to-end training of deep visuomotor policies", JMLR 2016). The policy is told
-neither where things nor where it is. While it is shown how, noise leads the arm astray: so it learns to come back. For
-HazardFetch-v1, where it walks to the thing first, `train --walks` shows it what is far and how fast it turns.
+neither where things nor where it is. While it is shown how, noise leads the arm astray: so it learns to come back. How
+it walks to a thing first, `fetch_from_pictures.py` beside this file shows.
 """
 
 from __future__ import annotations
@@ -138,26 +138,40 @@ def felt(qpos: np.ndarray, qvel: np.ndarray, held: np.ndarray, walks: bool) -> n
     return np.column_stack([qpos[:, BASE:], held, *([qvel[:, BASE - 1]] if walks else [])])
 
 
-def read(*folders: Path, walks: bool = False) -> tuple[Rows, dict[str, Any]]:
+def sent(one: Any) -> np.ndarray:
+    """What was sent from one picture to the next in a demonstration, [T, A]: the mean, which can be sent as long."""
+    every, actions = one.meta["every"], one.frames["action"]
+    return np.stack([actions[frame : frame + every].mean(0) for frame in range(0, len(actions), every)])
+
+
+def rows_of(one: Any, views: list[str], walks: bool, actions: np.ndarray, part: slice = slice(None)) -> Rows:
+    """The rows of `part` of the pictures of a demonstration, from what is sent after each picture, [T, A]."""
+    at, last = np.arange(0, len(one.frames["action"]), one.meta["every"]), len(actions) - 1
+    body = felt(one.frames["qpos"][at], one.frames["qvel"][at], one.frames["held"][at] >= 0, walks)
+    chunks = actions[np.minimum(np.arange(len(at))[:, None] + np.arange(CHUNK), last)]
+    pictures = [torch.from_numpy(film(one.films[VIEWS[view][0]], view)[: len(at)][part]) for view in views]
+    return Rows(pictures, torch.from_numpy(body[part]).float(), torch.from_numpy(chunks[part]).float())
+
+
+def together(rows: list[Rows]) -> Rows:
+    """All rows in one."""
+    if not rows:
+        raise SystemExit("no episode to learn from")
+    whole = [torch.cat(view) for view in zip(*(one.pictures for one in rows), strict=True)]
+    return Rows(whole, torch.cat([one.body for one in rows]), torch.cat([one.chunks for one in rows]))
+
+
+def settings_of(one: Any, views: list[str], walks: bool) -> dict[str, Any]:
+    """What is needed to play as a demonstration was recorded, with a policy that sees these views."""
+    env = {"task": one.result.env_id, "cameras": [*one.films][1:], "every": one.meta["every"]}
+    return {"views": views, "walks": walks, "env": {**env, "robot_uids": one.meta["robot"]}}
+
+
+def read(*folders: Path) -> tuple[Rows, dict[str, Any]]:
     """The rows of datasets with one set of cameras, and what is needed to play as the first of them was recorded."""
-    pictures, bodies, chunks = [], [], []
-    settings: dict[str, Any] = {}
-    for one in (one for folder in folders for one in demonstrations(folder)):
-        every, total = one.meta["every"], len(one.frames["action"])
-        at = np.arange(0, total, every)
-        views = [*one.films, *(["far"] if walks else [])]
-        pictures.append([film(one.films[VIEWS[view][0]], view)[: len(at)] for view in views])
-        bodies.append(felt(one.frames["qpos"][at], one.frames["qvel"][at], one.frames["held"][at] >= 0, walks))
-        # what was sent from one picture to the next, in the mean, so that it can be sent again as long
-        sent = np.stack([one.frames["action"][frame : frame + every].mean(0) for frame in at])
-        chunks.append(sent[np.minimum(np.arange(len(at))[:, None] + np.arange(CHUNK), len(at) - 1)])
-        env = {"task": one.result.env_id, "cameras": [*one.films][1:], "every": every, "robot_uids": one.meta["robot"]}
-        settings = settings or {"views": views, "walks": walks, "env": env}
-    if not bodies:
-        raise SystemExit(f"{', '.join(map(str, folders))}: no episode")
-    whole = [torch.from_numpy(np.concatenate(view)) for view in zip(*pictures, strict=True)]
-    body, sent = (torch.from_numpy(np.concatenate(part)).float() for part in (bodies, chunks))
-    return Rows(whole, body, sent), settings
+    every = [one for folder in folders for one in demonstrations(folder)]
+    rows = together([rows_of(one, [*one.films], False, sent(one)) for one in every])
+    return rows, settings_of(every[0], [*every[0].films], False)
 
 
 def shifted(pictures: list[Tensor], batch: Tensor) -> list[Tensor]:
@@ -166,10 +180,14 @@ def shifted(pictures: list[Tensor], batch: Tensor) -> list[Tensor]:
     return [torch.roll(view[batch], (right, down), (-1, -2)) for view in pictures]
 
 
-def train(folders: list[Path], minutes: float, out: Path, walks: bool = False, seed: int = 0) -> None:
+def train(folders: list[Path], minutes: float, out: Path, seed: int = 0) -> None:
     """Train for some minutes on the datasets in `folders`, and write the policy."""
+    learn(*read(*folders), minutes, out, seed)
+
+
+def learn(rows: Rows, settings: dict[str, Any], minutes: float, out: Path, seed: int) -> None:
+    """Train for some minutes on `rows`, and write the policy; one that is there goes on learning."""
     torch.manual_seed(seed)
-    rows, settings = read(*folders, walks=walks)
     model = Chunks(len(rows.pictures), rows.body.shape[1], rows.chunks.shape[2])
     for name, numbers in (("felt", rows.body), ("sent", rows.chunks.flatten(0, 1))):
         getattr(model, name).copy_(torch.stack([numbers.mean(0), numbers.std(0).clamp(min=LEAST)]))
@@ -200,22 +218,35 @@ def train(folders: list[Path], minutes: float, out: Path, walks: bool = False, s
     print(f"{len(losses)} steps in {minutes:g} minutes: loss {np.mean(losses[-50:]):.3f}")
 
 
+class Policy:
+    """A policy that was written by `learn`."""
+
+    def __init__(self, folder: Path) -> None:
+        self.settings = json.loads((folder / "settings.json").read_text())
+        weights = load_file(folder / "policy.safetensors")
+        self.model = Chunks(len(self.settings["views"]), weights["felt"].shape[1], weights["sent"].shape[1])
+        self.model.eval().load_state_dict(weights)
+
+    def act(self, seen: dict[str, Any]) -> np.ndarray:
+        """The coming actions, [CHUNK, A], from an observation of HazardRobot-v1."""
+        told = seen["agent_pos"][None]  # joints, how fast they move, the pose, the hand, whether it holds something
+        body = felt(*np.split(told[:, :-7], 2, axis=1), told[:, -1], self.settings["walks"])
+        return self.model.act([small(seen["pixels"][VIEWS[view][0]], view) for view in self.settings["views"]], body)
+
+
 def play(policy: Path, episodes: int, seed: int, split: str, hazards: list[str], load: str = PRACTICE) -> list[bool]:
     """Play episodes with a policy; `load`: the module that registers its task. Returns which of them succeeded."""
     importlib.import_module(load)
-    settings, weights = json.loads((policy / "settings.json").read_text()), load_file(policy / "policy.safetensors")
-    model = Chunks(len(views := settings["views"]), weights["felt"].shape[1], weights["sent"].shape[1])
-    model.eval().load_state_dict(weights)
+    who = Policy(policy)
     more = {"hazards": hazards} if hazards else {}
-    env: Any = gym.make("hazard_ms.lerobot:HazardRobot-v1", split=split, render_mode=None, **settings["env"], **more)
+    env: Any = gym.make(
+        "hazard_ms.lerobot:HazardRobot-v1", split=split, render_mode=None, **who.settings["env"], **more
+    )
     succeeded = []
     for number in range(seed, seed + episodes):
         (seen, _), over, steps, info = env.reset(seed=number), False, 0, {}
         while not over:
-            told = seen["agent_pos"][None]  # joints, how fast they move, the pose, the hand, whether it holds something
-            body = felt(*np.split(told[:, :-7], 2, axis=1), told[:, -1], settings["walks"])
-            pictures = [small(seen["pixels"][VIEWS[view][0]], view) for view in views]
-            for action in model.act(pictures, body)[:CARRIED]:
+            for action in who.act(seen)[:CARRIED]:
                 if not over:
                     seen, _, terminated, truncated, info = env.step(action)
                     steps, over = steps + 1, terminated or truncated
@@ -234,7 +265,6 @@ def main() -> None:
     one.add_argument("--minutes", type=float, default=30.0)
     one.add_argument("--out", type=Path, required=True)
     one.add_argument("--seed", type=int, default=0)
-    one.add_argument("--walks", action="store_true", help="see what is far, and feel how fast the base turns")
     (two := commands.add_parser("play")).set_defaults(do=play)
     two.add_argument("policy", type=Path)
     two.add_argument("--episodes", type=int, default=25)

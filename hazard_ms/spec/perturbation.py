@@ -26,7 +26,7 @@ class Perturbation:
     words: int = 0  # the sentence of the task
     start: int = 0  # where the robot starts, and its heading
     noise: int = 0  # noise of the sensor in colour pictures of the robot's cameras
-    control: int = 0  # how far the arm's joints go beside where they are sent
+    control: int = 0  # how far the arm's joints go beside where they are sent, and how far a base that slips turns
     hazard: int = 0  # the severity of the hazards of `realistic`, in place of the usual one
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Noise in the control of arms: as strong as its level says, smooth, of the seed, and not in what was sent."""
+"""Noise in control: as strong as its level says, smooth in arms, of the seed, and not in what was sent."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 import torch
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.env.control_noise import KNOT, MOST, arm_noise
+from hazard_ms.env.control_noise import APART, KNOT, MOST, SHARE, SLIP, TURNED, arm_noise, slip
 from hazard_ms.simulation.chance import Chance
 
 FRAMES = 1500
@@ -84,3 +84,57 @@ def test_arms_go_beside_where_they_are_sent_and_come_back(robot: str) -> None:
     assert np.abs(moved - calm)[3:].max() > 0.01  # [rad]
     np.testing.assert_array_equal(one, again)
     np.testing.assert_array_equal(moved, same)
+
+
+def slips(level: int, seeds: tuple[int, ...], frames: int = FRAMES) -> tuple[np.ndarray, np.ndarray]:
+    """Whether bases slip, and by how much they then turn [rad], [frames, E] each."""
+    chance = Chance(len(seeds))
+    chance.restart(torch.arange(len(seeds)), torch.tensor(seeds))
+    made = []
+    for _ in range(frames):
+        made.append([part.numpy() for part in slip(chance, level)])
+        chance.tick()
+    return np.stack([one for one, _ in made]), np.stack([angle for _, angle in made])
+
+
+@pytest.mark.parametrize("level", [1, 2, 3])
+def test_half_of_all_stretches_have_one_slip_of_a_level_to_either_side(level: int) -> None:
+    slipping, angle = slips(level, tuple(range(8)))
+    stretches = slipping.reshape(-1, APART, 8).sum(1)
+    assert set(np.unique(stretches)) == {0, SLIP}
+    many = stretches.size
+    assert abs((stretches > 0).mean() - SHARE) < 3.0 * math.sqrt(0.25 / many)
+    turned = np.abs((angle * slipping).reshape(-1, APART, 8).sum(1))[stretches > 0]
+    assert (turned > 0.75 * TURNED[level] - 1e-6).all() and (turned < TURNED[level] + 1e-6).all()
+    begins = slipping.reshape(-1, APART, 8).argmax(1)[stretches > 0]
+    assert begins.min() == 0 and begins.max() == APART - SLIP  # anywhere in its stretch
+    assert abs((angle[slipping] > 0).mean() - 0.5) < 0.15
+    np.testing.assert_array_equal(slips(level, (5,), 90)[1][:, 0], angle[:90, 5])  # whatever is beside
+
+
+@pytest.mark.parametrize("robot", ["fetch", "g1"])
+def test_a_base_turns_aside_where_it_slips_and_only_if_it_drives(robot: str) -> None:
+    env: Any = gym.make(
+        "HazardFire-v1",
+        obs_mode="none",
+        render_backend="none",
+        robot_uids=robot,
+        control_mode="pd_joint_pos",
+        perturb="control:2",
+    )
+    slipping, angle = slips(2, (1,), 2 * APART)
+    assert slipping.any()
+    for forward, turn in ((0.0, 0.0), (0.004, 0.0), (0.0, 0.02)):
+        env.reset(seed=1)
+        agent = env.unwrapped.agent
+        action, fps = agent.action(forward, turn, agent.tucked, True), env.unwrapped.control_freq
+        heading, sent = [], []
+        for _ in range(2 * APART):
+            before = agent.base_pose()[1].item()
+            env.step(action)
+            heading.append(agent.base_pose()[1].item() - before)
+            sent.append(agent.robot.active_joints[2].drive_velocity_target.item() / fps)
+        driven = forward != 0.0 or turn != 0.0
+        np.testing.assert_allclose(sent, np.where(slipping[:, 0] & driven, angle[:, 0], turn), atol=2e-4)
+        np.testing.assert_allclose(heading, sent, atol=0.3 * TURNED[2] / SLIP)  # it takes a frame to turn faster
+    env.close()

@@ -5,22 +5,20 @@
     python examples/act_from_pictures.py train demos/HazardPickUp-v1/oracle --minutes 30 --out learned/pick_up
     python examples/act_from_pictures.py play learned/pick_up --episodes 25 --hazards fire
 
-Every tenth of a second the policy may look through the robot's cameras and feel its joints; it says what to send to the
-controllers in each of the coming tenths, of which the first few are carried out before it looks again (Zhao et al.,
-"Learning fine-grained bimanual manipulation with low-cost hardware", RSS 2023, without the variational encoder: the
-demonstrations are those of a program, of which the paper finds that they need none). A small network of convolutions
-takes the place of a pretrained ResNet, so that two cores suffice: of each picture it tells where in it some features
-are that it has learnt (Levine et al., "End-to-end training of deep visuomotor policies", JMLR 2016). The policy is told
-neither where things nor where it is. While it is shown how, noise leads the arm astray: so it learns to come back. How
-it walks to a thing first, `fetch_from_pictures.py` beside this file shows.
+Every tenth of a second the policy may look through the robot's cameras and feel its joints; it says what to send in
+each of the coming tenths, of which a few are carried out before it looks again (Zhao et al., RSS 2023, without the
+variational encoder: the demonstrations are a program's, which need none). A small network of convolutions tells where
+in a picture some learnt features are (Levine et al., JMLR 2016). The policy is told neither where things nor where it
+is. While it is shown how, noise leads arm and base astray, so that it learns to come back. How it walks to a thing
+first, fetch_from_pictures.py shows.
 """
 
 from __future__ import annotations
 
-import argparse
 import importlib
 import json
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,6 +26,7 @@ import cv2
 import gymnasium as gym
 import numpy as np
 import torch
+import tyro
 from safetensors.torch import load_file, save_file
 from torch import Tensor, nn
 
@@ -37,7 +36,6 @@ from hazard_ms.demonstrations.reading import demonstrations
 VIEWS = {
     "head": ("head", (3 / 8, 3 / 16, 5 / 8, 5 / 8), (96, 96)),
     "wrist": ("wrist", (0.0, 0.0, 1.0, 1.0), (96, 96)),
-    "shoulder": ("shoulder", (0.0, 0.0, 1.0, 1.0), (96, 96)),
     "far": ("head", (3 / 8, 0.0, 1 / 4, 1.0), (64, 256)),  # a thing 4 m away is as wide as three of its pixels
 }
 POINTS = 64  # features whose places in a picture are told
@@ -46,8 +44,8 @@ MODES, LOSERS, CHOOSING = 4, 0.1, 0.2  # ways to go on; what all count beside th
 WIDTH, HEADS, DEPTH, BATCH, RATE, WEIGHT_DECAY = 128, 4, 2, 64, 4e-4, 1e-4
 LEAST = 0.1  # spread that numbers count as having at least: what hardly changes must not weigh most
 SHIFT, JITTER = 4, 0.1  # most that pictures are shifted [pixels]; noise of joints, as a share of their spread
-PRACTICE = "hazard_ms.tasks.practice"
 BASE = 3  # joints that are the robot's place in the world, which it is not told
+Names = tuple[str, ...]
 
 
 class Rows(NamedTuple):
@@ -92,16 +90,15 @@ class Chunks(nn.Module):
         self.encoder = nn.TransformerEncoder(nn.TransformerEncoderLayer(**shape), DEPTH)  # type: ignore[arg-type]
         self.decoder = nn.TransformerDecoder(nn.TransformerDecoderLayer(**shape), 1)  # type: ignore[arg-type]
         self.out, self.choice = nn.Linear(WIDTH, MODES * numbers), nn.Linear(WIDTH, MODES)
-        # what is felt and sent has zero mean and unit variance inside
-        self.register_buffer("felt", torch.stack([torch.zeros(joints), torch.ones(joints)]))
+        self.register_buffer("felt", torch.stack([torch.zeros(joints), torch.ones(joints)]))  # mean, spread
         self.register_buffer("sent", torch.stack([torch.zeros(numbers), torch.ones(numbers)]))
 
     def forward(self, pictures: list[Tensor], body: Tensor) -> tuple[Tensor, Tensor]:
         seen = [eye(view.float() / 255.0 - 0.5) for eye, view in zip(self.eyes, pictures, strict=True)]
         felt = self.body((body - self.felt[0]) / self.felt[1])
         known = self.encoder(torch.stack([felt, *seen], 1) + self.places)
-        foreseen = self.out(self.decoder(self.queries.expand(len(body), -1, -1), known))
-        ways = foreseen.unflatten(2, (MODES, -1)).transpose(1, 2)
+        foreseen = self.decoder(self.queries.expand(len(body), -1, -1), known)
+        ways = self.out(foreseen).unflatten(2, (MODES, -1)).transpose(1, 2)
         return ways * self.sent[1] + self.sent[0], self.choice(known[:, 0])
 
     def loss(self, pictures: list[Tensor], body: Tensor, chunks: Tensor) -> Tensor:
@@ -111,12 +108,6 @@ class Chunks(nn.Module):
         near, which = off.min(1)
         unlikely = nn.functional.cross_entropy(choice, which)
         return (1.0 - LOSERS) * near.mean() + LOSERS * off.mean() + CHOOSING * unlikely
-
-    def act(self, pictures: list[np.ndarray], body: np.ndarray) -> np.ndarray:
-        """The likeliest way to go on, [CHUNK, A], from what one robot sees and feels."""
-        with torch.no_grad():
-            ways, choice = self([torch.from_numpy(view)[None] for view in pictures], torch.from_numpy(body).float())
-        return ways[0, int(choice.argmax())].numpy()
 
 
 def small(picture: Any, view: str) -> np.ndarray:
@@ -153,45 +144,32 @@ def rows_of(one: Any, views: list[str], walks: bool, actions: np.ndarray, part: 
     return Rows(pictures, torch.from_numpy(body[part]).float(), torch.from_numpy(chunks[part]).float())
 
 
-def together(rows: list[Rows]) -> Rows:
-    """All rows in one."""
-    if not rows:
-        raise SystemExit("no episode to learn from")
-    whole = [torch.cat(view) for view in zip(*(one.pictures for one in rows), strict=True)]
-    return Rows(whole, torch.cat([one.body for one in rows]), torch.cat([one.chunks for one in rows]))
-
-
-def settings_of(one: Any, views: list[str], walks: bool) -> dict[str, Any]:
-    """What is needed to play as a demonstration was recorded, with a policy that sees these views."""
-    env = {"task": one.result.env_id, "cameras": [*one.films][1:], "every": one.meta["every"]}
-    return {"views": views, "walks": walks, "env": {**env, "robot_uids": one.meta["robot"]}}
-
-
-def read(*folders: Path) -> tuple[Rows, dict[str, Any]]:
-    """The rows of datasets with one set of cameras, and what is needed to play as the first of them was recorded."""
+def read(folders: list[Path]) -> list[Any]:
+    """The demonstrations of datasets that were recorded with the same cameras."""
     every = [one for folder in folders for one in demonstrations(folder)]
-    rows = together([rows_of(one, [*one.films], False, sent(one)) for one in every])
-    return rows, settings_of(every[0], [*every[0].films], False)
+    if not every:
+        raise SystemExit(f"{', '.join(map(str, folders))}: no episode")
+    return every
 
 
-def shifted(pictures: list[Tensor], batch: Tensor) -> list[Tensor]:
-    """The pictures of a batch, moved by some pixels, as if cameras were not quite in place."""
-    right, down = (int(torch.randint(-SHIFT, SHIFT + 1, ())) for _ in range(2))
-    return [torch.roll(view[batch], (right, down), (-1, -2)) for view in pictures]
-
-
-def train(folders: list[Path], minutes: float, out: Path, seed: int = 0) -> None:
+def train(folders: list[Path], /, *, out: Path, minutes: float = 30.0, seed: int = 0) -> None:
     """Train for some minutes on the datasets in `folders`, and write the policy."""
-    learn(*read(*folders), minutes, out, seed)
+    every = read(folders)
+    views = [*every[0].films]
+    learn(every[0], views, False, [rows_of(one, views, False, sent(one)) for one in every], out, minutes, seed)
 
 
-def learn(rows: Rows, settings: dict[str, Any], minutes: float, out: Path, seed: int) -> None:
-    """Train for some minutes on `rows`, and write the policy; one that is there goes on learning."""
+def learn(one: Any, views: list[str], walks: bool, rows: list[Rows], out: Path, minutes: float, seed: int) -> None:
+    """Train on `rows`, and write the policy, to be played as `one` was recorded; one that is there goes on learning."""
     torch.manual_seed(seed)
-    model = Chunks(len(rows.pictures), rows.body.shape[1], rows.chunks.shape[2])
-    for name, numbers in (("felt", rows.body), ("sent", rows.chunks.flatten(0, 1))):
+    pictures = [torch.cat(view) for view in zip(*(part.pictures for part in rows), strict=True)]
+    body, chunks = (torch.cat([getattr(part, name) for part in rows]) for name in ("body", "chunks"))
+    model = Chunks(len(views), body.shape[1], chunks.shape[2])
+    for name, numbers in (("felt", body), ("sent", chunks.flatten(0, 1))):
         getattr(model, name).copy_(torch.stack([numbers.mean(0), numbers.std(0).clamp(min=LEAST)]))
     out.mkdir(parents=True, exist_ok=True)
+    env = {"task": one.result.env_id, "cameras": [*one.films][1:], "every": one.meta["every"]}
+    settings = {"views": views, "walks": walks, "env": {**env, "robot_uids": one.meta["robot"]}}
     (out / "settings.json").write_text(json.dumps(settings, indent=1))
     if (out / "policy.safetensors").exists():
         model.load_state_dict(load_file(out / "policy.safetensors"))
@@ -200,9 +178,11 @@ def learn(rows: Rows, settings: dict[str, Any], minutes: float, out: Path, seed:
     while done < 1.0:
         done = (time.monotonic() - start) / (60.0 * minutes)
         optimiser.param_groups[0]["lr"] = RATE * max(0.02, 0.5 + 0.5 * np.cos(np.pi * min(done, 1.0)))
-        batch = torch.randint(len(rows.body), (BATCH,))
-        noisy = rows.body[batch] + JITTER * model.felt[1] * torch.randn(BATCH, rows.body.shape[1])
-        loss = model.loss(shifted(rows.pictures, batch), noisy, rows.chunks[batch])
+        batch = torch.randint(len(body), (BATCH,))
+        noisy = body[batch] + JITTER * model.felt[1] * torch.randn(BATCH, body.shape[1])
+        shift = torch.randint(-SHIFT, SHIFT + 1, (2,)).tolist()  # as if cameras were not quite in place
+        seen = [torch.roll(view[batch], shift, (-1, -2)) for view in pictures]
+        loss = model.loss(seen, noisy, chunks[batch])
         optimiser.zero_grad()
         loss.backward()
         nn.utils.clip_grad_norm_(model.parameters(), 1.0)
@@ -227,54 +207,44 @@ class Policy:
         self.model = Chunks(len(self.settings["views"]), weights["felt"].shape[1], weights["sent"].shape[1])
         self.model.eval().load_state_dict(weights)
 
+    def env(self, split: str, hazards: Names, load: str = "hazard_ms.tasks.practice") -> Any:
+        """The environment that it plays in; `load`: the module that registers its task."""
+        importlib.import_module(load)
+        env = {**self.settings["env"], **({"hazards": list(hazards)} if hazards else {})}
+        return gym.make("hazard_ms.lerobot:HazardRobot-v1", split=split, render_mode=None, **env)
+
     def act(self, seen: dict[str, Any]) -> np.ndarray:
         """The coming actions, [CHUNK, A], from an observation of HazardRobot-v1."""
         told = seen["agent_pos"][None]  # joints, how fast they move, the pose, the hand, whether it holds something
         body = felt(*np.split(told[:, :-7], 2, axis=1), told[:, -1], self.settings["walks"])
-        return self.model.act([small(seen["pixels"][VIEWS[view][0]], view) for view in self.settings["views"]], body)
+        pictures = [small(seen["pixels"][VIEWS[view][0]], view) for view in self.settings["views"]]
+        with torch.no_grad():
+            ways, choice = self.model([torch.from_numpy(one)[None] for one in pictures], torch.from_numpy(body).float())
+        return ways[0, int(choice.argmax())].numpy()  # the likeliest way to go on
 
 
-def play(policy: Path, episodes: int, seed: int, split: str, hazards: list[str], load: str = PRACTICE) -> list[bool]:
-    """Play episodes with a policy; `load`: the module that registers its task. Returns which of them succeeded."""
-    importlib.import_module(load)
-    who = Policy(policy)
-    more = {"hazards": hazards} if hazards else {}
-    env: Any = gym.make(
-        "hazard_ms.lerobot:HazardRobot-v1", split=split, render_mode=None, **who.settings["env"], **more
-    )
+def run(env: Any, coming: Callable[[dict[str, Any], int], np.ndarray], seeds: range) -> list[bool]:
+    """Which seeds succeed if `coming`, from what is seen and the steps so far, tells what to send until asked again."""
     succeeded = []
-    for number in range(seed, seed + episodes):
-        (seen, _), over, steps, info = env.reset(seed=number), False, 0, {}
+    for seed in seeds:
+        (seen, _), over, steps, info = env.reset(seed=seed), False, 0, {}
         while not over:
-            for action in who.act(seen)[:CARRIED]:
+            for action in coming(seen, steps):
                 if not over:
                     seen, _, terminated, truncated, info = env.step(action)
                     steps, over = steps + 1, terminated or truncated
         succeeded.append(info["is_success"])
-        print(f"seed {number}: {'success' if succeeded[-1] else 'failed'} after {steps} steps", flush=True)
+        print(f"seed {seed}: {'success' if succeeded[-1] else 'failed'} after {steps} steps", flush=True)
     env.close()
-    print(f"{sum(succeeded)} of {episodes} succeeded, {100 * np.mean(succeeded):.0f} %, {split}, {hazards or 'calm'}")
+    print(f"{sum(succeeded)} of {len(seeds)} succeeded, {100 * np.mean(succeeded):.0f} %")
     return succeeded
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    commands = parser.add_subparsers(required=True)
-    (one := commands.add_parser("train")).set_defaults(do=train)
-    one.add_argument("folders", type=Path, nargs="+")
-    one.add_argument("--minutes", type=float, default=30.0)
-    one.add_argument("--out", type=Path, required=True)
-    one.add_argument("--seed", type=int, default=0)
-    (two := commands.add_parser("play")).set_defaults(do=play)
-    two.add_argument("policy", type=Path)
-    two.add_argument("--episodes", type=int, default=25)
-    two.add_argument("--seed", type=int, default=0)
-    two.add_argument("--split", default="test")
-    two.add_argument("--hazards", nargs="*", default=[])
-    two.add_argument("--load", default=PRACTICE, help="module that registers the task")
-    given = vars(parser.parse_args())
-    given.pop("do")(**given)
+def play(policy: Path, /, *, episodes: int = 25, seed: int = 0, split: str = "test", hazards: Names = ()) -> list[bool]:
+    """Play episodes with a policy, beside hazards such as fire. Returns which of them succeeded."""
+    who = Policy(policy)
+    return run(who.env(split, hazards), lambda seen, _: who.act(seen)[:CARRIED], range(seed, seed + episodes))
 
 
 if __name__ == "__main__":
-    main()
+    tyro.extras.subcommand_cli_from_dict({"train": train, "play": play}, description=__doc__)

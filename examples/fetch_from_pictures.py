@@ -16,16 +16,12 @@ where it has arrived. If nothing is in the hand after TAKES tenths of a second, 
 
 from __future__ import annotations
 
-import argparse
-import importlib
 from pathlib import Path
 from typing import Any
 
 import act_from_pictures as act
-import gymnasium as gym
 import numpy as np
-
-from hazard_ms.demonstrations.reading import demonstrations
+import tyro
 
 WALK = "walk to "  # how a walk's subtask begins
 VIEWS = ["far", "head"]  # of the policy that walks
@@ -69,61 +65,46 @@ def take(one: Any) -> act.Rows:
     return act.rows_of(one, [*one.films], False, act.sent(one), slice(first, None))
 
 
-def train(part: str, folders: list[Path], minutes: float, out: Path, seed: int) -> None:
-    """Train one of the policies on the datasets in `folders`."""
-    every = [one for folder in folders for one in demonstrations(folder)]
-    made = [walk(one) for one in every if arrival(one)] if part == "walk" else [take(one) for one in every]
-    views = VIEWS if part == "walk" else [*every[0].films]
-    act.learn(act.together(made), act.settings_of(every[0], views, part == "walk"), minutes, out, seed)
+def train_walk(folders: list[Path], /, *, out: Path, minutes: float = 30.0, seed: int = 0) -> None:
+    """Train the policy that walks, for some minutes, on the datasets in `folders`, and write it."""
+    every = [one for one in act.read(folders) if arrival(one)]
+    act.learn(every[0], VIEWS, True, [walk(one) for one in every], out, minutes, seed)
 
 
-def play(walks: Path, takes: Path, episodes: int, seed: int, split: str, hazards: list[str]) -> list[bool]:
-    """Play episodes of HazardFetch-v1 with both policies. Returns which of them succeeded."""
-    importlib.import_module(act.PRACTICE)
-    walker, taker = act.Policy(walks), act.Policy(takes)
-    made = {**walker.settings["env"], "split": split, "render_mode": None, **({"hazards": hazards} if hazards else {})}
-    env: Any = gym.make("hazard_ms.lerobot:HazardRobot-v1", **made)
-    succeeded = []
-    for number in range(seed, seed + episodes):
-        (seen, _), over, steps, since, info = env.reset(seed=number), False, 0, None, {}  # since when it takes
-        while not over:
-            if since is None or (steps - since >= TAKES and not seen["agent_pos"][-1]):
-                coming = walker.act(seen)[:LOOKS]
-                on_the_way = coming[:, ARRIVED] < 0.5
-                since = None if on_the_way[0] else steps
-                actions = coming[: max(1, int(on_the_way.cumprod().sum())), :-MORE]
-            else:
-                actions = taker.act(seen)[: act.CARRIED]
-            for action in actions:
-                if not over:
-                    seen, _, terminated, truncated, info = env.step(action)
-                    steps, over = steps + 1, terminated or truncated
-        succeeded.append(info["is_success"])
-        print(f"seed {number}: {'success' if succeeded[-1] else 'failed'} after {steps} steps", flush=True)
-    env.close()
-    print(f"{sum(succeeded)} of {episodes} succeeded, {100 * np.mean(succeeded):.0f} %, {split}, {hazards or 'calm'}")
-    return succeeded
+def train_take(folders: list[Path], /, *, out: Path, minutes: float = 30.0, seed: int = 0) -> None:
+    """Train the policy that takes and stows, for some minutes, on the datasets in `folders`, and write it."""
+    every = act.read(folders)
+    act.learn(every[0], [*every[0].films], False, [take(one) for one in every], out, minutes, seed)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    commands = parser.add_subparsers(required=True)
-    for part in ("walk", "take"):
-        (one := commands.add_parser(part)).set_defaults(do=train, part=part)
-        one.add_argument("folders", type=Path, nargs="+")
-        one.add_argument("--minutes", type=float, default=30.0)
-        one.add_argument("--out", type=Path, required=True)
-        one.add_argument("--seed", type=int, default=0)
-    (two := commands.add_parser("play")).set_defaults(do=play)
-    two.add_argument("walks", type=Path)
-    two.add_argument("takes", type=Path)
-    two.add_argument("--episodes", type=int, default=25)
-    two.add_argument("--seed", type=int, default=0)
-    two.add_argument("--split", default="test")
-    two.add_argument("--hazards", nargs="*", default=[])
-    given = vars(parser.parse_args())
-    given.pop("do")(**given)
+class Fetching:
+    """Who walks until it has arrived, and then takes; without success it walks again."""
+
+    def __init__(self, walks: Path, takes: Path) -> None:
+        self.walker, self.taker = act.Policy(walks), act.Policy(takes)
+        self.since: int | None = None  # the step since which it takes
+
+    def coming(self, seen: dict[str, Any], steps: int) -> np.ndarray:
+        """The actions to carry out before it is asked again, [K, A], after `steps` of an episode."""
+        if steps == 0 or (self.since is not None and steps - self.since >= TAKES and not seen["agent_pos"][-1]):
+            self.since = None
+        if self.since is None:
+            foreseen = self.walker.act(seen)
+            on_the_way = int((foreseen[:, ARRIVED] < 0.5).cumprod().sum())
+            if on_the_way:
+                return foreseen[: min(on_the_way, LOOKS), :-MORE]
+            self.since = steps
+        return self.taker.act(seen)[: act.CARRIED]
+
+
+def play(
+    walks: Path, takes: Path, /, *, episodes: int = 25, seed: int = 0, split: str = "test", hazards: act.Names = ()
+) -> list[bool]:
+    """Play episodes with both policies, beside hazards such as fire. Returns which of them succeeded."""
+    who = Fetching(walks, takes)
+    return act.run(who.walker.env(split, hazards), who.coming, range(seed, seed + episodes))
 
 
 if __name__ == "__main__":
-    main()
+    commands = {"walk": train_walk, "take": train_take, "play": play}
+    tyro.extras.subcommand_cli_from_dict(commands, description=__doc__)

@@ -1,7 +1,8 @@
 """Policies that were shown how: `./run python results/imitation.py [POLICY...] [--rescues WEIGHTS...] [--episodes 25]`.
 
-Each POLICY is a folder that `examples/act_from_pictures.py train` has written. It plays the first seeds of the split
-`test` in calm, in fire and in flood, and so does the agent that demonstrated. Each of WEIGHTS is one that
+Each POLICY is a folder that `examples/act_from_pictures.py train` has written, or one with folders `walk` and `take` of
+`examples/fetch_from_pictures.py`. It plays the first seeds of the split `test` in calm, in fire and in flood, and so
+does the agent that demonstrated. Each of WEIGHTS is one that
 `examples/rescue/learn.py train` has written: it plays whole rescues, and so does the agent that decides for it. What is
 in imitation.csv and rescues.csv is not played again; imitation.md, beside them, is the tables. Without a folder only
 they are written.
@@ -11,13 +12,13 @@ from __future__ import annotations
 
 import argparse
 import csv
-import importlib.util
+import importlib
 import json
 import math
 import subprocess
+import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -25,14 +26,15 @@ from hazard_ms.evaluation.metrics import interval, resampled
 from results.tables import COMMAND, HERE, evaluate, machine, results_in
 from results.tables import words as written
 
-FILE, EXAMPLE = HERE / "imitation.csv", HERE.parent / "examples" / "act_from_pictures.py"
+FILE, EXAMPLES = HERE / "imitation.csv", HERE.parent / "examples"
 RAW = HERE.parent / "build" / "imitation"
-RESCUES, MOVING = HERE / "rescues.csv", HERE.parent / "examples" / "rescue" / "policies.py"
+RESCUES, MOVING = HERE / "rescues.csv", EXAMPLES / "rescue" / "policies.py"
 COLUMNS = ("task", "who", "hazards", "seed", "success")
 RESCUE_COLUMNS = ("task", "who", "scene", "seed", "rescued", "frames")
 RESCUE_TASKS = ("fire", "flood")
 DECIDES = "greedy"
 WORLDS = ("calm", "fire", "flood")
+PARTS = ("walk", "take")  # of a policy that fetches
 TEACHER = "oracle"
 DONE = ("arrived", "in the hand", "in the bag")  # how episodes of practice end that succeed
 Z = 1.959964  # of a 95 % interval
@@ -154,13 +156,13 @@ def rescue_lines(rows: Sequence[Row]) -> Iterator[str]:
         yield f"| {who} | {' | '.join(cells)} |\n"
 
 
-def example() -> Any:
-    """The module of the example."""
-    spec = importlib.util.spec_from_file_location("act_from_pictures", EXAMPLE)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def won(policy: Path, seeds: range, world: str) -> list[bool]:
+    """Whether a policy succeeds, seed by seed."""
+    sys.path.insert(0, str(EXAMPLES))
+    played = {"episodes": len(seeds), "seed": seeds.start, "hazards": () if world == WORLDS[0] else (world,)}
+    if (policy / PARTS[0]).is_dir():
+        return importlib.import_module("fetch_from_pictures").play(*(policy / part for part in PARTS), **played)
+    return importlib.import_module("act_from_pictures").play(policy, **played)
 
 
 def main() -> None:
@@ -170,21 +172,20 @@ def main() -> None:
     parser.add_argument("--episodes", type=int, default=25)
     parser.add_argument("--rescues", nargs="*", type=Path, default=[])
     given = parser.parse_args()
-    rows, rescues, acting = read(FILE), read(RESCUES), example()
+    rows, rescues = read(FILE), read(RESCUES)
     for task in RESCUE_TASKS if given.rescues else ():
         rescued(rescues, task, DECIDES, DECIDES, given.episodes)
         for folder in given.rescues:
             rescued(rescues, task, folder.name, f"{MOVING}:Policies:weights={folder.resolve()}", given.episodes)
     for policy in given.policies:
-        task = json.loads((policy / "settings.json").read_text())["task"]
+        part = policy / PARTS[0] if (policy / PARTS[0]).is_dir() else policy
+        task = json.loads((part / "settings.json").read_text())["env"]["task"]
         for world in WORLDS:
             if left := missing(rows, task, TEACHER, world, given.episodes):
                 known = taught(task, world, given.episodes)
                 add(rows, task, TEACHER, world, {seed: known[seed] for seed in left})
             if left := missing(rows, task, policy.name, world, given.episodes):
-                hazards = [] if world == WORLDS[0] else [world]
-                won = acting.play(policy, len(left), left.start, "test", hazards)
-                add(rows, task, policy.name, world, dict(zip(left, won, strict=True)))
+                add(rows, task, policy.name, world, dict(zip(left, won(policy, left, world), strict=True)))
     head = HEAD.format(teacher=TEACHER, machine=machine(), worlds=" | ".join(WORLDS))
     more = RESCUED.format(decides=DECIDES, tasks=" | ".join(RESCUE_TASKS)) + "".join(rescue_lines(rescues))
     (HERE / "imitation.md").write_text(head + "".join(lines(rows)) + (more if rescues else ""))

@@ -13,7 +13,6 @@ import pytest
 import torch
 
 from hazard_ms.demonstrations.options import RecordOptions
-from hazard_ms.demonstrations.reading import demonstrations
 from hazard_ms.demonstrations.recording import RecordJob, attempt
 from hazard_ms.evaluation.options import EpisodeOptions
 from tests.worlds.registering import loaded, practising
@@ -53,8 +52,8 @@ def dataset(tmp_path_factory: pytest.TempPathFactory, practice: Any) -> Path:
 
 
 def test_rows_are_what_was_seen_and_what_was_done_from_then_on(example: Any, dataset: Path) -> None:
-    rows, settings = example.read(dataset)
-    (one,) = demonstrations(dataset)
+    (one,) = example.read([dataset])
+    rows = example.rows_of(one, [*one.films], False, example.sent(one))
     actions, last = one.frames["action"], (len(one.frames["action"]) - 1) // EVERY
     assert [view.shape for view in rows.pictures] == [(last + 1, 3, 96, 96)] * 2
     assert rows.body.shape == (last + 1, 13)
@@ -70,42 +69,31 @@ def test_rows_are_what_was_seen_and_what_was_done_from_then_on(example: Any, dat
     whole = video.read()[1][:, :, ::-1]  # of 256 pixels, of which the policy sees what is before its hands
     seen = cv2.resize(whole[96:256, 48:208], (96, 96), interpolation=cv2.INTER_AREA)
     np.testing.assert_array_equal(rows.pictures[0][0].numpy(), seen.transpose(2, 0, 1))
-    twice, _ = example.read(dataset, dataset)
-    assert len(twice.body) == 2 * (last + 1)
     apart = (rows.pictures[0].float() - rows.pictures[1].float()).abs().mean()
     assert apart > 20.0  # two cameras
-    env = {"task": "HazardPickUp-v1", "cameras": ["wrist"], "every": EVERY, "robot_uids": "fetch"}
-    assert settings == {"views": ["head", "wrist"], "walks": False, "env": env}
 
 
-def test_who_walks_also_sees_what_is_far_and_feels_how_fast_it_turns(example: Any, dataset: Path) -> None:
-    rows, settings = example.read(dataset, walks=True)
-    (one,) = demonstrations(dataset)
-    assert settings["views"] == ["head", "wrist", "far"] and settings["env"]["cameras"] == ["wrist"]
-    np.testing.assert_array_equal(rows.body[:, -1].numpy(), one.frames["qvel"][:-1:EVERY, 2])
-    assert rows.body[:, -1].abs().max() > 0.1  # [rad/s]: it has turned
-    whole = cv2.VideoCapture(str(one.films["head"])).read()[1][:, :, ::-1]
-    np.testing.assert_array_equal(rows.pictures[2][0].numpy(), whole[96:160].transpose(2, 0, 1))  # pixel by pixel
+def test_a_folder_without_episodes_is_named(example: Any, tmp_path: Path) -> None:
+    (tmp_path / "manifest.jsonl").touch()
+    with pytest.raises(SystemExit, match=f"{tmp_path}: no episode"):
+        example.read([tmp_path])
 
 
-@pytest.mark.parametrize("walks", [pytest.param(False, marks=pytest.mark.long), True])
+@pytest.mark.long
 def test_it_learns_goes_on_and_plays(
-    example: Any,
-    dataset: Path,
-    walks: bool,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    example: Any, dataset: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(example, "BATCH", 8)
     losses = []
     for minutes in (0.02, 0.1):
-        example.train([dataset], minutes, tmp_path / "made", walks)
+        example.train([dataset], out=tmp_path / "made", minutes=minutes)
         losses.append(float(capsys.readouterr().out.split()[-1]))
     assert losses[1] < 0.8 * losses[0]
-    assert json.loads((tmp_path / "made" / "settings.json").read_text())["env"]["task"] == "HazardPickUp-v1"
-    assert example.play(tmp_path / "made", 1, 4, "train", ["flood"]) in ([False], [True])
-    assert "of 1 succeeded" in (said := capsys.readouterr().out) and "['flood']" in said
+    settings = json.loads((tmp_path / "made" / "settings.json").read_text())
+    env = {"task": "HazardPickUp-v1", "cameras": ["wrist"], "every": EVERY, "robot_uids": "fetch"}
+    assert settings == {"views": ["head", "wrist"], "walks": False, "env": env}
+    assert example.play(tmp_path / "made", episodes=1, seed=4, split="train", hazards=("flood",)) in ([False], [True])
+    assert "of 1 succeeded" in capsys.readouterr().out
 
 
 def test_between_two_ways_to_go_on_it_takes_one(example: Any) -> None:
@@ -122,4 +110,6 @@ def test_between_two_ways_to_go_on_it_takes_one(example: Any) -> None:
         optimiser.zero_grad()
         loss.backward()
         optimiser.step()
-    assert np.abs(model.eval().act([view[0].numpy() for view in seen], body[:1].numpy())).min() > 0.7
+    with torch.no_grad():
+        ways, choice = model.eval()(seen, body[:1])
+    assert ways[0, int(choice.argmax())].abs().min() > 0.7

@@ -135,7 +135,7 @@ def sent(one: Any) -> np.ndarray:
     return np.stack([actions[frame : frame + every].mean(0) for frame in range(0, len(actions), every)])
 
 
-def rows_of(one: Any, views: list[str], walks: bool, actions: np.ndarray, part: slice = slice(None)) -> Rows:
+def rows_of(one: Any, views: list[str], walks: bool, actions: np.ndarray, part: Any = slice(None)) -> Rows:
     """The rows of `part` of the pictures of a demonstration, from what is sent after each picture, [T, A]."""
     at, last = np.arange(0, len(one.frames["action"]), one.meta["every"]), len(actions) - 1
     body = felt(one.frames["qpos"][at], one.frames["qvel"][at], one.frames["held"][at] >= 0, walks)

@@ -29,6 +29,7 @@ LOOKS = 2  # actions of a walk that are carried out before it looks again
 AFTER = 3  # pictures after a walk that show that it has arrived
 TAKES = 45  # tenths of a second in which something must be in the hand; 99 % of demonstrations need less than 30
 ARRIVED, MORE = -3, 3  # where it foresees whether it has arrived; numbers that it foresees beside actions
+EDGE, SEARCHES = np.pi / 3, 5  # where pictures end to the left and right [rad]; see `walk`
 DRIVE = 2  # the last numbers of an action: forward, turn
 
 
@@ -43,7 +44,8 @@ def walk(one: Any) -> act.Rows:
     """The rows of a demonstration's walk, and AFTER rows behind it.
 
     Sent are the actions of the walk, then nothing for the base; whether it has arrived; and the place of the thing
-    before the robot, forward and left [m].
+    before the robot, forward and left [m]. Rows in which it cannot be seen are there SEARCHES times: a teacher that
+    knows where to turn has few of them, and without them it would drive at whatever it sees.
     """
     every, end = one.meta["every"], arrival(one)
     last, actions = -(-end // every), act.sent(one)
@@ -56,7 +58,8 @@ def walk(one: Any) -> act.Rows:
     sent = np.concatenate([actions[:last], np.repeat(actions[last - 1 : last], len(x) - last, 0)])
     sent[last:, -DRIVE:] = 0.0
     told = np.column_stack([sent, np.arange(len(x)) >= last, thing])
-    return act.rows_of(one, VIEWS, True, told, slice(len(x)))
+    hidden = np.abs(np.arctan2(thing[:, 1], thing[:, 0])) > EDGE
+    return act.rows_of(one, VIEWS, True, told, np.repeat(np.arange(len(x)), np.where(hidden, SEARCHES, 1)))
 
 
 def take(one: Any) -> act.Rows:

@@ -124,9 +124,9 @@ def film(path: Path, view: str) -> np.ndarray:
     return np.stack([small(picture[:, :, ::-1], view) for _, picture in iter(video.read, (False, None))])
 
 
-def felt(qpos: np.ndarray, qvel: np.ndarray, held: np.ndarray, walks: bool) -> np.ndarray:
-    """What the robot feels, [N, J]: its joints, whether it holds something, and if it `walks` how fast it turns."""
-    return np.column_stack([qpos[:, BASE:], held, *([qvel[:, BASE - 1]] if walks else [])])
+def felt(qpos: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """What the robot feels, [N, J]: its joints, and whether it holds something."""
+    return np.column_stack([qpos[:, BASE:], held])
 
 
 def sent(one: Any) -> np.ndarray:
@@ -135,10 +135,10 @@ def sent(one: Any) -> np.ndarray:
     return np.stack([actions[frame : frame + every].mean(0) for frame in range(0, len(actions), every)])
 
 
-def rows_of(one: Any, views: list[str], walks: bool, actions: np.ndarray, part: Any = slice(None)) -> Rows:
+def rows_of(one: Any, views: list[str], actions: np.ndarray, part: slice = slice(None)) -> Rows:
     """The rows of `part` of the pictures of a demonstration, from what is sent after each picture, [T, A]."""
     at, last = np.arange(0, len(one.frames["action"]), one.meta["every"]), len(actions) - 1
-    body = felt(one.frames["qpos"][at], one.frames["qvel"][at], one.frames["held"][at] >= 0, walks)
+    body = felt(one.frames["qpos"][at], one.frames["held"][at] >= 0)
     chunks = actions[np.minimum(np.arange(len(at))[:, None] + np.arange(CHUNK), last)]
     pictures = [torch.from_numpy(film(one.films[VIEWS[view][0]], view)[: len(at)][part]) for view in views]
     return Rows(pictures, torch.from_numpy(body[part]).float(), torch.from_numpy(chunks[part]).float())
@@ -154,22 +154,22 @@ def read(folders: list[Path]) -> list[Any]:
 
 def train(folders: list[Path], /, *, out: Path, minutes: float = 30.0, seed: int = 0) -> None:
     """Train for some minutes on the datasets in `folders`, and write the policy."""
-    every = read(folders)
-    views = [*every[0].films]
-    learn(every[0], views, False, [rows_of(one, views, False, sent(one)) for one in every], out, minutes, seed)
+    views = [*(every := read(folders))[0].films]
+    learn(every[0], views, [rows_of(one, views, sent(one)) for one in every], out, minutes, seed)
 
 
-def learn(one: Any, views: list[str], walks: bool, rows: list[Rows], out: Path, minutes: float, seed: int) -> None:
+def learn(one: Any, views: list[str], rows: list[Rows], out: Path, minutes: float, seed: int) -> None:
     """Train on `rows`, and write the policy, to be played as `one` was recorded; one that is there goes on learning."""
     torch.manual_seed(seed)
     pictures = [torch.cat(view) for view in zip(*(part.pictures for part in rows), strict=True)]
     body, chunks = (torch.cat([getattr(part, name) for part in rows]) for name in ("body", "chunks"))
+    rows.clear()  # so that pictures are in memory once
     model = Chunks(len(views), body.shape[1], chunks.shape[2])
     for name, numbers in (("felt", body), ("sent", chunks.flatten(0, 1))):
         getattr(model, name).copy_(torch.stack([numbers.mean(0), numbers.std(0).clamp(min=LEAST)]))
     out.mkdir(parents=True, exist_ok=True)
     env = {"task": one.result.env_id, "cameras": [*one.films][1:], "every": one.meta["every"]}
-    settings = {"views": views, "walks": walks, "env": {**env, "robot_uids": one.meta["robot"]}}
+    settings = {"views": views, "env": {**env, "robot_uids": one.meta["robot"]}}
     (out / "settings.json").write_text(json.dumps(settings, indent=1))
     if (out / "policy.safetensors").exists():
         model.load_state_dict(load_file(out / "policy.safetensors"))
@@ -216,7 +216,7 @@ class Policy:
     def act(self, seen: dict[str, Any]) -> np.ndarray:
         """The coming actions, [CHUNK, A], from an observation of HazardRobot-v1."""
         told = seen["agent_pos"][None]  # joints, how fast they move, the pose, the hand, whether it holds something
-        body = felt(*np.split(told[:, :-7], 2, axis=1), told[:, -1], self.settings["walks"])
+        body = felt(np.split(told[:, :-7], 2, axis=1)[0], told[:, -1])
         pictures = [small(seen["pixels"][VIEWS[view][0]], view) for view in self.settings["views"]]
         with torch.no_grad():
             ways, choice = self.model([torch.from_numpy(one)[None] for one in pictures], torch.from_numpy(body).float())

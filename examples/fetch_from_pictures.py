@@ -7,11 +7,12 @@
     python examples/fetch_from_pictures.py play learned/walk learned/take --episodes 25
 
 Both are those of `act_from_pictures.py`. The one that walks sees all that is before it at the full resolution of its
-camera, in which a thing 4 m away is three pixels wide, and feels how fast it turns, so that it goes on looking around.
-Beside what it sends it foresees whether it has arrived, and where the thing then is before it: of the latter only its
-teacher knows, and nothing acts on it, but who foresees it learns sooner what to look for. While it is shown how, its
-base slips now and then, or it would never see a thing beside its way and turn back to it. The one that takes begins
-where it has arrived. If nothing is in the hand after TAKES tenths of a second, the other one walks again.
+camera, in which a thing 4 m away is three pixels wide. Beside what it sends it foresees whether it has arrived, and
+where the thing then is before it: of the latter only its teacher knows, and nothing acts on it, but who foresees it
+learns sooner what to look for. While it is shown how, its base slips now and then, or it would never see a thing beside
+its way and turn back to it. Its teacher knows where a thing is that nobody sees: where it is not in the picture, the
+policy is shown to turn left. The one that takes begins where the walk ends. If nothing is in the hand after TAKES
+tenths of a second, the other one walks again.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from typing import Any
 
 import act_from_pictures as act
 import numpy as np
+import torch
 import tyro
 
 WALK = "walk to "  # how a walk's subtask begins
@@ -28,8 +30,8 @@ VIEWS = ["far", "head"]  # of the policy that walks
 LOOKS = 2  # actions of a walk that are carried out before it looks again
 AFTER = 3  # pictures after a walk that show that it has arrived
 TAKES = 45  # tenths of a second in which something must be in the hand; 99 % of demonstrations need less than 30
-ARRIVED, MORE = -3, 3  # where it foresees whether it has arrived; numbers that it foresees beside actions
-EDGE, SEARCHES = np.pi / 3, 5  # where pictures end to the left and right [rad]; see `walk`
+ARRIVED, MORE, TURN = -3, 3, -4  # where it foresees whether it has arrived; numbers beside an action; where it turns
+EDGE, SEARCHES = np.pi / 3, 3  # where pictures end to the left and right [rad]; see `walk`
 DRIVE = 2  # the last numbers of an action: forward, turn
 
 
@@ -41,43 +43,45 @@ def arrival(one: Any) -> int:
 
 
 def walk(one: Any) -> act.Rows:
-    """The rows of a demonstration's walk, and AFTER rows behind it.
+    """The rows of a demonstration's walk and AFTER rows behind it, and the same in a mirror.
 
     Sent are the actions of the walk, then nothing for the base; whether it has arrived; and the place of the thing
-    before the robot, forward and left [m]. Rows in which it cannot be seen are there SEARCHES times: a teacher that
-    knows where to turn has few of them, and without them it would drive at whatever it sees.
+    before the robot, forward and left [m]. Where it is not in the picture, in rows that are there SEARCHES times, it
+    turns left.
     """
     every, end = one.meta["every"], arrival(one)
     last, actions = -(-end // every), act.sent(one)
     taken = int(np.argmax(one.frames["held"] >= 0))
     x, y, heading = one.frames["base"][: (last + AFTER) * every : every].T
-    right, up = one.frames["hand"][taken, :2, None] - np.stack([x, y])
-    thing = np.column_stack(
-        [np.cos(heading) * right + np.sin(heading) * up, np.cos(heading) * up - np.sin(heading) * right]
-    )
+    east, north = one.frames["hand"][taken, :2, None] - np.stack([x, y])
+    forward, left = (np.cos(heading) * a + np.sin(heading) * b for a, b in ((east, north), (north, -east)))
     sent = np.concatenate([actions[:last], np.repeat(actions[last - 1 : last], len(x) - last, 0)])
     sent[last:, -DRIVE:] = 0.0
-    told = np.column_stack([sent, np.arange(len(x)) >= last, thing])
-    hidden = np.abs(np.arctan2(thing[:, 1], thing[:, 0])) > EDGE
-    return act.rows_of(one, VIEWS, True, told, np.repeat(np.arange(len(x)), np.where(hidden, SEARCHES, 1)))
+    rows = act.rows_of(one, VIEWS, np.column_stack([sent, np.arange(len(x)) >= last, forward, left]), slice(len(x)))
+    chunks = torch.cat([rows.chunks, rows.chunks * torch.tensor([*[1.0] * (sent.shape[1] - 1), -1.0, 1.0, 1.0, -1.0])])
+    hidden = torch.from_numpy(np.abs(np.arctan2(left, forward)) > EDGE).repeat(2)
+    chunks[hidden, :, TURN - 1 : TURN + 1] = torch.tensor([0.0, 1.0])
+    picked = torch.arange(len(hidden)).repeat_interleave(torch.where(hidden, SEARCHES, 1))
+    pictures = [torch.cat([view, view.flip(-1)])[picked] for view in rows.pictures]
+    return act.Rows(pictures, rows.body.repeat(2, 1)[picked], chunks[picked])
 
 
 def take(one: Any) -> act.Rows:
     """The rows of a demonstration after its walk."""
     first = -(-arrival(one) // one.meta["every"]) if one.result.env_id.startswith("HazardFetch") else 0
-    return act.rows_of(one, [*one.films], False, act.sent(one), slice(first, None))
+    return act.rows_of(one, [*one.films], act.sent(one), slice(first, None))
 
 
 def train_walk(folders: list[Path], /, *, out: Path, minutes: float = 30.0, seed: int = 0) -> None:
     """Train the policy that walks, for some minutes, on the datasets in `folders`, and write it."""
     every = [one for one in act.read(folders) if arrival(one)]
-    act.learn(every[0], VIEWS, True, [walk(one) for one in every], out, minutes, seed)
+    act.learn(every[0], VIEWS, [walk(one) for one in every], out, minutes, seed)
 
 
 def train_take(folders: list[Path], /, *, out: Path, minutes: float = 30.0, seed: int = 0) -> None:
     """Train the policy that takes and stows, for some minutes, on the datasets in `folders`, and write it."""
     every = act.read(folders)
-    act.learn(every[0], [*every[0].films], False, [take(one) for one in every], out, minutes, seed)
+    act.learn(every[0], [*every[0].films], [take(one) for one in every], out, minutes, seed)
 
 
 class Fetching:

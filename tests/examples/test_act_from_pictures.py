@@ -53,7 +53,7 @@ def dataset(tmp_path_factory: pytest.TempPathFactory, practice: Any) -> Path:
 
 def test_rows_are_what_was_seen_and_what_was_done_from_then_on(example: Any, dataset: Path) -> None:
     (one,) = example.read([dataset])
-    rows = example.rows_of(one, [*one.films], False, example.sent(one))
+    rows = example.rows_of(one, [*one.films], example.sent(one))
     actions, last = one.frames["action"], (len(one.frames["action"]) - 1) // EVERY
     assert [view.shape for view in rows.pictures] == [(last + 1, 3, 96, 96)] * 2
     assert rows.body.shape == (last + 1, 13)
@@ -91,7 +91,7 @@ def test_it_learns_goes_on_and_plays(
     assert losses[1] < 0.8 * losses[0]
     settings = json.loads((tmp_path / "made" / "settings.json").read_text())
     env = {"task": "HazardPickUp-v1", "cameras": ["wrist"], "every": EVERY, "robot_uids": "fetch"}
-    assert settings == {"views": ["head", "wrist"], "walks": False, "env": env}
+    assert settings == {"views": ["head", "wrist"], "env": env}
     assert example.play(tmp_path / "made", episodes=1, seed=4, split="train", hazards=("flood",)) in ([False], [True])
     assert "of 1 succeeded" in capsys.readouterr().out
 

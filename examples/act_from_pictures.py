@@ -154,16 +154,16 @@ def read(folders: list[Path]) -> list[Any]:
 
 def train(folders: list[Path], /, *, out: Path, minutes: float = 30.0, seed: int = 0) -> None:
     """Train for some minutes on the datasets in `folders`, and write the policy."""
-    views = [*(every := read(folders))[0].films]
+    every = read(folders)
+    views = [*every[0].films]
     learn(every[0], views, [rows_of(one, views, sent(one)) for one in every], out, minutes, seed)
 
 
 def learn(one: Any, views: list[str], rows: list[Rows], out: Path, minutes: float, seed: int) -> None:
     """Train on `rows`, and write the policy, to be played as `one` was recorded; one that is there goes on learning."""
     torch.manual_seed(seed)
-    pictures = [torch.cat(view) for view in zip(*(part.pictures for part in rows), strict=True)]
+    pictures = [[seen for part in rows for seen in part.pictures[view]] for view in range(len(views))]  # not copied
     body, chunks = (torch.cat([getattr(part, name) for part in rows]) for name in ("body", "chunks"))
-    rows.clear()  # so that pictures are in memory once
     model = Chunks(len(views), body.shape[1], chunks.shape[2])
     for name, numbers in (("felt", body), ("sent", chunks.flatten(0, 1))):
         getattr(model, name).copy_(torch.stack([numbers.mean(0), numbers.std(0).clamp(min=LEAST)]))
@@ -181,7 +181,7 @@ def learn(one: Any, views: list[str], rows: list[Rows], out: Path, minutes: floa
         batch = torch.randint(len(body), (BATCH,))
         noisy = body[batch] + JITTER * model.felt[1] * torch.randn(BATCH, body.shape[1])
         shift = torch.randint(-SHIFT, SHIFT + 1, (2,)).tolist()  # as if cameras were not quite in place
-        seen = [torch.roll(view[batch], shift, (-1, -2)) for view in pictures]
+        seen = [torch.roll(torch.stack([view[k] for k in batch.tolist()]), shift, (-1, -2)) for view in pictures]
         loss = model.loss(seen, noisy, chunks[batch])
         optimiser.zero_grad()
         loss.backward()

@@ -36,7 +36,13 @@ class Independent(TeamAgent):
     """One agent for each robot, each on its own."""
 
     def __init__(self, name: str = "greedy") -> None:
-        """`name`: of the agents, as `hazard_ms.agents.base.agent` takes it, which says what it raises."""
+        """`name`: of the agents, as `hazard_ms.agents.base.agent` takes it, which says what else it raises.
+
+        Raises ValueError for agents that see what is hidden, and for those that move the robot by themselves.
+        """
+        kind = type(agent(name))
+        if kind.privileged or kind.skill is not Agent.skill:
+            raise ValueError(f"agents of a team must see what robots see and use the benchmark's skills, got {name}")
         self._name = name
 
     def reset(self, briefs: Mapping[str, Brief]) -> None:

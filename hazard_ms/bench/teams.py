@@ -17,7 +17,6 @@ from pathlib import Path
 import numpy as np
 
 from hazard_ms.agents.team import TeamAgent, team_agent
-from hazard_ms.registry import TASKS
 from hazard_ms.skills.team import TeamSkills
 
 ALONE, PAIR = ("fetch",), ("fetch", "fetch")
@@ -85,7 +84,7 @@ def table(made: Sequence[TeamResult]) -> str:
 def main() -> None:
     """Play what the file lacks, and print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-t", "--tasks", nargs="+", choices=[*TASKS], default=["HazardFire-v1"])
+    parser.add_argument("-t", "--tasks", nargs="+", default=["HazardFire-v1"])
     parser.add_argument("-n", "--episodes", type=int, default=2, help="of each task and team, by seeds from 0 on")
     parser.add_argument("-o", "--output", type=Path, default=Path("teams.jsonl"))
     asked = parser.parse_args()

@@ -77,8 +77,11 @@ class Auction(TeamAgent):
             action = self._agents[name].act(decision)
             if action.verb == STOP and others:  # it may be needed again when another fails
                 action = Action(EXPLORE)
-            if action.verb in APPROACH and action.target in (t.name for t in decision.targets):
-                self._aims[name] = str(action.target)
+            target = action.target
+            if action.verb == STOP:
+                self._last.pop(name)  # it bids no more
+            elif action.verb in APPROACH and target is not None and target in {t.name for t in decision.targets}:
+                self._aims[name] = target
             made[name] = action
         return made
 
@@ -96,7 +99,7 @@ class Auction(TeamAgent):
             spots = {n: (float(s.position[0]), float(s.position[1])) for n, s in seen.items() if n not in rescued}
             places[name] = decision.agent_position
             aim = self._aims.get(name)
-            if aim in spots:
+            if aim is not None and aim in spots:
                 ways[name] += math.dist(places[name], spots[aim]) + HANDLING
                 places[name] = spots[aim]
             given_up = self._agents[name].has_given_up

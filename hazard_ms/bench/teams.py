@@ -2,7 +2,7 @@
 
     python -m hazard_ms.bench.teams -t HazardFire-v1 HazardWind-v1 -n 2 -o teams.jsonl
 
-Every episode is a line of the file, which a second start goes on with. Results do not depend on the machine.
+Every episode adds a line to the file. Results do not depend on the machine.
 """
 
 from __future__ import annotations
@@ -61,12 +61,6 @@ def measure(env_id: str, seeds: Sequence[int], robots: tuple[str, ...], name: st
     return made
 
 
-def read(path: Path) -> list[TeamResult]:
-    """The episodes of a file; none where there is no file."""
-    rows = map(json.loads, path.read_text(encoding="utf-8").splitlines()) if path.exists() else ()
-    return [TeamResult(**{**row, "robots": tuple(row["robots"])}) for row in rows]
-
-
 def table(made: Sequence[TeamResult]) -> str:
     """Means over episodes of the same task, robots and agent, as a table in Markdown."""
     lines = ["| task | robots | agent | episodes | value | frames | collisions |", "|---|---|---|---|---|---|---|"]
@@ -82,18 +76,18 @@ def table(made: Sequence[TeamResult]) -> str:
 
 
 def main() -> None:
-    """Play what the file lacks, and print the table."""
+    """Play, write a line for each episode, and print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-t", "--tasks", nargs="+", default=["HazardFire-v1"])
     parser.add_argument("-n", "--episodes", type=int, default=2, help="of each task and team, by seeds from 0 on")
     parser.add_argument("-o", "--output", type=Path, default=Path("teams.jsonl"))
     asked = parser.parse_args()
-    for (robots, name), task, seed in itertools.product(SETUPS, asked.tasks, range(asked.episodes)):
-        done = read(asked.output)
-        if not any((r.env_id, r.seed, r.robots, r.agent) == (task, seed, robots, name) for r in done):
-            with asked.output.open("a", encoding="utf-8") as file:
-                file.writelines(json.dumps(asdict(r)) + "\n" for r in measure(task, [seed], robots, name))
-    print(table(read(asked.output)))
+    made: list[TeamResult] = []
+    for task, (robots, name), seed in itertools.product(asked.tasks, SETUPS, range(asked.episodes)):
+        made += measure(task, [seed], robots, name)
+        with asked.output.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(asdict(made[-1])) + "\n")
+    print(table(made))
 
 
 if __name__ == "__main__":

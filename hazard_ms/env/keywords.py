@@ -35,9 +35,9 @@ def check_names(given: Iterable[str], ours: Callable[..., None]) -> None:
 
 
 def check_team(robot: Any, env: Any, cameras: Sequence[str], given: dict[str, Any]) -> None:
-    """Raise ValueError for what a team cannot do yet, where `robot` names several.
+    """Check that a team is asked for nothing that it cannot do yet, where `robot` names several.
 
-    `env` has its task and its other settings; `given`: keywords for ManiSkill.
+    `env` has its task and its other settings; `given`: keywords for ManiSkill. Raises ValueError for the rest.
     """
     count = len(robot_names(robot))
     if count == 1:

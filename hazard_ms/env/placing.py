@@ -1,4 +1,4 @@
-"""Where robots stand: at the start of an episode apart from one another, and where a user puts them."""
+"""Places robots: apart from one another at the start of an episode, and wherever a user asks for."""
 
 from __future__ import annotations
 
@@ -53,9 +53,9 @@ def place_all(world: World, rows: Tensor, robots: Sequence[Any]) -> None:
 
 
 def check_clear(world: World, env: int, place: tuple[float, float], robot: Robot, robots: Mapping[str, Robot]) -> None:
-    """Raise ValueError where a `robot` would touch a thing, a wall or another one in scene `env` at `place` [m].
+    """Check that a `robot` would touch no thing, no wall and no other one in scene `env` at `place` [m].
 
-    `robots`: all of the scene, by name.
+    `robots`: all of the scene, by name. Raises ValueError where it would.
     """
     radius = robot.build.radius
     others = {n: r.base_pose()[0][env, :2].tolist() for n, r in robots.items() if r is not robot}

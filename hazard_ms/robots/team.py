@@ -35,7 +35,7 @@ class Team(MultiAgent[Any]):
             _set_apart(robot, number)
 
     def get_proprioception(self) -> dict[str, Any]:
-        """What each robot feels of its own joints, by its name."""
+        """Positions and velocities of the joints of each robot, by its name, as ManiSkill gives them."""
         return {name: robot.get_proprioception() for name, robot in self.agents_dict.items()}
 
     def before_simulation_step(self) -> None:

@@ -139,7 +139,7 @@ class Stage:
         return float(along[high].min(initial=most))
 
     def discs(self) -> list[tuple[float, float, float]]:
-        """What the other robots of its team take up of the floor: middles x, y [m] and radii [m] of bases and hands."""
+        """Discs of floor that the other robots of its team take up: middles x, y and radii [m] of bases and hands."""
         bases = [(*robot.base()[:2], robot.build.radius) for robot in self.others]
         hands = [(float(x), float(y), HAND_RADIUS) for x, y, _ in (robot.hand() for robot in self.others)]
         return bases + hands

@@ -1,10 +1,11 @@
-"""What one robot knows of an episode: the map of what it has seen, things as it means them, and its last look."""
+"""The knowledge that one robot has of an episode: the map of what it has seen, its last look, its last action."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,8 @@ from hazard_ms.skills.failures import NOT_A_TARGET, REFUSED
 from hazard_ms.skills.mitigations.offers import offered, tools, verbs_of
 
 
-class OneRobot(NamedTuple):
+@dataclass
+class OneRobot:
     """One robot of a team as skills need it."""
 
     agent: Robot

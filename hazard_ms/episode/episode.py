@@ -175,7 +175,7 @@ class Episode:
         self.keep(lambda: grasp.places(self.hand, self.world, *gripper))
 
     def keep(self, places: Callable[[], tuple[Tensor, Tensor, Tensor]]) -> None:
-        """Keep what is in hands or bags where `places`, asked if anything is, says, [E, B, 3] [m]: see `grasp.places`."""
+        """Keep what is in hands or bags at `places`, [E, B, 3] [m], asked if anything is there: see `grasp.places`."""
         now = self.world.held | self.world.away
         if self.world.equipment is not None:
             now = now | self.world.equipment.placed

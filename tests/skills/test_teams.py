@@ -133,6 +133,9 @@ def test_an_auction_gives_each_target_to_the_robot_that_gets_there_with_the_leas
     player._aims = {"r1": "a"}  # on its way there
     won = player._allocated(decision((0.0, 0.0), spots, rescued=("d",)))
     assert won == {"a": "r1", "b": "r0", "c": "r0"}
+    player._aims, near = {}, {"a": (1.0, 0.0), "b": (4.0, 0.0)}  # r0 goes on from a: 1 + 1 + 3 = 5, before 5.5 of r1
+    player._last = {"r0": decision((0.0, 0.0), near), "r1": decision((9.5, 0.0), near)}
+    assert player._allocated(player._last["r0"]) == {"a": "r0", "b": "r0"}
 
 
 def test_team_agents_are_found_by_name() -> None:

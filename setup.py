@@ -67,6 +67,7 @@ setup(
         "rfdetr": ["rfdetr>=1.11,<2"],  # RF-DETR-Seg as a detector, with weights of the user's
         "demos": ["pyarrow>=25", "av>=15", "minari>=0.5.3"],  # demonstrations as LeRobot and Minari data sets
         "cluster": ["ray>=2.60"],  # episodes on many machines: hazard-ms evaluate --backend ray
+        "teams": ["pettingzoo>=1.25"],  # several robots as its ParallelEnv
         "web": ["starlette>=1.0", "uvicorn>=0.50", "websockets>=16"],  # the page of hazard-ms serve
         "pictures": ["pyoidn>=2.5", "cffi>=1.0"],  # takes the grain out of ray-traced pictures
         "docs": ["sphinx>=8.1", "myst-parser>=4.0", "furo>=2025.12"],

@@ -50,6 +50,7 @@ class Greedy(Agent):
         if give_up < 1:
             raise ValueError(f"give_up must be at least 1, got {give_up}")
         self._give_up, self._belief = give_up, belief
+        self.left_to_others: frozenset[str] = frozenset()  # targets that other robots of its team fetch
 
     def reset(self, brief: Brief) -> None:
         """Forget the last episode. Nothing is random."""
@@ -78,6 +79,10 @@ class Greedy(Agent):
             self._looks.append(decision.agent_position)
         return action
 
+    def has_given_up(self, name: str) -> bool:
+        """Whether it no longer tries to fetch the target `name`."""
+        return self._failures.get(name, 0) >= self._give_up
+
     def _judge(self, decision: Decision) -> None:
         """Count the last action's failure, unless it was a walk that came further."""
         if self._before is None or decision.last_result is None or decision.last_result.ok:
@@ -103,7 +108,7 @@ class Greedy(Agent):
         if self._looked_from is None or self._look_again:
             self.note = "look around"
             return Action(EXPLORE)
-        targets = known(decision, open_targets(decision))
+        targets = known(decision, tuple(n for n in open_targets(decision) if n not in self.left_to_others))
         ways = self._ways(decision, [name for name in targets if self._failures.get(name, 0) < self._give_up])
         costs = {name: self._cost(decision, name, targets[name], way) for name, way in ways.items()}
         if not costs:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,25 +13,27 @@ from mani_skill.utils.common import to_tensor
 from mani_skill.utils.structs.types import SimConfig
 from torch import Tensor
 
+from hazard_ms.env import assembling, placing
 from hazard_ms.env.control_noise import lead_astray
 from hazard_ms.env.leaves import Leaves
+from hazard_ms.env.spaces import tensors
 from hazard_ms.episode import rewards
 from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.grasp import Hand, lead_doors
+from hazard_ms.episode.grasp import Hand
+from hazard_ms.episode.members import Members
 from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.base import loosened, none_set
 from hazard_ms.hazards.presets import FREQUENCIES
 from hazard_ms.registry.mitigations import tools_of
+from hazard_ms.robots import MOST_ROBOTS
 from hazard_ms.robots.mounting import mounted
+from hazard_ms.robots.team import team_of
 from hazard_ms.scenes.choice import SceneChoice
 from hazard_ms.scenes.rearranged import rearranged
-from hazard_ms.sensing.display import Display
-from hazard_ms.sensing.labels import labels_of
 from hazard_ms.sensing.observations import Observer
-from hazard_ms.simulation import building, clearance
+from hazard_ms.simulation import building
 from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.drawing.lighting import Lighting
-from hazard_ms.simulation.drawing.moved_cameras import MovedCameras
 from hazard_ms.simulation.drawing.viewpoint import corner_view
 from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.world import World
@@ -57,7 +59,9 @@ class BuiltEnv(BaseEnv):
     world: World
     episode: Episode
     situation: Situation
-    observer: Observer
+    robots: Mapping[str, Any]  # by name; one, or those of a team
+    members: Members  # the same, with their hands and places
+    observers: tuple[Observer, ...]  # the senses of each robot
 
     @property
     def task_description(self) -> str:
@@ -89,7 +93,8 @@ class BuiltEnv(BaseEnv):
 
     def _load_agent(self, options: dict[str, Any]) -> None:
         self.specs = self.chosen(self._episode_seed, options.get("scene"))
-        super()._load_agent(options, building.pose_of((0.0, 0.0, 0.0), 0.0))
+        super()._load_agent(options, [building.pose_of((0.0, 0.0, 0.0), 0.0)] * MOST_ROBOTS)
+        self.robots = team_of(self)
 
     def chosen(self, seeds: Sequence[int] | np.ndarray, wanted: Any = None) -> tuple[SceneSpec, ...]:
         """The `wanted` scenes, or where that is None those that `seeds`, [E], choose, as these seeds arrange them."""
@@ -108,38 +113,37 @@ class BuiltEnv(BaseEnv):
         self.lights: Lighting | None = None  # where nothing renders, nothing shines
         loose = () if self.gpu_sim_enabled else tuple(loosened(self.task.hazards, spec) for spec in self.specs)
         self.actors = building.build_scenes(self.scene, self.specs, loose)
-        self.bags = building.build_bags(self.scene, self.num_envs)
+        self.bags = [building.build_bags(self.scene, self.num_envs, n) for n in range(len(self.robots))]
         self.world = building.make_world(self.specs, self.device, loose)
-        self.world.agent_build = self.agent.build
+        first = next(iter(self.robots.values()))
+        self.world.agent_build = first.build
         if self.task.mitigations:
             self.world.equip(tools_of(self.task.mitigations))
         if self.task.doors_by_hand:
             self.world.door_grip = DoorGrip(self.specs, self.world.openings)
         self.episode = Episode(self.world, self.task.hazards, self.task.safe_place)
         self.leaves = Leaves(self.scene, self.world)
-        self.situation = Situation(self.episode, self.agent, self.affects_agent)
+        self.situation = Situation(self.episode, first, self.affects_agent)
 
     def _load_lighting(self, options: dict[str, Any]) -> None:
         self.lights = Lighting(self.scene, self.specs, self.lighting, self.perturbation.lighting)
 
     def _after_reconfigure(self, options: dict[str, Any]) -> None:
         self.world.handles = building.connect(self.scene, self.specs, self.actors, self.device)
-        self.agent.controller.reset()  # ManiSkill does it only after a state is restored, which needs its targets
-        labels = labels_of(self.scene, self.actors, self.agent.robot, self.bags)
-        cameras = (self._sensors, self._human_render_cameras)
-        moved = MovedCameras(self._sensors, self.perturbation.camera)
-        display = Display(self.situation, self.scene, self.bags, self.lights, cameras, self.effects_mode, moved)
-        terms, noise = self.task.observations, self.perturbation.noise
-        self.observer = Observer(self.situation, terms, display, self._sensors, labels, self.senses, noise)
+        for robot in self.robots.values():
+            robot.controller.reset()  # ManiSkill does it only after a state is restored, which needs its targets
+        self.members = Members(self.episode, self.robots, self.affects_agent)
+        self.contacts = assembling.contacts(self)
+        self.observers = assembling.observers(self)
 
     def _initialize_episode(self, env_idx: Tensor, options: dict[str, Any]) -> None:
         seeds = torch.as_tensor(np.asarray(self._episode_seed), device=self.device)
         self.episode.begin(env_idx, seeds[env_idx])
-        starts = [self.specs[e].agent_start for e in env_idx.tolist()]
-        self.agent.place(env_idx, torch.tensor([s.position for s in starts]), torch.tensor([s.heading for s in starts]))
+        self.members.begin(env_idx)
+        placing.place_all(self.world, env_idx, [*self.robots.values()])
         if self.task.arrange is not None:
             self.task.arrange(self.situation, env_idx)
-        self.episode.see(self.agent)
+        self.members.see()
         self.episode.begin_hazards(env_idx)
         self.leaves.move()
 
@@ -167,6 +171,8 @@ class BuiltEnv(BaseEnv):
                 self.agent.lie(down)
             self.agent.carry(self.episode.slowed)
             self.agent.keep_out(self.episode.forbidden)
+        if self.contacts is not None:
+            self.contacts.begin()
         if self.affects_agent and self.gpu_sim_enabled:
             self.scene.px.gpu_apply_articulation_target_velocity()  # ManiSkill has sent the velocities already
 
@@ -174,19 +180,24 @@ class BuiltEnv(BaseEnv):
         self.leaves.push(self._sim_steps_per_control)
         self.episode.push(self.sim_timestep)
 
+    def _after_simulation_step(self) -> None:
+        if self.contacts is not None:
+            self.contacts.look()
+
     def _after_control_step(self) -> None:
         if self.gpu_sim_enabled:
             self.scene._gpu_fetch_all()  # ManiSkill does it only after this
         self.world.read()
-        self.episode.see(self.agent)
-        self.episode.watch(self.agent.robot.get_qpos())
+        if self.contacts is not None:
+            self.contacts.end()
+        self.members.see()
+        self.episode.watch(self.members.joints())
         self.episode.advance(self.control_timestep)
-        gripper, closed = self.agent.gripper_pose(), self.agent.grip_closed()
-        lead_doors(self.hand, self.world, gripper[0], closed, self.control_timestep)
-        self.episode.use_hand(gripper, closed, self.agent.bag_position)
+        self.members.use_hands(self.control_timestep)
 
     def evaluate(self) -> dict[str, Tensor]:
-        return rewards.evaluate(self.task.goal, self.situation)
+        info = rewards.evaluate(self.task.goal, self.situation)
+        return info if self.contacts is None else {**info, "robot_collisions": self.contacts.record.count.clone()}
 
     def compute_dense_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:
         return self.task.goal.dense(self.situation)
@@ -200,7 +211,7 @@ class BuiltEnv(BaseEnv):
     def _flatten_raw_obs(self, obs: Any) -> Any:
         if self.obs_mode != "state":
             return super()._flatten_raw_obs(obs)
-        return torch.cat(_tensors(obs), dim=1)  # as ManiSkill's, in one step
+        return torch.cat(tensors(obs), dim=1)  # as ManiSkill's, in one step
 
     def label_table(self, env: int = 0) -> dict[int, tuple[str, str]]:
         """Segmentation ids of scene `env`: id -> (name, category). They may differ from scene to scene."""
@@ -210,30 +221,23 @@ class BuiltEnv(BaseEnv):
         """The id in a segmentation of scene `env` for each target of the entries extra/target_*; 0 without one."""
         return self.observer.target_ids(env)
 
-    def place_robot(self, position: tuple[float, float], heading: float, env: int = 0) -> None:
+    def place_robot(self, position: tuple[float, float], heading: float, env: int = 0, robot: int = 0) -> None:
         """Put the robot of environment `env` at `position` x, y [m] with `heading` [rad], tucked and at rest.
 
-        Raises ValueError where it would touch a thing or a wall; then it stays where it is.
+        `robot`: which one of a team, from 0. Raises ValueError where it would touch a thing or a wall; then it stays
+        where it is.
         """
         (x, y), (angle,) = checks.finite(position, 2, "position"), checks.finite((heading,), 1, "heading")
-        radius = self.agent.build.radius
-        touched = clearance.obstacle(self.world, checks.whole(env, 0, self.num_envs - 1, "env"), (x, y), radius)
-        if touched:
-            raise ValueError(
-                f"the robot's place must be {radius} m clear of all things, got ({x:g}, {y:g}), too near to {touched}: "
-                "hazard_ms.simulation.clearance.clear_points lists places"
-            )
-        rows = torch.tensor([env], device=self.device)
-        self.scene._reset_mask[:] = False
-        self.scene._reset_mask[rows] = True
-        self.agent.place(rows, torch.tensor([[x, y]]), torch.tensor([angle]))
-        if self.gpu_sim_enabled:
-            self.scene._gpu_apply_all()
-            self.scene.px.gpu_update_articulation_kinematics()
-            self.scene._gpu_fetch_all()
-        self.agent.controller.reset()  # commands that go on from the last one go on from here
-        self.scene._reset_mask[:] = True
-        self.episode.see(self.agent)
+        checks.whole(env, 0, self.num_envs - 1, "env")
+        one: Any = self.members[checks.whole(robot, 0, len(self.robots) - 1, "robot")].agent
+        placing.check_clear(self.world, env, (x, y), one, self.robots)
+        placing.put(self, one, torch.tensor([env], device=self.device), (x, y), angle)
+        self.members.see()
+
+    @property
+    def observer(self) -> Observer:
+        """The senses of the robot, or of the first of a team."""
+        return self.observers[0]
 
     def _get_obs_sensor_data(self, *asked: Any, **named: Any) -> Any:
         return to_tensor(super()._get_obs_sensor_data(*asked, **named), self.device)  # a GPU may have drawn it
@@ -242,9 +246,3 @@ class BuiltEnv(BaseEnv):
     def hand(self) -> Hand:
         """The hand of each agent: whether and which thing it holds."""
         return self.episode.hand
-
-
-def _tensors(obs: dict[str, Any]) -> list[Tensor]:
-    """All tensors of a nested observation, [E, N] each, in its own units [-], in their order."""
-    every = obs.values()
-    return [tensor for value in every for tensor in (_tensors(value) if isinstance(value, dict) else [value])]

@@ -24,6 +24,7 @@ from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
 from hazard_ms.registry import TASKS
 from hazard_ms.registry import affects_agent as acts_on_agent
 from hazard_ms.registry.announce import importable
+from hazard_ms.robots import robot_names
 from hazard_ms.robots.mounting import check_cameras
 from hazard_ms.scenes.choice import SceneChoice, SceneTurns
 from hazard_ms.scenes.files import playing
@@ -84,7 +85,8 @@ class HazardEnv(BuiltEnv):
             severity: How strong the hazards of `realistic` are: moderate, severe or extreme.
             hazards: Of HazardCompound-v1: some of the registered hazards.
             affects_agent: Whether the hazards act on the robot; None: as the task says, most say no.
-            robot_uids: The rescuer, by our name of it or by ManiSkill's; also a tuple of one.
+            robot_uids: The rescuer, by our name of it or by ManiSkill's; a tuple of two to four makes a team
+                (docs/teams.md).
             deterministic: Rebuild the scene for every episode, so that a seed gives the same bits (about 1 s a reset).
             scene_every: With `deterministic=False`, n: every n-th reset without a seed draws a new scene; 0: none does.
                 What they draw follows from the last seed, so that a training run sees the same scenes again.
@@ -116,7 +118,8 @@ class HazardEnv(BuiltEnv):
         self.effects_mode = checks.one_of(effects, EFFECTS, "effects")
         self.lighting = checks.one_of(lighting, LIGHTINGS, "lighting")
         self.senses = check_senses(senses, maniskill_keywords.get("obs_mode"))
-        self.cameras = check_cameras(cameras, robot_uids)
+        keywords.check_team(robot_uids, self, cameras, maniskill_keywords)
+        self.cameras = check_cameras(cameras, robot_names(robot_uids)[0])
         often = checks.whole(scene_every, 0, 2**31, "scene_every")
         chosen = self.deterministic or maniskill_keywords.get("reconfiguration_freq") is not None
         self.scene_turns = SceneTurns(0 if chosen else often)
@@ -182,7 +185,8 @@ class HazardEnv(BuiltEnv):
     def observation_table(self) -> ObservationTable:
         """The meaning of each number of observations, and its range."""
         levels = {hazard.name: hazard.level for hazard in self.task.hazards}
-        return ObservationTable(self.agent.robot.active_joints, self.task.observations, levels, self._most_frames)
+        joints = {name: robot.robot.active_joints for name, robot in self.robots.items()}
+        return ObservationTable(joints, self.task.observations, levels, self._most_frames)
 
     def limit_of(self, frames: int) -> int:
         """The limit that gymnasium's `frames` stands for: that of the split if `frames` is the task's usual one."""
@@ -199,8 +203,11 @@ class HazardEnv(BuiltEnv):
         """The space of one environment's observations, with true bounds."""
         return bounded(to_numpy(self._init_raw_obs), self.observation_table, to_numpy(self._get_obs_state_dict({})))
 
-    def _get_obs_extra(self, info: dict[str, Any]) -> dict[str, Tensor]:
-        return self.observer.extra(hidden=self.obs_mode_struct.use_state)
+    def _get_obs_extra(self, info: dict[str, Any]) -> dict[str, Any]:
+        hidden = self.obs_mode_struct.use_state
+        if len(self.robots) == 1:
+            return self.observer.extra(hidden)
+        return {name: one.extra(hidden) for name, one in zip(self.robots, self.observers, strict=True)}
 
     def _get_obs_with_sensor_data(self, info: dict[str, Any], apply_texture_transforms: bool = True) -> dict[str, Any]:
         self.observer.show()
@@ -208,7 +215,10 @@ class HazardEnv(BuiltEnv):
         for seen in obs["sensor_data"].values():
             if "segmentation" in seen:
                 seen["segmentation"] = seen["segmentation"].to(torch.int16)  # as ManiSkill's, for all shaders
-        return self.observer.with_noise(self.observer.add_hazard_image(obs, in_extra=self.obs_mode == "pointcloud"))
+        for name, one in zip(self.robots, self.observers, strict=True):
+            part = obs if len(self.robots) == 1 else {**obs, "extra": obs["extra"][name]}
+            one.add_hazard_image(part, in_extra=self.obs_mode == "pointcloud")
+        return self.observer.with_noise(obs)
 
     def render(self) -> Any:
         """A picture of the present frame, as `render_mode` says. Raises ValueError where nothing renders."""
@@ -231,7 +241,8 @@ class HazardEnv(BuiltEnv):
         rows = checks.rows(every if env_idx is None else env_idx, self.num_envs, "env_idx").to(self.device)
         state = states.checked(state, self.get_state_dict(), self.episode, len(rows))
         plain = super().set_state_dict
-        snapshot.put_back(self.episode, self.agent, state, rows, lambda rest: plain(rest, env_idx))
+        controllers = self.agent.set_controller_state
+        snapshot.put_back(self.episode, self.members, state, rows, lambda rest: plain(rest, env_idx), controllers)
         self._elapsed_steps[rows] = self.world.frame[rows].to(self._elapsed_steps)
 
     def set_state(self, state: Any, env_idx: Tensor | None = None) -> None:

@@ -16,9 +16,25 @@ STATES = "reset_to_env_states"
 
 
 def action(env: BuiltEnv, value: Any) -> Any:
-    """The action `value` as the simulator takes it: see `checks.action`. Raises ValueError for what it cannot take."""
-    agent = env.agent
-    return checks.action(value, env.num_envs, agent.control_mode, agent.action_size, agent.supported_control_modes)
+    """The action `value` as the simulator takes it: see `checks.action`; of a team a dict of them by robot, or None.
+
+    Raises ValueError for what it cannot take.
+    """
+    if len(env.robots) == 1:
+        return _action(env, env.agent, value)
+    if value is None:
+        return None
+    if not isinstance(value, dict) or set(value) != set(env.robots):
+        got = sorted(map(str, value)) if isinstance(value, dict) else type(value).__name__
+        raise ValueError(f"an action must be a dict with {', '.join(env.robots)}, got {got}")
+    for name, one in value.items():
+        if one is None or isinstance(one, dict):
+            raise ValueError(f"the action of {name} must be an array of numbers, got {type(one).__name__}")
+    return {name: _action(env, robot, value[name]) for name, robot in env.robots.items()}
+
+
+def _action(env: BuiltEnv, robot: Any, value: Any) -> Any:
+    return checks.action(value, env.num_envs, robot.control_mode, robot.action_size, robot.supported_control_modes)
 
 
 def reset(env: BuiltEnv, seed: Any, options: Any) -> tuple[Any, dict[str, Any]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import torch
@@ -13,9 +13,10 @@ from mani_skill.envs.sapien_env import BaseEnv
 from hazard_ms.effects.raytracing.sensor import with_our_shaders
 from hazard_ms.effects.shaders.pack import shader_config
 from hazard_ms.machine.render_backend import backend
-from hazard_ms.robots import robot_uid
+from hazard_ms.robots import robot_names, robot_uid
 from hazard_ms.sensing.modes import check_obs_mode, check_renderer
 from hazard_ms.spec import checks
+from hazard_ms.spec.perturbation import Perturbation
 
 KNOWN = (*inspect.signature(BaseEnv.__init__).parameters,)[1:]
 RENDER_MODES = ("human", "rgb_array", "sensors", "all")
@@ -31,6 +32,25 @@ def check_names(given: Iterable[str], ours: Callable[..., None]) -> None:
     known = {*KNOWN, *(p.name for p in parameters if p.kind is p.KEYWORD_ONLY)} - {"task"}
     for name in given:
         checks.one_of(name, sorted(known), "a keyword of gym.make", shown=len(known))
+
+
+def check_team(robot: Any, env: Any, cameras: Sequence[str], given: dict[str, Any]) -> None:
+    """Check that a team is asked for nothing that it cannot do yet, where `robot` names several.
+
+    `env` has its task and its other settings; `given`: keywords for ManiSkill. Raises ValueError for the rest.
+    """
+    count = len(robot_names(robot))
+    if count == 1:
+        return
+    task = env.task
+    if task.mitigations or task.arrange is not None or task.doors_by_hand:
+        raise ValueError(f"robot_uids must be one robot in {task.name}, whose tools are for one, got {count}")
+    if given.get("num_envs", 1) != 1 or given.get("sim_backend", "auto") not in ("auto", "cpu", "physx_cpu"):
+        raise ValueError(f"num_envs must be 1 and sim_backend cpu for {count} robots, got {given}")
+    off = {"affects_agent": env.affects_agent, "perturb": env.perturbation != Perturbation(), "senses": env.senses}
+    for name, asked in {**off, "cameras": cameras}.items():
+        if asked:
+            raise ValueError(f"{name} must not be set for {count} robots: only one robot can have it so far")
 
 
 def modes_offered(draws: bool) -> list[str]:

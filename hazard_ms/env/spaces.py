@@ -6,6 +6,7 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
+from torch import Tensor
 
 from hazard_ms.sensing.observation_table import ObservationTable
 
@@ -24,3 +25,9 @@ def bounded(observation: Any, table: ObservationTable, state: dict[str, Any]) ->
         return gym.spaces.Box(low, high, dtype=value.dtype.type)
 
     return space(observation, ())
+
+
+def tensors(obs: dict[str, Any]) -> list[Tensor]:
+    """All tensors of a nested observation, [E, N] each, in its own units [-], in their order."""
+    every = obs.values()
+    return [tensor for value in every for tensor in (tensors(value) if isinstance(value, dict) else [value])]

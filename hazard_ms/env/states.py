@@ -13,6 +13,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.episode.episode import Episode
+from hazard_ms.episode.grasp import Hand
 from hazard_ms.episode.snapshot import WORD
 from hazard_ms.hazards.base import State
 from hazard_ms.spec import checks
@@ -43,8 +44,8 @@ def checked(state: Any, now: dict[str, Any], episode: Episode, rows: int) -> dic
     saved = made["hazard_ms"]
     for name, part in episode.parts.items():
         _check_part(part, saved[name], episode.world.num_bodies, f"state.hazard_ms.{name}")
-    hand = saved["hand"]
-    _unit(hand["turn"][hand["held"][:, 0] >= 0], "state.hazard_ms.hand.turn")
+    for name in (name for name, part in episode.parts.items() if isinstance(part, Hand)):
+        _unit(saved[name]["turn"][saved[name]["held"][:, 0] >= 0], f"state.hazard_ms.{name}.turn")
     _within(saved["chance"]["seed"], 0, WORD - 1, "state.hazard_ms.chance.seed")
     _within(saved["chance"]["frame"], 0, 2**31 - 1, "state.hazard_ms.chance.frame")
     return made

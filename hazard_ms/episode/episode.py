@@ -41,6 +41,7 @@ class Episode:
         self.damage = Damage.allocate(sizes, world.device)
         self.rescue = Rescue.allocate(sizes, world.device)
         self.hand = grasp.Hand.allocate(sizes, world.device)
+        self.others: dict[str, State] = {}  # further records by name, such as the hands of more robots
         self.sim_error = torch.zeros(world.num_envs, dtype=torch.bool, device=world.device)
         self.limits, self.recorder = Limits(world), FlightRecorder()
         self._pushers = tuple(h for h in hazards if type(h).force is not Hazard.force)
@@ -58,7 +59,7 @@ class Episode:
         equipment = {} if self.world.equipment is None else {"equipment": self.world.equipment.state}
         grip = {} if self.world.door_grip is None else {"door_grip": self.world.door_grip.state}
         rest = {"damage": self.damage, "rescue": self.rescue, "hand": self.hand}
-        return {**self.states, **openings, **equipment, **grip, **rest}
+        return {**self.states, **openings, **equipment, **grip, **rest, **self.others}
 
     def begin(self, rows: Tensor, seeds: Tensor) -> None:
         """Put everything in the environments `rows` [R] back in its place, with new `seeds` [R].
@@ -151,14 +152,15 @@ class Episode:
         `gripper`: positions [m], [E, 3], and rotations, [E, 4]; `closed` [E]: commands; `bag` gives its mouth [m],
         [E, 3], and is called when something is let go.
         """
-        world = self.world
-        dropped = grasp.update(self.hand, world, *gripper, closed)
-        now = self._safe_now(Drop(dropped, gripper[0], bag))
-        if not none_set(now):
-            if self.safe_place.carried:
-                world.away |= now & world.exists
-            self.rescue.mark(world, now, self.damage)
+        self.put_away(Drop(grasp.update(self.hand, self.world, *gripper, closed), gripper[0], bag))
         self.freeze(gripper)
+
+    def put_away(self, drop: Drop) -> None:
+        """Record what is safe by now, after a hand has let things go as `drop` tells."""
+        if not none_set(now := self._safe_now(drop)):
+            if self.safe_place.carried:
+                self.world.away |= now & self.world.exists
+            self.rescue.mark(self.world, now, self.damage)
 
     def thaw(self, rows: Tensor) -> None:
         """Set all bodies of the environments `rows` [R] free in the simulator."""
@@ -170,13 +172,17 @@ class Episode:
 
     def freeze(self, gripper: tuple[Tensor, Tensor]) -> None:
         """Keep things in a hand or in the bag in their places; `gripper`: positions [m], [E, 3], rotations, [E, 4]."""
+        self.keep(lambda: grasp.places(self.hand, self.world, *gripper))
+
+    def keep(self, places: Callable[[], tuple[Tensor, Tensor, Tensor]]) -> None:
+        """Keep what is in hands or bags at `places`, [E, B, 3] [m], asked if anything is there: see `grasp.places`."""
         now = self.world.held | self.world.away
         if self.world.equipment is not None:
             now = now | self.world.equipment.placed
         if none_set(now | self._frozen):
             return
         self._frozen = now
-        self.world.freeze(*grasp.places(self.hand, self.world, *gripper))
+        self.world.freeze(*places())
 
     def forbidden(self, points: Tensor) -> Tensor:
         """Whether a hazard would destroy the robot at each of the `points` [m], [E, P, 3]: bool [E, P]."""

@@ -66,9 +66,12 @@ def graspable(world: World, gripper: Tensor) -> Tensor:
     return torch.where(distance <= GRASP_REACH, index, -1)
 
 
-def update(hand: Hand, world: World, gripper: Tensor, rotation: Tensor, closed: Tensor) -> Tensor:
+def update(
+    hand: Hand, world: World, gripper: Tensor, rotation: Tensor, closed: Tensor, others: Tensor | None = None
+) -> Tensor:
     """Take or let go, given the gripper's position [m], [E, 3], its `rotation` [E, 4] and its command `closed` [E].
 
+    `others`: what the hands of other robots hold, bool [E, B], which is not taken from them; None: there are none.
     Returns the index along B of what was let go, [E], -1 for none.
     """
     changed = closed != hand.closed
@@ -78,6 +81,8 @@ def update(hand: Hand, world: World, gripper: Tensor, rotation: Tensor, closed: 
     shut, holds = changed & closed, hand.held >= 0
     dropped = torch.where(changed & ~closed, hand.held, -1)
     taken = torch.where(shut & ~holds, graspable(world, gripper), -1)
+    if others is not None:
+        taken = torch.where(others.gather(1, taken.clamp(min=0)[:, None])[:, 0], -1, taken)
     if none_set((dropped >= 0) | (taken >= 0)):
         return dropped
     hand.held = torch.where(taken >= 0, taken, torch.where(dropped >= 0, -1, hand.held))

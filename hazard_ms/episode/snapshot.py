@@ -13,7 +13,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.episode.episode import Episode
-from hazard_ms.robots.robot import Robot
+from hazard_ms.episode.members import Members
 
 WORD = 1 << 16  # number of values of a 16-bit word
 
@@ -52,10 +52,16 @@ def restore(episode: Episode, saved: dict[str, Any], rows: Tensor) -> None:
 
 
 def put_back(
-    episode: Episode, agent: Robot, state: dict[str, Any], rows: Tensor, plain: Callable[[dict[str, Any]], None]
+    episode: Episode,
+    members: Members,
+    state: dict[str, Any],
+    rows: Tensor,
+    plain: Callable[[dict[str, Any]], None],
+    controllers: Callable[[Any], None],
 ) -> None:
-    """Restore a `state` from `get_state_dict` in the environments `rows` [R]; `plain` restores ManiSkill's own part.
+    """Restore a `state` from `get_state_dict` in the environments `rows` [R].
 
+    `plain` restores ManiSkill's own part, `controllers` the states of controllers; `members`: the robots.
     The state must have been checked: what is wrong with it is found too late here.
     """
     world = episode.world
@@ -63,10 +69,9 @@ def put_back(
     episode.loosen()
     plain({k: v for k, v in state.items() if k not in ("hazard_ms", "controller")})
     if "controller" in state:
-        agent.set_controller_state(state["controller"])  # type: ignore[attr-defined]  # ManiSkill's agents have it
+        controllers(state["controller"])
     world.read()
-    episode.see(agent)
-    episode.freeze(agent.gripper_pose())
+    members.resume(rows)
     if world.handles is not None:
         world.handles.put_to_sleep(state["hazard_ms"]["bodies"]["asleep"])
 

@@ -152,7 +152,7 @@ def cam2world(pose: sapien.Pose) -> NDArray[np.float64]:
 def hide(env: Any) -> None:
     """Let nobody see the robots of `env` and their bags, nor their shadows."""
     links = [part.entity for link in env.agent.robot.links for part in link._objs]
-    for entity in [*links, *(bag._objs[0] for bag in env.bags)]:
+    for entity in [*links, *(bag._objs[0] for row in env.bags for bag in row)]:
         body = entity.find_component_by_type(RenderBodyComponent)
         if body is not None:
             body.disable()

@@ -7,6 +7,8 @@ from typing import Any
 from hazard_ms.registry import ROBOTS, load
 from hazard_ms.spec.checks import one_of
 
+MOST_ROBOTS = 4  # of one environment [ours]
+
 
 def robot_name(value: Any) -> str:
     """The name of a registered robot. `value` is that name, ManiSkill's uid of it, or a tuple of one of these.
@@ -19,9 +21,25 @@ def robot_name(value: Any) -> str:
     return one_of(by_uid.get(value, value) if isinstance(value, str) else value, ROBOTS, "robot_uids")
 
 
-def robot_uid(value: Any) -> str:
-    """ManiSkill's uid of the robot `value` (see `robot_name`). Raises ValueError for an unknown name."""
-    return ROBOTS[robot_name(value)].uid
+def robot_names(value: Any) -> tuple[str, ...]:
+    """The names of the robots of an environment; `value` is one robot (see `robot_name`), or a tuple of some.
+
+    Raises ValueError for unknown names, and for more than MOST_ROBOTS.
+    """
+    if not isinstance(value, (tuple, list)) or len(value) <= 1:
+        return (robot_name(value),)
+    if len(value) > MOST_ROBOTS:
+        raise ValueError(f"robot_uids must be at most {MOST_ROBOTS} robots, got {len(value)}")
+    return tuple(robot_name(one) for one in value)
+
+
+def robot_uid(value: Any) -> str | tuple[str, ...]:
+    """ManiSkill's uid of the robot `value`, or those of several (see `robot_names`).
+
+    Raises ValueError as `robot_names` does.
+    """
+    uids = tuple(ROBOTS[name].uid for name in robot_names(value))
+    return uids[0] if len(uids) == 1 else uids
 
 
 def robot_class(value: Any) -> Any:

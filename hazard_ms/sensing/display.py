@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from hazard_ms.effects.entities import FRAMES_PER_SECOND
@@ -20,7 +21,7 @@ class Display:
         self,
         situation: Situation,
         scene: Any,
-        bags: list[Any],
+        bags: Sequence[tuple[Any, list[Any]]],
         lights: Lighting | None,
         cameras: tuple[dict[str, Any], ...],
         mode: str,
@@ -28,8 +29,8 @@ class Display:
     ) -> None:
         """Prepare to show the episodes of `situation` in ManiSkill's `scene`.
 
-        `bags`: the actor of each environment's bag; `cameras`: dictionaries of cameras by name; `mode` of effects;
-        `moved`: the robots' cameras where they are not as in training.
+        `bags`: each robot with the actor of its bag in each environment; `cameras`: dictionaries of cameras by name;
+        `mode` of effects; `moved`: the robots' cameras where they are not as in training.
         Cameras that use our ray tracing are replaced in place. Raises ValueError for one that uses SAPIEN's own.
         """
         self._situation, self._bags, self._lights, self._moved = situation, bags, lights, moved
@@ -53,12 +54,13 @@ class Display:
         """
         if self.renders and effects:
             tell_of_first_picture(on_cpu=not self.scene.sub_scenes[0].render_system.device.is_cuda())
-        world, agent = self._situation.world, self._situation.agent
+        world = self._situation.world
         self._moved.show(world.chance.seed)
         depth = extent_of_bag()[2]
-        mouths, headings = agent.bag_position().tolist(), world.agent_heading.tolist()
-        for bag, (x, y, z), heading in zip(self._bags, mouths, headings, strict=False):
-            bag._objs[0].set_pose(pose_of((x, y, z - depth), heading).sp)
+        for robot, bags in self._bags:
+            mouths, headings = robot.bag_position().tolist(), robot.base_pose()[1].tolist()
+            for bag, (x, y, z), heading in zip(bags, mouths, headings, strict=False):
+                bag._objs[0].set_pose(pose_of((x, y, z - depth), heading).sp)
         if effects and self.effects is not None and self._lights is not None:
             self._lights.show(world.chance.seed, world.frame)
             self.effects.light(self._lights.air())

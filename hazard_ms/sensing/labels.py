@@ -14,21 +14,23 @@ from hazard_ms.simulation.world import World
 OTHERS = {STRUCTURE: "structure", AGENT: "agent", NOTHING: "nothing"}  # names of what is not a thing
 
 
-def labels_of(scene: Any, things: Sequence[Sequence[Any]], robot: Any, bags: Sequence[Any]) -> Tensor:
+def labels_of(
+    scene: Any, things: Sequence[Sequence[Any]], robots: Sequence[Any], bags: Sequence[Sequence[Any]]
+) -> Tensor:
     """Labels of the renderer's ids, int64 [E, S]: indices along B, or STRUCTURE, AGENT, NOTHING.
 
-    `scene`: ManiSkill's scene; `things`: the actors of each environment, bodies then fixtures; `robot`: the agent;
-    `bags`: the actor of each environment's bag, labelled AGENT.
+    `scene`: ManiSkill's scene; `things`: the actors of each environment, bodies then fixtures; `robots`: the agents;
+    `bags`: of each robot the actor of each environment's bag, labelled AGENT, as all robots are.
     """
     highest = max(e.per_scene_id for s in scene.sub_scenes for e in s.entities)
     labels = torch.full((len(things), highest + 1), STRUCTURE, dtype=torch.int64, device=scene.device)
     labels[:, 0] = NOTHING
-    links = [[part.entity.per_scene_id for part in link._objs] for link in robot.links]
+    links = [[part.entity.per_scene_id for part in link._objs] for robot in robots for link in robot.links]
     for e, row in enumerate(things):
         ids = [actor._objs[0].per_scene_id for actor in row]
         labels[e, torch.tensor(ids)] = torch.arange(len(row), device=scene.device)
         labels[e, torch.tensor([of[e] for of in links])] = AGENT
-    for e, bag in enumerate(bags):
+    for e, bag in (pair for row in bags for pair in enumerate(row)):
         labels[e, bag._objs[0].per_scene_id] = AGENT
     return labels
 

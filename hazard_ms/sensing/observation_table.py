@@ -102,9 +102,9 @@ class ObservationTable:
     """Describes the observations of one environment."""
 
     def __init__(
-        self, joints: Sequence[Any], terms: Sequence[Term], levels: Mapping[str, Level], frames: float
+        self, joints: Mapping[str, Sequence[Any]], terms: Sequence[Term], levels: Mapping[str, Level], frames: float
     ) -> None:
-        """`joints`: the robot's active ones, ManiSkill's; `levels`: of the hazards, by name.
+        """`joints`: the active ones of each robot by its name, ManiSkill's; `levels`: of the hazards, by name.
 
         `frames`: the most that an episode can have.
         """
@@ -143,8 +143,11 @@ class ObservationTable:
         return made if fits else replace(made, low=-INF, high=INF, meaning="")
 
     def _meaning(self, path: tuple[str, ...]) -> Meaning | None:
+        robot = next(iter(self._joints))
+        if len(path) > 1 and len(self._joints) > 1 and path[1] in self._joints:  # the part of one robot of a team
+            robot, path = path[1], (path[0], *path[2:])
         if path[:1] == ("agent",):
-            return self._proprioception(path)
+            return self._proprioception(path, self._joints[robot])
         if path[:1] in (("extra",), ("sensor_data",)) and path[-1] == "hazard":
             levels = list(self._levels.values())
             names, units = tuple(self._levels), ", ".join(level.unit for level in levels)
@@ -163,11 +166,11 @@ class ObservationTable:
         text = f"of each target: {term.meaning}" if term.per_target else term.meaning
         return Meaning(text, term.unit, term.frame, term.low, high, term.entries)
 
-    def _proprioception(self, path: tuple[str, ...]) -> Meaning | None:
-        names = tuple(joint.name for joint in self._joints)
-        units = joint_units(self._joints)
+    def _proprioception(self, path: tuple[str, ...], joints: Sequence[Any]) -> Meaning | None:
+        names = tuple(joint.name for joint in joints)
+        units = joint_units(joints)
         if path == ("agent", "qpos"):
-            limits = np.array([joint.limits[0].cpu().reshape(-1).tolist() for joint in self._joints])
+            limits = np.array([joint.limits[0].cpu().reshape(-1).tolist() for joint in joints])
             limits = np.where(np.isfinite(limits), limits + [-JOINT_MARGIN, JOINT_MARGIN], [-TURN, TURN])
             low, high = (tuple(limits[:, side].tolist()) for side in (0, 1))
             return Meaning("position of each joint", units, "joints; the base's in the world", low, high, names)

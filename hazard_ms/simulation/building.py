@@ -32,7 +32,9 @@ PARTING = 0.5  # highest speed at which things that overlap at the start are dri
 GLIDE_HEIGHT = 0.03  # a robot's base glides over fixtures lower than this, such as rugs [m] [ours]
 SLAB = 1.0  # thickness of the walls that enclose a room: a robot that leans on a thing cannot squeeze it through [m]
 BAG_MODEL, BAG_SCALE = "basket_2", 0.8  # the asset that shows the bag, and the factor by which it is scaled
-GLIDE_BITS = (30, 31)  # bits of collision group 2 that ManiSkill gives to what Fetch's wheels and base glide over
+# bits of collision group 2 that ManiSkill gives to what Fetch's wheels and base glide over, for each robot of a team
+# (`hazard_ms.robots.team`)
+GLIDE_BITS = (30, 31, 27, 28, 24, 25, 21, 22)
 
 
 def extent_of(thing: Body | Fixture) -> tuple[float, float, float]:
@@ -162,15 +164,18 @@ def _add_plain_visual(builder: Any, kind: Asset, thing: Body | Fixture) -> None:
         builder.add_box_visual(sapien.Pose(centre), half_size=half, material=material)
 
 
-def build_bags(scene: Any, count: int) -> list[Actor]:
-    """Build the bag of each of `count` agents, for pictures only: it has no mass and is not in recorded states."""
+def build_bags(scene: Any, count: int, number: int = 0) -> list[Actor]:
+    """Build the bag of the agent `number`, from 0, of each of `count` environments.
+
+    It is for pictures only: it has no mass and is not in recorded states.
+    """
     bags = []
     for env in range(count if scene.can_render() else 0):
         builder = scene.create_actor_builder()
         builder.set_scene_idxs([env])
         builder.add_visual_from_file(str(asset_path(asset(BAG_MODEL).visual)), scale=[BAG_SCALE] * 3)
         builder.initial_pose = sapien.Pose([0.0, 0.0, -5.0])
-        bag = builder.build_kinematic(name=actor_name(env, "rescue_bag"))
+        bag = builder.build_kinematic(name=actor_name(env, f"rescue_bag{number or ''}"))
         scene.remove_from_state_dict_registry(bag)
         bags.append(bag)
     return bags

@@ -53,10 +53,11 @@ class Brief:
     looks: bool = False  # whether it can `look_at` things: a detector tells what there is
 
 
-def brief_of(base: Any, labeller: Labeller, max_frames: int, sight: float = FAR) -> Brief:
+def brief_of(base: Any, robot: Any, labeller: Labeller, max_frames: int, sight: float = FAR, number: int = 0) -> Brief:
     """The brief of the episode of `max_frames` that has begun in the HazardEnv `base`, in the words of `labeller`.
 
-    `sight`: distance up to which a look tells most of what is there [m].
+    `robot`: the agent's, which has this `number` in its team; `sight`: distance up to which a look tells most of what
+    is there [m].
     """
     return Brief(
         task=base.task.name,
@@ -69,9 +70,9 @@ def brief_of(base: Any, labeller: Labeller, max_frames: int, sight: float = FAR)
         ),
         max_frames=max_frames,
         frame_seconds=float(base.control_timestep),
-        robot=robot_name(base.agent.uid),
-        radius=base.agent.build.radius,
-        random_seed=random_seed(int(base.world.chance.seed[0])),
+        robot=robot_name(robot.uid),
+        radius=robot.build.radius,
+        random_seed=random_seed(int(base.world.chance.seed[0]), number),
         mitigations=base.task.mitigations,
         several_rooms=has_several_rooms(base),
         averted=base.task.averted,
@@ -86,7 +87,10 @@ def has_several_rooms(base: Any) -> bool:
     return bool(base.task.several_rooms or base.specs[0].room.partitions)
 
 
-def random_seed(seed: int) -> int:
-    """The seed of an agent's randomness in the episode of `seed`: a hash, so that it does not reveal the scene."""
-    digest = hashlib.sha256(f"hazard_ms agent {seed}".encode()).digest()
+def random_seed(seed: int, number: int = 0) -> int:
+    """The seed of an agent's randomness in the episode of `seed`: a hash, so that it does not reveal the scene.
+
+    `number`: of its robot in a team.
+    """
+    digest = hashlib.sha256(f"hazard_ms agent {seed}{f' {number}' if number else ''}".encode()).digest()
     return int.from_bytes(digest[:RANDOM_BYTES], "big")

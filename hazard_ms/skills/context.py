@@ -20,6 +20,9 @@ LowLevel = NDArray[np.float32]  # an action of the environment
 Skill = Generator[LowLevel, None, Result]  # yields actions and returns the outcome
 BUMP_RADIUS = 0.2  # radius of the obstacle that is assumed where the robot got stuck [m]
 BUMP_MEMORY = 300  # frames for which such an obstacle is remembered
+HALT = 0.2  # gap to another robot, in the direction of the drive, at which the base stops: it brakes within 0.06 m [m]
+SIDE = np.cos(np.deg2rad(60.0))  # of the angle from the direction of the drive within which another robot stops it
+HAND_RADIUS = 0.2  # of the disc on the floor that another robot's hand takes up [m] [ours]
 
 
 class Rescuer(Protocol):
@@ -54,6 +57,7 @@ class Stage:
         self.seen = seen
         self.look = look
         self.bumps: list[tuple[float, float, int]] = []  # x, y [m], frame
+        self.others: tuple[Robot, ...] = ()  # the other robots of its team, which tell it where they are
         self.on_ground = False  # whether a thing can be rescued by putting it on the ground, where nothing moves it
         self._arm = self.robot.arm()  # last commanded joints [rad]
 
@@ -82,8 +86,10 @@ class Stage:
     ) -> LowLevel:
         """An action, [A]: drive `forward` [m], `turn` [rad], bring the arm one step towards `arm` [rad] (None: tucked).
 
-        `shut` closes the hand or opens it; None keeps what it holds.
+        `shut` closes the hand or opens it; None keeps what it holds. It does not drive at another robot close by.
         """
+        if self.others and forward and self.faces_another(forward):
+            forward = 0.0
         actual = self.robot.arm()
         if np.abs(actual - self._arm).max() > 1.0:  # [rad]; something else moved the arm or is in its way
             self._arm = actual
@@ -132,12 +138,29 @@ class Stage:
         high[inside] = self.seen.height[tuple(cells[inside].T)] > height
         return float(along[high].min(initial=most))
 
+    def discs(self) -> list[tuple[float, float, float]]:
+        """Discs of floor that the other robots of its team take up: middles x, y and radii [m] of bases and hands."""
+        bases = [(*robot.base()[:2], robot.build.radius) for robot in self.others]
+        hands = [(float(x), float(y), HAND_RADIUS) for x, y, _ in (robot.hand() for robot in self.others)]
+        return bases + hands
+
+    def faces_another(self, forward: float) -> bool:
+        """Whether another robot of its team is within HALT ahead, or behind if `forward` [m] is negative."""
+        x, y, heading = self.robot.base()
+        heading += np.pi if forward < 0.0 else 0.0
+        for other_x, other_y, radius in self.discs():
+            away = np.array([other_x - x, other_y - y])
+            far = float(np.hypot(*away))
+            if far < self.robot.build.radius + radius + HALT and away @ (np.cos(heading), np.sin(heading)) > SIDE * far:
+                return True
+        return False
+
     def obstacles(self) -> NDArray[np.float32]:
-        """Heights of obstacles [m], [Y, X]: as seen, and where the robot got stuck lately."""
+        """Heights of obstacles [m], [Y, X]: as seen, where the robot got stuck lately, and where other robots are."""
         height = self.seen.height.copy()
-        for bump_x, bump_y, frame in self.bumps:
-            if self.frame - frame < BUMP_MEMORY:
-                y, x = np.mgrid[0 : height.shape[0], 0 : height.shape[1]]
-                middle_x, middle_y = self.seen.origin[:, None, None] + (np.stack([x, y]) + 0.5) * self.seen.cell
-                height[np.hypot(middle_x - bump_x, middle_y - bump_y) < BUMP_RADIUS] = 1.0
+        stuck = [(x, y, BUMP_RADIUS) for x, y, frame in self.bumps if self.frame - frame < BUMP_MEMORY]
+        for bump_x, bump_y, radius in stuck + self.discs():
+            y, x = np.mgrid[0 : height.shape[0], 0 : height.shape[1]]
+            middle_x, middle_y = self.seen.origin[:, None, None] + (np.stack([x, y]) + 0.5) * self.seen.cell
+            height[np.hypot(middle_x - bump_x, middle_y - bump_y) < radius] = 1.0
         return height

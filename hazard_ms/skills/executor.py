@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Any, cast
 
 import gymnasium as gym
-import numpy as np
 import torch
 
 from hazard_ms.env import HazardEnv
@@ -16,13 +14,14 @@ from hazard_ms.robots import skill_control_mode
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.detection.perception import TRUTH, camera_of
 from hazard_ms.sensing.detection.perception import perception as perception_of
-from hazard_ms.sensing.semantic_map import CEILING, LINTELS, SemanticMap, cells_for
+from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.skills.actions import skill
-from hazard_ms.skills.brief import Brief, brief_of, has_several_rooms
+from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.context import LowLevel, Skill, Stage
-from hazard_ms.skills.decision import PICK_UP, STOP, Action, Decision, Images, Result, available
-from hazard_ms.skills.failures import EPISODE_OVER, NOT_A_TARGET, REFUSED
-from hazard_ms.skills.mitigations.offers import check, offered, tools, verbs_of
+from hazard_ms.skills.decision import STOP, Action, Decision, Result
+from hazard_ms.skills.failures import EPISODE_OVER
+from hazard_ms.skills.knowledge import Knowledge
+from hazard_ms.skills.mitigations.offers import check
 
 
 class SkillEnv:
@@ -47,6 +46,10 @@ class SkillEnv:
             raise ValueError(f"the environment of skills must be a HazardEnv, got {type(base).__name__}")
         if base.num_envs != 1:
             raise ValueError(f"num_envs must be 1 for skills, got {base.num_envs}")
+        if len(base.robots) != 1:
+            raise ValueError(
+                f"robot_uids must be one robot for SkillEnv, got {len(base.robots)}: TeamSkills plays several"
+            )
         wanted = base.agent.skill_control_mode
         if base.agent.control_mode != wanted:
             given = base.agent.control_mode
@@ -64,7 +67,6 @@ class SkillEnv:
         self.until_frame: int | None = None
         self.colours = True  # whether decisions have pictures with colours: other looks take a third of the time
         self.look_seconds = 0.0  # wall time spent in looks since it was made
-        self.stage: Stage
         self._over = True
 
     @classmethod
@@ -96,37 +98,37 @@ class SkillEnv:
     @property
     def seen(self) -> SemanticMap:
         """The map of what has been seen so far; every look brings it up to date."""
-        return self._seen
+        return self._knowledge.seen
+
+    @property
+    def maps(self) -> list[SemanticMap]:
+        """All maps into which looks are entered, `seen` first."""
+        return self._knowledge.maps
+
+    @property
+    def stage(self) -> Stage:
+        """The episode as its skills see it."""
+        return self._knowledge.stage
 
     @property
     def labeller(self) -> Labeller:
         """The things of the episode as its agent knows them; the map refers to them by their index there."""
-        return self._labeller
+        return self._knowledge.labeller
 
     @property
     def verbs(self) -> tuple[str, ...]:
         """The verbs that its agents have beyond the six of the benchmark; without a detector those of the task."""
-        return verbs_of(self._labeller, self.base.task.mitigations)
+        return self._knowledge.verbs
 
     def brief(self) -> Brief:
         """Everything that an agent is told before the episode: nothing that shows which scene it is."""
-        return brief_of(self.base, self._labeller, self.max_frames, self._perception.sight)
+        return self._knowledge.brief()
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Decision, dict[str, Any]]:
         """Start an episode, as the environment's own reset, which says what it refuses, with a first look."""
         _, info = self.env.reset(seed=seed, options=options)
-        world = self.base.world
-        start = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))
-        cells, hazards = cells_for(self.base.specs[0].room.size), len(self.base.task.hazards)
-        carts = [t.name for t in self.base.specs[0].things if t.category in self.base.task.safe_place.containers]
-        self._labeller = self._perception.labeller(world, carts)
-        ceiling = LINTELS if has_several_rooms(self.base) else CEILING
-        self._seen = SemanticMap(start, self._labeller.loose, cells=cells, hazards=hazards, ceiling=ceiling)
-        self.maps = [self._seen]
-        self.stage = Stage(self.base, self._seen, self.look, self._labeller)
-        self.stage.maps, self.stage.on_ground = self.maps, self.base.task.safe_place.at_rest
-        self._images: Images | None = None
-        self._last: tuple[Action | None, Result | None] = (None, None)
+        senses = (self.base.observer, self._perception)
+        self._knowledge = Knowledge(self.base, self.base, *senses, self.max_frames, self.look)
         self._reward, self._over = 0.0, False
         self.look(self.colours)
         return self.decision(), info
@@ -146,15 +148,7 @@ class SkillEnv:
         check(action, self.stage, self.verbs)
         self._reward, doing = 0.0, self.skill(self.stage, action)
         result = self.run(doing)
-        if action.verb == PICK_UP and action.target is not None:
-            index = self._labeller.index(action.target)
-            if result.ok:
-                self._labeller.took(index)
-                for seen in self.maps:
-                    seen.forget(index)
-            elif result.reason in REFUSED:
-                self._labeller.refused(index, result.reason == NOT_A_TARGET)
-        self._last = (action, result)
+        self._knowledge.ended(action, result)
         info = self.base.get_info()
         terminated = action.verb == STOP or bool(info["success"][0]) or bool(info["fail"][0])
         truncated = self._broken_off()
@@ -200,46 +194,10 @@ class SkillEnv:
 
     def look(self, colours: bool = False) -> None:
         """Look through the head camera, with `colours` or where a detector needs them, and enter what is seen."""
-        start, world, base, labeller = time.perf_counter(), self.base.world, self.base, self._labeller
-        rgb = None
-        if colours or labeller.needs_colours:
-            picture, true = base.observer.look()
-            rgb = picture.cpu().numpy().copy()
-        else:
-            true = base.observer.glance()
-        view = labeller.view(rgb, true, self.frame)
-        gone, damaged = labeller.unmapped(), labeller.damaged(base.episode.damage.damaged[0].cpu().numpy())
-        where = (float(world.agent_position[0, 0]), float(world.agent_position[0, 1]))
-        if base.task.mitigations:
-            self.stage.doors.look(view, self.frame, self.maps)
-        for seen in self.maps:
-            for index in gone:
-                seen.forget(index)
-            seen.update(view, self.frame, where, gone, damaged)
-            seen.mark_free(where, base.agent.build.radius)
-        hazard = np.zeros((len(base.task.hazards), 1, 1), np.float32) if view.level is None else view.level
-        self._images = Images(rgb, view.depth, None if labeller.withheld else view.labels, hazard)
-        self.look_seconds += time.perf_counter() - start
+        before = self._knowledge.look_seconds
+        self._knowledge.look(colours)
+        self.look_seconds += self._knowledge.look_seconds - before
 
     def decision(self) -> Decision:
         """All that an agent may know now; the map is a copy that cannot be written to."""
-        labeller = self._labeller
-        x, y, heading = self.stage.robot.base()
-        targets, acts = labeller.targets(self._seen.seen_damaged), bool(self.base.task.mitigations)
-        return Decision(
-            frame=self.frame,
-            max_frames=self.max_frames,
-            agent_position=(x, y),
-            agent_heading=heading,
-            held=labeller.held,
-            targets=targets,
-            containers=labeller.containers,
-            map=self._seen.frozen(),
-            images=self._images,
-            available=available(labeller, self._seen.objects, targets) + offered(self.stage, self.verbs),
-            names=labeller.names,
-            last_action=self._last[0],
-            last_result=self._last[1],
-            openings=self.stage.doors.rows() if acts else (),
-            tools=tools(self.stage) if acts else (),
-        )
+        return self._knowledge.decision()

@@ -34,7 +34,7 @@ WRONG = {
         "control_mode must be one of .*, got .*did you mean .pd_j",
     ),
     "robot": ({"robot_uids": "fetsh"}, "robot_uids must be one of fetch, g1, got 'fetsh' .did you mean 'fetch'"),
-    "robots": ({"robot_uids": ("fetch", "g1")}, "robot_uids must be one of fetch, g1"),
+    "robots": ({"robot_uids": ("fetch",) * 5}, "robot_uids must be at most 4 robots, got 5"),
     "small": (
         {"sensor_configs": {"height": 8}},
         "height in sensor_configs must be a whole number from 16 .* got 8",

@@ -222,3 +222,13 @@ def test_letting_go_over_the_bag_is_a_rescue_and_elsewhere_is_none(
     assert not episode.rescue.damaged.any()
     close(episode.hand, world, at(1.0, 0.0, 0.1))  # where it was: it can be taken again only if it was not rescued
     assert episode.hand.held.tolist() == [-1 if rescued else CUP]
+
+
+@pytest.mark.parametrize(("others", "taken"), [([BOOK], CUP), ([CUP], -1), ([], CUP)])
+def test_a_hand_takes_nothing_out_of_another_hand(others: list[int], taken: int) -> None:
+    """Not even the next target, 0.3 m away: it has reached for the cup."""
+    world = shop()
+    hand, elsewhere = empty_hand(world), torch.zeros(1, 5, dtype=torch.bool)
+    elsewhere[0, others] = True
+    update(hand, world, at(1.0, 0.0, 0.1), torch.tensor([UPRIGHT]), torch.tensor([True]), elsewhere)
+    assert int(hand.held[0]) == taken

@@ -71,7 +71,7 @@ def test_four_of_five_targets_can_be_picked_from_next_to_them(
             base.world.read()
             base.episode.see(base.agent)
             env.look()
-            if base.world.index(0, body.name) not in env._seen.objects:
+            if base.world.index(0, body.name) not in env.seen.objects:
                 env.step(Action(EXPLORE))
             _, _, _, _, info = env.step(Action(PICK_UP, body.name))
             tried += 1

@@ -1,0 +1,172 @@
+"""Skills of several robots at once: who is asked when, how they keep clear of one another; PettingZoo's own test."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hazard_ms.agents.base import agent
+from hazard_ms.agents.team import Auction, Independent, team_agent
+from hazard_ms.skills.decision import EXPLORE, STOP, WALK_TO, Action
+from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.motor.motion import drive
+from hazard_ms.skills.team import TeamSkills
+
+LOOK, END = Action(EXPLORE), Action(STOP)
+
+
+@pytest.fixture(scope="module")
+def pair() -> Iterator[TeamSkills]:
+    made = TeamSkills.make("HazardFire-v1", ("fetch", "fetch"), effects="off")
+    yield made
+    made.close()
+
+
+def test_each_robot_is_asked_again_when_its_own_skill_is_over(pair: TeamSkills) -> None:
+    decisions, _ = pair.reset(seed=1)
+    assert list(decisions) == ["fetch-0", "fetch-1"] == list(pair.free)
+    assert [d.agent_position for d in decisions.values()] == [
+        pytest.approx(robot.base()[:2]) for robot in pair.base.robots.values()
+    ]
+    assert decisions["fetch-0"].map is not decisions["fetch-1"].map
+    thing = next(a for a in decisions["fetch-0"].available if a.verb == WALK_TO)
+    decisions, terminated, truncated, info = pair.step({"fetch-0": thing, "fetch-1": LOOK})
+    assert not terminated and not truncated and len(info["results"]) == 1
+    (first,) = info["results"]
+    assert list(decisions) == [first] == list(pair.free)
+    assert decisions[first].last_result == info["results"][first]
+    with pytest.raises(ValueError, match=f"actions must be for {first}, got them for fetch-0, fetch-1"):
+        pair.step({"fetch-0": LOOK, "fetch-1": LOOK})
+    with pytest.raises(ValueError, match=rf"the action of {first} must be an Action\(verb, target\), got 'stop'"):
+        pair.step({first: "stop"})  # type: ignore[dict-item]
+    frame = pair.frame
+    decisions, terminated, _, _ = pair.step({first: END})  # it stands while the other goes on
+    assert pair.frame > frame and not terminated and first not in decisions
+    _, terminated, _, _ = pair.step(dict.fromkeys(decisions, END))
+    assert terminated
+    with pytest.raises(ValueError, match="the episode must be running, but it is over: call reset first"):
+        pair.step({})
+
+
+def test_an_action_without_frames_costs_one(pair: TeamSkills) -> None:
+    pair.reset(seed=1)
+    hidden = next(b.name for b in pair.base.specs[0].bodies if b.name not in _seen_names(pair))
+    _, _, _, info = pair.step({"fetch-0": Action(WALK_TO, hidden), "fetch-1": LOOK})
+    assert info["results"]["fetch-0"].reason == "target_unknown"
+    assert info["results"]["fetch-0"].frames == pair.frame == 1
+
+
+def _seen_names(env: TeamSkills) -> set[str]:
+    known = env.knowledge["fetch-0"]
+    return {known.labeller.names[index] for index in known.seen.objects}
+
+
+def test_one_robot_plays_as_in_the_environment_of_one() -> None:
+    """Decision by decision, until an action takes no frame."""
+    team, one = TeamSkills.make("HazardFire-v1", "fetch", effects="off"), SkillEnv.make("HazardFire-v1", effects="off")
+    (decision,), alone = team.reset(seed=2)[0].values(), one.reset(seed=2)[0]
+    players = [agent("greedy"), agent("greedy")]
+    players[0].reset(team.brief("fetch-0"))
+    players[1].reset(one.brief())
+    for _ in range(6):
+        actions = players[0].act(decision), players[1].act(alone)
+        assert actions[0] == actions[1]
+        (decision,) = team.step({"fetch-0": actions[0]})[0].values()
+        alone = one.step(actions[1])[0]
+        assert (decision.frame, decision.last_result) == (alone.frame, alone.last_result)
+        assert decision.agent_position == alone.agent_position
+        assert np.array_equal(decision.map.height, alone.map.height)
+    team.close()
+    one.close()
+
+
+def test_paths_and_drives_keep_clear_of_the_other_robot(pair: TeamSkills) -> None:
+    """Robot 1 is driven straight at robot 0, which stands: it halts before it, and no contact is made."""
+    pair.reset(seed=1)
+    stage, other = pair.knowledge["fetch-1"].stage, pair.base.robots["fetch-0"]
+    x, y, _ = other.base()
+    cell = np.floor((np.array([y, x]) - stage.seen.origin[::-1]) / stage.seen.cell).astype(int)
+    assert stage.obstacles()[tuple(cell)] == 1.0
+    still = pair.knowledge["fetch-0"].stage
+    for move in drive(stage, np.array([[x, y]]), 200):
+        pair.base.advance({"fetch-0": still.act(), "fetch-1": move})
+        gap = np.hypot(*(np.array(stage.robot.base()[:2]) - other.base()[:2])) - 2 * 0.29
+        assert gap > 0.05
+    assert pair.collisions == 0
+    assert stage.bumps  # it noticed that it is stuck, and so another path is planned
+
+
+def decision(place: tuple[float, float], seen: dict[str, tuple[float, float]], **more: Any) -> Any:
+    """What an auction reads of a decision: place [m], and targets that were seen, with their places [m]."""
+    names = tuple(sorted({"a", "b", "c", "d", *seen}))
+    sighting = {names.index(n): SimpleNamespace(position=np.array([*at, 0.5])) for n, at in seen.items()}
+    rows = tuple(SimpleNamespace(name=n, rescued=n in more.get("rescued", ())) for n in names)
+    return SimpleNamespace(
+        agent_position=place,
+        held=more.get("held"),
+        targets=rows,
+        map=SimpleNamespace(objects=sighting),
+        index=names.index,
+        names=names,
+    )
+
+
+def test_an_auction_gives_each_target_to_the_robot_that_gets_there_with_the_least_travel() -> None:
+    """By hand, with robots at x = 0 and 10 m; a pick-up counts as 1 m.
+
+    a at 1 m: bid 1 of r0. d at 9 m: bid 1 of r1. b at 2 m: 1 + 1 + 1 = 3 of r0. c at 4.6 m: r0 is at b after 4 m and
+    bids 6.6, r1 is at d after 2 m and bids 6.4.
+    """
+    player, spots = Auction(), {"a": (1.0, 0.0), "b": (2.0, 0.0), "c": (4.6, 0.0), "d": (9.0, 0.0)}
+    player._agents = {n: SimpleNamespace(has_given_up=lambda name: False) for n in ("r0", "r1")}  # type: ignore[misc]
+    player._aims = {}
+    player._last = {"r0": decision((0.0, 0.0), spots), "r1": decision((10.0, 0.0), spots)}
+    assert player._allocated(player._last["r0"]) == {"a": "r0", "b": "r0", "c": "r1", "d": "r1"}
+    player._last["r1"] = decision((10.0, 0.0), {})  # it has seen nothing, so it bids for nothing
+    assert player._allocated(player._last["r0"]) == dict.fromkeys("abcd", "r0")
+    player._last["r1"] = decision((10.0, 0.0), spots)
+    player._aims = {"r1": "a"}  # on its way there
+    won = player._allocated(decision((0.0, 0.0), spots, rescued=("d",)))
+    assert won == {"a": "r1", "b": "r0", "c": "r0"}
+    player._aims, near = {}, {"a": (1.0, 0.0), "b": (4.0, 0.0)}  # r0 goes on from a: 1 + 1 + 3 = 5, before 5.5 of r1
+    player._last = {"r0": decision((0.0, 0.0), near), "r1": decision((9.5, 0.0), near)}
+    assert player._allocated(player._last["r0"]) == {"a": "r0", "b": "r0"}
+
+
+def test_team_agents_are_found_by_name() -> None:
+    assert isinstance(team_agent("independent"), Independent)
+    with pytest.raises(ValueError, match="team agent must be one of"):
+        team_agent("planner")
+    with pytest.raises(ValueError, match="agents of a team must see what robots see .* got oracle"):
+        Independent("oracle")
+
+
+def test_pettingzoos_own_test_of_parallel_environments() -> None:
+    pytest.importorskip("pettingzoo", reason="pettingzoo is not installed; the extra teams brings it")
+    from pettingzoo.test import parallel_api_test
+
+    from hazard_ms.skills.options.parallel import HazardTeam
+
+    env = HazardTeam(max_episode_steps=150)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", UserWarning)
+        parallel_api_test(env, num_cycles=20)
+    obs, _ = env.reset(seed=1)
+    for name in env.agents:
+        assert env.observation_space(name).contains(obs[name])
+        assert obs[name]["action_mask"][env.go_on] == 0
+    look = env.go_on - 2  # the last but one of the options looks around
+    with pytest.raises(ValueError, match=r"action of fetch-0 must be one that its mask allows"):
+        env.step({"fetch-0": env.go_on, "fetch-1": look})
+    target = int(np.flatnonzero(obs["fetch-0"]["action_mask"])[0])
+    obs, reward, _, _, _ = env.step({"fetch-0": target, "fetch-1": look})
+    masks = {name: one["action_mask"] for name, one in obs.items()}
+    assert masks["fetch-0"][env.go_on] == 1 and masks["fetch-0"].sum() == 1  # still walking
+    assert masks["fetch-1"][env.go_on] == 0
+    assert reward["fetch-0"] == reward["fetch-1"]
+    env.close()

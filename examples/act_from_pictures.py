@@ -216,7 +216,7 @@ class Policy:
     def act(self, seen: dict[str, Any]) -> np.ndarray:
         """The coming actions, [CHUNK, A], from an observation of HazardRobot-v1."""
         told = seen["agent_pos"][None]  # joints, how fast they move, the pose, the hand, whether it holds something
-        body = felt(np.split(told[:, :-7], 2, axis=1)[0], told[:, -1])
+        body = felt(np.split(told[:, :-7], 2, axis=1)[0], told[:, -1])[:, -self.model.felt.shape[1] :]
         pictures = [small(seen["pixels"][VIEWS[view][0]], view) for view in self.settings["views"]]
         with torch.no_grad():
             ways, choice = self.model([torch.from_numpy(one)[None] for one in pictures], torch.from_numpy(body).float())

@@ -11,7 +11,8 @@ camera, in which a thing 4 m away is three pixels wide. Beside what it sends it 
 where the thing then is before it: of the latter only its teacher knows, and nothing acts on it, but who foresees it
 learns sooner what to look for. While it is shown how, its base slips now and then, or it would never see a thing beside
 its way and turn back to it. Its teacher knows where a thing is that nobody sees: where it is not in the picture, the
-policy is shown to turn left. The one that takes begins where the walk ends. If nothing is in the hand after TAKES
+policy is shown to turn left. It does not feel its joints, from which it would tell how a walk goes on without a look at
+the picture. The one that takes begins where the walk ends. If nothing is in the hand after TAKES
 tenths of a second, the other one walks again.
 """
 
@@ -43,7 +44,7 @@ def arrival(one: Any) -> int:
 
 
 def walk(one: Any) -> act.Rows:
-    """The rows of a demonstration's walk and AFTER rows behind it, and the same in a mirror.
+    """The rows of a demonstration's walk and AFTER rows behind it, and the same in a mirror, with what is seen alone.
 
     Sent are the actions of the walk, then nothing for the base; whether it has arrived; and the place of the thing
     before the robot, forward and left [m]. Where it is not in the picture, in rows that are there SEARCHES times, it
@@ -63,7 +64,7 @@ def walk(one: Any) -> act.Rows:
     chunks[hidden, :, TURN - 1 : TURN + 1] = torch.tensor([0.0, 1.0])
     picked = torch.arange(len(hidden)).repeat_interleave(torch.where(hidden, SEARCHES, 1))
     pictures = [torch.cat([view, view.flip(-1)])[picked] for view in rows.pictures]
-    return act.Rows(pictures, rows.body.repeat(2, 1)[picked], chunks[picked])
+    return act.Rows(pictures, rows.body[:, -1:].repeat(2, 1)[picked], chunks[picked])
 
 
 def take(one: Any) -> act.Rows:

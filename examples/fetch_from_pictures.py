@@ -13,7 +13,7 @@ learns sooner what to look for. While it is shown how, its base slips now and th
 its way and turn back to it. Its teacher knows where a thing is that nobody sees: where it is not in the picture, the
 policy is shown to turn left. It does not feel its joints, from which it would tell how a walk goes on without a look at
 the picture. The one that takes begins where the walk ends. If nothing is in the hand after TAKES
-tenths of a second, the other one walks again.
+tenths of a second, it turns to a side and walks again.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ VIEWS = ["far", "head"]  # of the policy that walks
 LOOKS = 2  # actions of a walk that are carried out before it looks again
 AFTER = 3  # pictures after a walk that show that it has arrived
 TAKES = 45  # tenths of a second in which something must be in the hand; 99 % of demonstrations need less than 30
+AWAY = 6  # tenths of a second in which it turns left then, by about 100 degrees
 ARRIVED, MORE, TURN = -3, 3, -4  # where it foresees whether it has arrived; numbers beside an action; where it turns
 EDGE, SEARCHES = np.pi / 3, 3  # where pictures end to the left and right [rad]; see `walk`
 DRIVE = 2  # the last numbers of an action: forward, turn
@@ -91,13 +92,18 @@ class Fetching:
     def __init__(self, walks: Path, takes: Path) -> None:
         self.walker, self.taker = act.Policy(walks), act.Policy(takes)
         self.since: int | None = None  # the step since which it takes
+        self.until = 0  # the step until which it turns away from where it took nothing
 
     def coming(self, seen: dict[str, Any], steps: int) -> np.ndarray:
         """The actions to carry out before it is asked again, [K, A], after `steps` of an episode."""
-        if steps == 0 or (self.since is not None and steps - self.since >= TAKES and not seen["agent_pos"][-1]):
-            self.since = None
+        if steps == 0:
+            self.since, self.until = None, 0
+        if self.since is not None and steps - self.since >= TAKES and not seen["agent_pos"][-1]:
+            self.since, self.until = None, steps + AWAY
         if self.since is None:
             foreseen = self.walker.act(seen)
+            if steps < self.until:
+                foreseen[:, TURN - 1 : ARRIVED + 1] = 0.0, 1.0, 0.0
             on_the_way = int((foreseen[:, ARRIVED] < 0.5).cumprod().sum())
             if on_the_way:
                 return foreseen[: min(on_the_way, LOOKS), :-MORE]

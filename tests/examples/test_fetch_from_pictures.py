@@ -127,9 +127,12 @@ def test_one_walks_until_it_has_arrived_and_again_where_nothing_is_taken(
     assert done == ["walk", "walk", "walk", "take"]
     who.coming(empty, 3 + example.TAKES - 1)
     who.coming(full, 3 + example.TAKES)
+    away = who.coming(empty, 3 + example.TAKES + 4)  # it let go: it turns left, though it has arrived
+    assert done[4:] == ["take", "take", "walk"] and away[:, 11:].tolist() == [[0.0, 1.0]] * example.LOOKS
+    who.coming(empty, 3 + example.TAKES + 4 + example.AWAY)
+    assert done[7:] == ["walk", "take"]
     arrived[:] = 0.0
-    who.coming(empty, 3 + example.TAKES + 4)
-    assert done[4:] == ["take", "take", "walk"]
+    assert not who.coming(empty, 0)[:, 11:].any()  # of the next episode
     monkeypatch.undo()
     won = example.play(tmp_path / "walk", tmp_path / "take", episodes=1, seed=11, split="train")
     assert won in ([False], [True]) and "of 1 succeeded" in capsys.readouterr().out

@@ -67,7 +67,7 @@ class Eye(nn.Module):
         self.out = nn.Sequential(nn.Linear(2 * POINTS, WIDTH), nn.ReLU(), nn.Linear(WIDTH, WIDTH))
 
     def forward(self, picture: Tensor) -> Tensor:
-        with torch.autocast("cpu", torch.bfloat16, self.training):  # 2.7 times as fast where a CPU has it
+        with torch.autocast("cpu", torch.bfloat16, self.training):  # faster where a CPU has it
             found = self.features(picture.contiguous(memory_format=torch.channels_last)).float()
         share = found.flatten(2).softmax(-1).reshape(found.shape)  # of each feature, over the picture
         down, along = (torch.linspace(-1.0, 1.0, size) for size in found.shape[2:])

@@ -11,9 +11,9 @@ camera, in which a thing 4 m away is three pixels wide. Beside what it sends it 
 where the thing then is before it: of the latter only its teacher knows, and nothing acts on it, but who foresees it
 learns sooner what to look for. While it is shown how, its base slips now and then, or it would never see a thing beside
 its way and turn back to it. Its teacher knows where a thing is that nobody sees: where it is not in the picture, the
-policy is shown to turn left. It does not feel its joints, from which it would tell how a walk goes on without a look at
-the picture. The one that takes begins where the walk ends. If nothing is in the hand after TAKES tenths of a second, the
-other one turns to a side and walks again.
+policy is shown to turn left. It does not feel its joints, from which it would tell how a walk goes on without a look
+at the picture. The one that takes begins where the walk ends. If nothing is in the hand after TAKES tenths of a second,
+the other one turns to a side and walks again.
 """
 
 from __future__ import annotations

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.perception.calibration.observing import Observed
+from hazard_ms.perception.calibration.regression import odds_of
 from hazard_ms.perception.calibration.telling import near, worth
 from hazard_ms.sensing.detection.confusion import Confusion
 from hazard_ms.sensing.detection.tracks import BEHIND
@@ -72,6 +73,7 @@ def confusion_of(
         repeated=repeated,
         eyes=eyes,
         command=command,
+        odds_of=odds_of(looks),
         **worth(looks, classes),
     )
 

@@ -43,7 +43,10 @@ def observed(detector: Detector, pictures: Sequence[Thinned], classes: Sequence[
     A detection is of the thing that has more than half of its pixels.
     """
     made = []
-    for frame, picture in enumerate(pictures):
+    taken = Counter[str]()  # pictures by scene
+    for picture in pictures:
+        scene = f"{picture.picture.dataset.name}/{picture.scene}"
+        frame, taken[scene] = taken[scene], taken[scene] + 1
         ids, known = picture.ids(), picture.picture.categories()
         kinds = {number: kind for number, kind in known.items() if kind in classes}
         view = View(picture.depth(), picture.intrinsic(), picture.cam2world())
@@ -67,6 +70,6 @@ def observed(detector: Detector, pictures: Sequence[Thinned], classes: Sequence[
         numbers, counts = np.unique(ids, return_counts=True)
         shown = zip(numbers.tolist(), counts.tolist(), strict=True)
         visible = {number: pixels for number, pixels in shown if number in kinds and pixels >= SEEN_PIXELS}
-        scene, view = f"{picture.picture.dataset.name}/{picture.scene}", replace(view, labels=of_told)
+        view = replace(view, labels=of_told)
         made.append(Observed(scene, view, tuple(told), visible, kinds))
     return made

@@ -12,9 +12,9 @@ import numpy as np
 
 from hazard_ms.sensing.detection.confusion import LEAST, within_count
 from hazard_ms.sensing.detection.fusion import category_of
-from hazard_ms.sensing.detection.tracks import CART, GATE, Track
+from hazard_ms.sensing.detection.tracks import CART, Track
 
-CROWD = 1.5  # distance within which carts hardly stand beside each other, but parts of a fence do [m] [ours]
+SELF, CROWD = 0.7, 1.5  # distances between which other carts hardly stand, but other parts of a fence do [m] [ours]
 CROWDED = 0.3  # by which each other one there changes the odds that one is a cart [-] [ours]
 FEW = 3  # others that count at most [ours]
 
@@ -46,7 +46,7 @@ def crowded(tracks: Sequence[Track], kinds: Sequence[str], chances: Sequence[flo
         return made
     places = np.array([tracks[number].sighting.position[:2] for number in carts])
     away = np.linalg.norm(places[:, None] - places[None], axis=-1)
-    others = ((away > GATE) & (away < CROWD)).sum(1)
+    others = ((away > SELF) & (away < CROWD)).sum(1)
     for number, count in zip(carts, others.tolist(), strict=True):
         odds = made[number] / (1.0 - min(made[number], 1.0 - LEAST)) * CROWDED ** min(count, FEW)
         made[number] = odds / (1.0 + odds)

@@ -26,6 +26,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.sensing.detection.odds import Weights, odds
 from hazard_ms.spec.foreign import plain
 from hazard_ms.spec.foreign.plain import Within
 
@@ -44,6 +45,7 @@ class Look(NamedTuple):
     told: str | None
     pixels: float
     chances: tuple[float, ...] | None = None  # of each category by the detector itself, [L]
+    size: float = 0.0  # the thing's pixels 1 m before the middle of the picture; 0: unknown
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,7 @@ class Confusion:
     again_of: dict[Name, Share] = field(default_factory=dict)  # `again` of clutter that was first told as a category
     steady_of: dict[Name, Share] = field(default_factory=dict)  # the same of `steady`
     false_of: dict[Name, Annotated[tuple[Share, ...], Within(0, 20)]] = field(default_factory=dict)  # of `false`
+    odds_of: dict[Name, Weights] = field(default_factory=dict)  # of what is shown of a category, in place of `real`
     repeated: Share = 1.0  # exponent of what each look after the first tells: looks at one thing err alike
     eyes: Name = "256/120"  # of the looks
     command: Annotated[str, Within(0, 1000)] = ""  # that measured it
@@ -80,7 +83,7 @@ class Confusion:
         if len(set(self.classes)) < len(self.classes):
             raise ValueError("classes must be different categories")
         named = {*self.taken, *(told for row in self.taken.values() for told in row), *self.clutter}
-        named |= {*self.again_of, *self.steady_of, *self.false_of}
+        named |= {*self.again_of, *self.steady_of, *self.false_of, *self.odds_of}
         if odd := [row for row in (self.real, self.false, *self.false_of.values()) if len(row) != len(self.surer)]:
             raise ValueError(
                 f"real, false and false_of must have {len(self.surer)} buckets, as surer has, got {odd[0]}"
@@ -120,21 +123,29 @@ class Confusion:
             return chances
         return softened(np.array(look.chances), self.sharpness, self.even) * chances.sum()
 
-    def likelihood(self, look: Look, first: str) -> NDArray[np.float64]:
-        """The chance of a look for each category, and last for clutter that was `first` told so: [L + 1]."""
+    def likelihood(self, look: Look, first: str, expected: Mapping[str, float]) -> NDArray[np.float64]:
+        """The chance of a look for each category, and last for clutter that was `first` told so: [L + 1].
+
+        `expected`: see `sure`.
+        """
         found = _inside(self.found[self.bucket(look.pixels)])
         again = _inside(self.again_of.get(first, self.again))
         steady = _inside(self.steady_of.get(first, self.steady))
         if look.told is None:
             return np.append(np.full(len(self.classes), 1.0 - found), 1.0 - again)
         clutter = again * (steady if look.told == first else (1.0 - steady) / (len(self.classes) - 1))
-        real, false = self.sure(look, first)
+        real, false = self.sure(look, first, expected)
         return np.append(found * real * self.told(look), false * clutter)
 
-    def sure(self, look: Look, first: str) -> tuple[float, float]:
-        """The chances that a look at a thing, and one at clutter that was `first` told so, are as sure as this one."""
+    def sure(self, look: Look, first: str, expected: Mapping[str, float]) -> tuple[float, float]:
+        """The chances that a look at a thing, and one at clutter that was `first` told so, are as sure as this one.
+
+        Of a category that is `expected` in the scene, the odds of the two, where it is known how its looks differ.
+        """
         if look.chances is None or not self.surer:
             return 1.0, 1.0
+        if look.told in self.odds_of and look.size > 0.0 and expected.get(look.told):
+            return odds(self.odds_of[look.told], max(look.chances), look.pixels, look.size), 1.0
         number = bisect_right(self.surer, max(look.chances)) - 1
         return _inside(self.real[number]), _inside(self.false_of.get(first, self.false)[number])
 
@@ -146,12 +157,12 @@ class Confusion:
         first = looks[0].told
         assert first is not None
         there = np.array([expected.get(name, usual) for name in self.classes])
-        real, false = self.sure(looks[0], first)
+        real, false = self.sure(looks[0], first, expected)
         weight = np.append(
             self.seen * there * real * self.told(looks[0]), false * max(self.clutter.get(first, 0.0), LEAST)
         )
         for look in looks[1:]:
-            weight = weight * self.likelihood(look, first) ** self.repeated
+            weight = weight * self.likelihood(look, first, expected) ** self.repeated
         chances: NDArray[np.float64] = weight / weight.sum()
         return chances
 

@@ -53,6 +53,10 @@ class Labeller:
         """Index along B of what a hand meets where the agent believes the thing `index` to be; -1: nothing."""
         return index
 
+    def reach_for(self, index: int) -> int:
+        """What `thing` says, for a hand that reaches for it: what it takes is that, whatever looks tell meanwhile."""
+        return self.thing(index)
+
     def half_width(self, index: int) -> float:
         """The greatest horizontal distance of a point of the thing `index` from its middle that is believed [m]."""
         return float(self._world.extent[0, index, :2].norm()) / 2

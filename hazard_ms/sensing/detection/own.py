@@ -9,17 +9,17 @@ are count, the surest ones, until a drop finds none there.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.sensing.camera import STRUCTURE
 from hazard_ms.sensing.detection.beliefs import believed
 from hazard_ms.sensing.detection.detector import Detector
 from hazard_ms.sensing.detection.labeller import DetectingLabeller, blank
-from hazard_ms.sensing.detection.tracks import CART_WIDEST, ENOUGH, WIDEST, Found, Track, Tracker, surroundings
+from hazard_ms.sensing.detection.tracks import CART_WIDEST, ENOUGH, WIDEST, Found, Track, Tracker
+from hazard_ms.sensing.detection.unsure import labels_of
 from hazard_ms.sensing.observations import SLOTS
 from hazard_ms.sensing.sighting import sightings
 from hazard_ms.sensing.target_table import Target
@@ -63,15 +63,15 @@ class OwnLabeller(DetectingLabeller):
         self._tracker = Tracker(self._confusion)
         self._expected = Counter(self._kinds)  # of each category, as the agent is told before the episode
         self._by_index: dict[int, Track] = {}
+        self._reached: dict[int, Track] = {}  # by index: what the hand reached for last
         self._taken: tuple[Track, int] | None = None  # the track in the hand, and the index along B of what it is
         self._stowed: list[Track] = []  # in the bag
         self._lost: list[int] = []  # at the last look
         self._missed: list[int] = []  # since the last look
-        self._frame = 0  # of the last look
 
     def view(self, rgb: NDArray[np.uint8] | None, true: View, frame: int) -> View:
         assert true.labels is not None
-        self._frame, own = frame, self._own(true.labels)
+        own = self._own(true.labels)
         found = self._detect(rgb, true, frame)
         numbers = blank(own, true.depth)
         for number, detection in enumerate(found):
@@ -93,28 +93,13 @@ class OwnLabeller(DetectingLabeller):
         for track in tracks.values():
             self._introduce(track)
         self.containers = self._surest_carts()
-        return replace(true, labels=self._labels(view, tracks, out_of_sight))
-
-    def _labels(self, view: View, tracks: Mapping[int, Track], out_of_sight: Sequence[Track]) -> NDArray[np.int64]:
-        """The agent's labels, [H, W], of a `view` whose labels are numbers of detections, of which these are `tracks`.
-
-        What may be a thing that can move, but is not believed or was not detected, is UNSURE and not mapped: else it
-        would be an obstacle for ever.
-        """
-        assert view.labels is not None
-        index = np.full(int(view.labels.max(initial=0)) + 1, UNSURE)
-        for number, track in tracks.items():
-            index[number] = track.index if track.index >= 0 else UNSURE if track.loose else STRUCTURE
-        labels = np.where(view.labels >= 0, index[np.maximum(view.labels, 0)], view.labels)
-        for track in self._tracker.tracks:
-            if track.loose and track not in out_of_sight and track.sighting.frame < self._frame:
-                window, near = surroundings(view, track)
-                labels[window] = np.where(near & (labels[window] == STRUCTURE), UNSURE, labels[window])
-        return labels
+        near = [track for track in self._tracker.tracks if track not in out_of_sight]
+        return replace(true, labels=labels_of(view, tracks, near, frame, UNSURE))
 
     def _introduce(self, track: Track) -> None:
         """Give a track that was seen often enough its index: one of what was told if that is free, else a new one."""
-        if track.index >= 0 or track.frames < ENOUGH or track.refuted or track.belief < self._limits(track)[0]:
+        often = track.frames >= ENOUGH or (track.evidence is not None and not track.loose)  # a cart by its odds
+        if track.index >= 0 or not often or track.refuted or track.belief < self._limits(track)[0]:
             return
         free = [i for i, kind in enumerate(self._kinds) if kind == track.category and i not in self._by_index]
         if free:
@@ -200,8 +185,7 @@ class OwnLabeller(DetectingLabeller):
     def thing(self, index: int) -> int:
         if index not in self._by_index:
             return -1
-        place = self._by_index[index].sighting.position
-        world = self._world
+        place, world = self._by_index[index].sighting.position, self._world
         cart = self._is_cart(index)
         free = world.movable & world.exists & ~world.away & ~world.floats
         there = self._carts if cart else np.flatnonzero(free[0].cpu().numpy())
@@ -211,6 +195,11 @@ class OwnLabeller(DetectingLabeller):
         far = np.linalg.norm(world.position[0, there].cpu().numpy()[:, :axes] - place[:axes], axis=-1)
         nearest = int(np.argmin(far))
         return int(there[nearest]) if far[nearest] < (CART_WITHIN if cart else WITHIN) else -1
+
+    def reach_for(self, index: int) -> int:
+        if index in self._by_index:
+            self._reached[index] = self._by_index[index]
+        return self.thing(index)
 
     def half_width(self, index: int) -> float:
         return WIDEST if self.loose[index] else CART_WIDEST if self._is_cart(index) else float("inf")
@@ -244,5 +233,10 @@ class OwnLabeller(DetectingLabeller):
         return self._taken[0] if self._taken else None
 
     def took(self, index: int) -> None:
-        held = np.flatnonzero(self._world.held[0].cpu().numpy())
-        self._taken = self._by_index[index], int(held[0])
+        held, track = np.flatnonzero(self._world.held[0].cpu().numpy()), self._reached.get(index)
+        track = track or self._by_index[index]
+        if self._by_index.get(index) is not track:  # a look on the way has made it something else
+            if index in self._by_index:
+                self._drop(self._by_index[index])
+            track.index, self._by_index[index] = index, track
+        self._taken = track, int(held[0])

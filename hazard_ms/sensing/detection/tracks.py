@@ -186,7 +186,7 @@ class Tracker:
             track.size = seen.pixels * float(np.sum((seen.position - eye) ** 2))
             if category not in self._confusion.classes:
                 continue
-            look = Look(category, seen.pixels, chances)
+            look = Look(category, seen.pixels, chances, seen.size)
             if track.evidence is None:
                 track.evidence = Evidence(self._confusion, look, eye)
             else:

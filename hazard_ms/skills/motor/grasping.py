@@ -46,7 +46,7 @@ MISSED = 0.2  # distance between where a thing will be and where the hand goes a
 
 def pick_up(stage: Stage, index: int) -> Skill:
     """Take what lies where the map has the thing `index`: turn to it, come nearer, reach, grasp, fold the arm back."""
-    thing = stage.labeller.thing(index)
+    thing = stage.labeller.reach_for(index)
     reason = _refusal(stage, index, thing)
     if reason == failures.UNREACHABLE:  # nothing lies there: it only turns to the place
         x, y, _ = stage.seen.objects[index].position.tolist()

@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 
 from hazard_ms.perception.calibration.measuring import confusion_of
-from hazard_ms.perception.calibration.observing import Observed, Told
+from hazard_ms.perception.calibration.observing import Observed, Told, observed
 from hazard_ms.perception.calibration.reliability import crossed, ece, outcomes, table, weight_of_repeats
 from hazard_ms.perception.calibration.thinned import Thinned
 from hazard_ms.perception.detectors.small import CONFUSION, SHIPPED, Small
 from hazard_ms.perception.training.pictures import Picture
 from hazard_ms.sensing.detection.confusion import Confusion
+from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
+from hazard_ms.sensing.detection.odds import odds
 from hazard_ms.sensing.sighting import Sighting
 from tests.worlds.wall import view
 
@@ -144,6 +146,42 @@ def test_a_thinned_picture_shows_the_same_with_fewer_pixels() -> None:
     assert (1.5 - matrix[1, 2]) / matrix[1, 1] == pytest.approx((2.5 - 4) / 4)
 
 
+class Shown(Drawn):
+    """The same, seen from one place before a wall 2 m away."""
+
+    def rgb(self) -> np.ndarray:
+        return np.zeros((8, 8, 3), np.uint8)
+
+    def depth(self) -> np.ndarray:
+        return np.full((8, 8), 2.0, np.float32)
+
+    def cam2world(self) -> np.ndarray:
+        return np.eye(4, dtype=np.float32)
+
+    def categories(self) -> dict[int, str]:
+        return {3: "mug", 4: "bowl"}
+
+
+class TellsOne(Detector):
+    """Finds one mug in every picture, with one row of pixels more than it has."""
+
+    def detect(self, rgb: np.ndarray, depth: np.ndarray) -> list[Detection]:
+        mask = np.zeros((8, 8), bool)
+        mask[1:5, 4:7] = True
+        return [Detection("mug", 0.9, box_of(mask), mask)]
+
+
+def test_looks_are_numbered_within_each_scene() -> None:
+    """Else the tracks of all but the first scene would be those of things that were last seen in the future."""
+    pictures = [Thinned(Shown(Path("x"), {"scene": name}, ())) for name in ("one", "one", "two", "one")]
+    looks = observed(TellsOne(), pictures, CLASSES)
+    assert [look.told[0].sighting.frame for look in looks] == [0, 1, 0, 2]
+    assert [look.scene for look in looks] == ["x/one", "x/one", "x/two", "x/one"]
+    assert [each.thing for each in looks[0].told] == [3] and looks[0].visible == {3: 9}
+    (tracked,) = outcomes(looks[:2], confusion_of(looks, CLASSES, "", ""))
+    assert tracked[1], "one track of the mug, whose second look is the newer one"
+
+
 def test_the_shipped_detector_knows_its_errors() -> None:
     """Larger things are found again more often, and rather than what is none."""
     path = SHIPPED.with_name(f"{SHIPPED.stem}{CONFUSION}")
@@ -177,3 +215,34 @@ def test_what_a_detectors_own_chances_are_worth_is_found_again() -> None:
 def test_a_detector_that_tells_no_chances_has_none_that_count() -> None:
     made = confusion_of([picture(told("mug", MUG, 1))], CLASSES, "", "")
     assert (made.sharpness, made.surer) == (0.0, ())
+
+
+def carts(sizes: Sequence[float], thing: int, category: str = "cart") -> list[Told]:
+    """Detections of a cart, or of what is taken for one, with so many pixels at 1 m."""
+    place = np.array(MUG if thing else NOTHING, np.float32)
+    seen = [Sighting(place, 0.05, 1.0, 0, 64, size=size) for size in sizes]
+    return [Told(category, each, thing, (0.5, 0.0)) for each in seen]
+
+
+def test_how_carts_differ_from_clutter_is_learned() -> None:
+    """Octaves of normal sizes, at 12 and at 8, both with a deviation of 1: the log-odds at x are 4 x - 40."""
+    chance, kinds = np.random.default_rng(0), {1: "cart", 2: "mug"}
+    real, clutter = 2.0 ** chance.normal(12.0, 1.0, 3000), 2.0 ** chance.normal(8.0, 1.0, 6000)
+    found = [(each,) for each in [*carts(real.tolist(), 1), *carts(clutter.tolist(), 0)]]
+    made = confusion_of([Observed("one", view(2.0), each, {}, kinds) for each in found], ("cart", "mug"), "", "")
+    for octave, told in ((9.5, -2.0), (10.0, 0.0), (10.5, 2.0), (11.0, 4.0)):
+        assert np.log(odds(made.odds_of["cart"], 0.5, 64.0, 2.0**octave)) == pytest.approx(told, abs=0.4), octave
+
+
+def test_only_the_largest_part_of_a_cart_counts_and_nothing_that_can_be_carried() -> None:
+    kinds = {1: "cart", 2: "mug"}
+    whole, part, none = carts([3000.0], 1)[0], carts([200.0], 1)[0], carts([200.0], 0)[0]
+    mugs = (*carts([100.0], 2, "mug"), *carts([100.0], 0, "mug"))
+    apart, alone = [(whole, part, none, *mugs)] * 30, [(whole, none, *mugs)] * 30
+    made, other = (
+        confusion_of([Observed("one", view(2.0), each, {}, kinds) for each in found], ("cart", "mug"), "", "").odds_of
+        for found in (apart, alone)
+    )
+    assert made == other and set(made) == {"cart"}
+    few = [Observed("one", view(2.0), each, {}, kinds) for each in apart[:19]]
+    assert confusion_of(few, ("cart", "mug"), "", "").odds_of == {}, "too few"

@@ -162,12 +162,12 @@ def test_of_one_mug_that_is_left_two_places_share_the_belief() -> None:
 
 
 def test_a_cart_beside_others_is_rather_a_fence() -> None:
-    """Each other one 0.3 to 1.5 m away, three at most, takes the odds, 0.8 : 0.2, times 0.3; mugs may stand so."""
-    along = np.cumsum([0.0, 0.2, 1.0, 1.6, 4.0])  # nearer than the gate: the same one twice
+    """Each other one 0.7 to 1.5 m away, three at most, takes the odds, 0.8 : 0.2, times 0.3; mugs may stand so."""
+    along = np.cumsum([0.0, 0.6, 0.8, 1.6, 4.0])  # nearer than a cart is long: the same one twice
     tracks = [Track("cart", seen(2.0, y, 0)) for y in along]
     odds = np.array(crowded(tracks, ["cart"] * 5, [0.8] * 5))
     assert (odds / (1.0 - odds) / 4.0).tolist() == pytest.approx([0.3, 0.3, 0.09, 1.0, 1.0])
-    close = [Track("cart", seen(2.0, 0.31 * k, 0)) for k in range(5)]
+    close = [Track("cart", seen(2.0, 0.71 * k, 0)) for k in range(5)]
     assert crowded(close, ["cart"] * 5, [0.5] * 5)[2] == pytest.approx(0.027 / 1.027), "of four others three count"
     assert crowded(close, ["mug"] * 5, [0.5] * 5) == [0.5] * 5
 
@@ -223,6 +223,24 @@ def test_what_is_told_otherwise_from_nearer_gets_another_name(labeller: OwnLabel
     seen_now = look(labeller, 2, ("mug", BOOK))
     assert track.category == "book" and labeller.names[at(seen_now, BOOK)] == "book#1"
     assert 0 in labeller.unmapped()
+
+
+def test_a_hand_holds_what_it_went_to_whatever_a_look_on_the_way_made_of_it(labeller: OwnLabeller) -> None:
+    """The mug becomes a book while the hand goes there; meanwhile its name is free, and another mug gets it."""
+    for frame in range(2):
+        look(labeller, frame, ("mug", BOOK))
+    (track,) = labeller._tracker.tracks
+    assert labeller.reach_for(0) == BOOK and track.evidence is not None
+    for x in (1.0, 2.0):
+        track.evidence.look(Look("book", 200), np.array([x, 0.0, 1.0]))
+    for frame in (2, 3):
+        look(labeller, frame, ("mug", BOOK), ("mug", MUG_2))
+    assert track.index not in (-1, 0) and labeller.thing(0) == MUG_2
+    labeller._world.held[0, BOOK] = True
+    labeller.took(0)
+    assert labeller.held == "mug#1" and track.index == 0
+    seen_now = look(labeller, 4, ("mug", MUG_2))
+    assert at(seen_now, MUG_2) not in (0, track.index)
 
 
 def test_without_fusion_all_is_as_it_seems(world: World) -> None:

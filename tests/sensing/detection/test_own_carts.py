@@ -9,12 +9,15 @@ import pytest
 from numpy.typing import NDArray
 
 from hazard_ms.sensing.camera import STRUCTURE
+from hazard_ms.sensing.detection.confusion import Look
 from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
+from hazard_ms.sensing.detection.fusion import Evidence
 from hazard_ms.sensing.detection.own import OwnLabeller
 from hazard_ms.sensing.detection.tracks import Track
 from hazard_ms.sensing.view import View
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec
+from tests.sensing.detection.test_confusion import TABLE
 from tests.worlds.wall import view as wall
 
 SCENE = SceneSpec(
@@ -121,3 +124,15 @@ def test_nothing_is_brought_to_what_is_hardly_believed_to_be_a_cart(labeller: Ow
         labeller._introduce(made)
         told.append(made.index >= 0)
     assert told == [False, True, True]
+
+
+def test_one_look_that_tells_a_cart_for_sure_is_enough(labeller: OwnLabeller) -> None:
+    """Beliefs count looks already; of what can be carried two are needed, and without beliefs, of carts, too."""
+    look(labeller, 0, {10: 0.9})
+    (track,) = labeller._tracker.tracks
+    evidence, told = Evidence(TABLE, Look("mug", 50), np.zeros(3)), []
+    for category, known in (("cart", None), ("cart", evidence), ("mug", evidence)):
+        made = Track(category, track.sighting, frames=1, belief=0.9, evidence=known)
+        labeller._introduce(made)
+        told.append(made.index >= 0)
+    assert told == [False, True, False]

@@ -1,0 +1,70 @@
+"""Learns how looks at furniture differ from looks at what is taken for it, by logistic regression."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.perception.calibration.observing import Observed, Told
+from hazard_ms.sensing.detection.odds import shown
+from hazard_ms.spec.catalogue import CATEGORIES
+
+FEWEST = 20  # looks at things and at clutter from which it is learned [ours]
+RIDGE = 0.01  # by which the squares of the weights count [ours]
+STEPS = 50  # of Newton's method, which needs about ten [ours]
+DIGITS = 4
+
+
+def odds_of(looks: Sequence[Observed]) -> dict[str, tuple[float, ...]]:
+    """The weights by which `hazard_ms.sensing.detection.odds` tells a category of furniture, carts, from clutter.
+
+    Of a thing that is found in several parts the largest counts; none where too few were found. What can be carried is
+    left out: there it tells no more than the chances of the detector do.
+    """
+    made = {}
+    for name in sorted({told.category for look in looks for told in look.told}):
+        real, clutter = _told(looks, name)
+        if CATEGORIES[name].kind != "object" and min(len(real), len(clutter)) >= FEWEST:
+            made[name] = _weights(np.array([*real, *clutter]), np.arange(len(real) + len(clutter)) < len(real))
+    return made
+
+
+def _told(looks: Sequence[Observed], name: str) -> tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]:
+    """What is shown of things, and of clutter, that are told as the category `name` with the detector's own chances."""
+    real, clutter = [], []
+    for look in looks:
+        largest: dict[int, Told] = {}
+        for told in look.told:
+            if told.category != name or told.chances is None:
+                continue
+            if not told.thing:
+                clutter.append(_shown(told))
+            elif look.kinds[told.thing] == name:
+                known = largest.get(told.thing, told)
+                largest[told.thing] = max(known, told, key=lambda each: each.sighting.size)
+        real += [_shown(told) for told in largest.values()]
+    return real, clutter
+
+
+def _shown(told: Told) -> NDArray[np.float64]:
+    return shown(max(told.chances or (0.0,)), told.sighting.pixels, told.sighting.size)
+
+
+def _weights(given: NDArray[np.float64], real: NDArray[np.bool_]) -> tuple[float, ...]:
+    """The weights of a logistic regression, as if there had been as many looks at things as at clutter.
+
+    `given`, [N, SHOWN]: what is shown in each look; `real`, [N]: whether it is of a thing.
+    """
+    middle, spread = given.mean(0), given.std(0)
+    middle[0], spread[0] = 0.0, 1.0
+    scaled, weights = (given - middle) / np.maximum(spread, 1e-9), np.zeros(given.shape[1])
+    for _ in range(STEPS):
+        chance = 1.0 / (1.0 + np.exp(-scaled @ weights))
+        slope = scaled.T @ (real - chance) - RIDGE * weights
+        bend = (scaled * (chance * (1.0 - chance))[:, None]).T @ scaled + RIDGE * np.eye(len(weights))
+        weights = weights + np.linalg.solve(bend, slope)
+    weights = weights / np.maximum(spread, 1e-9)
+    weights[0] -= float(weights[1:] @ middle[1:]) + np.log(real.sum() / (~real).sum())
+    return tuple(round(float(each), DIGITS) for each in weights)

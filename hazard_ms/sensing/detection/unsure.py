@@ -1,0 +1,32 @@
+"""Which pixels of a picture are of a known thing, of what stays where it is, or of what may be either."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.sensing.camera import STRUCTURE
+from hazard_ms.sensing.detection.tracks import Track, surroundings
+from hazard_ms.sensing.view import View
+
+
+def labels_of(
+    view: View, tracks: Mapping[int, Track], near: Sequence[Track], frame: int, unsure: int
+) -> NDArray[np.int64]:
+    """The agent's labels, [H, W], of a `view` at a `frame` whose labels are numbers of detections, those of `tracks`.
+
+    What may be a thing that can move, but is not believed or was not detected, is `unsure` and not mapped: else it
+    would be an obstacle for ever. `near`: all tracks but those in the hand and in the bag.
+    """
+    assert view.labels is not None
+    index = np.full(int(view.labels.max(initial=0)) + 1, unsure)
+    for number, track in tracks.items():
+        index[number] = track.index if track.index >= 0 else unsure if track.loose else STRUCTURE
+    labels = np.where(view.labels >= 0, index[np.maximum(view.labels, 0)], view.labels)
+    for track in near:
+        if track.loose and track.sighting.frame < frame:
+            window, about = surroundings(view, track)
+            labels[window] = np.where(about & (labels[window] == STRUCTURE), unsure, labels[window])
+    return labels

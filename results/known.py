@@ -23,7 +23,7 @@ from hazard_ms.perception.training.pictures import read
 from hazard_ms.scenes.splits import scene as scene_of
 from hazard_ms.sensing.detection.beliefs import believed
 from hazard_ms.sensing.detection.confusion import Confusion
-from hazard_ms.sensing.detection.tracks import Found, Track, Tracker
+from hazard_ms.sensing.detection.tracks import Track, Tracker
 from results.detector import ERRORS, UNSEEN
 from results.tables import HERE, TASKS, machine
 
@@ -76,7 +76,7 @@ def outcomes(looks: Sequence[Observed], confusion: Confusion | None, weighs: boo
     """The beliefs in the tracks of one scene and whether they are right, and the number of things in sight."""
     tracker, thing_of = Tracker(confusion), dict[Track, int]()
     for frame, look in enumerate(looks):
-        found = {n: Found(told.category, told.sighting, told.chances) for n, told in enumerate(look.told)}
+        found = {number: told.found for number, told in enumerate(look.told)}
         for number, track in tracker.update(look.view, frame, found)[0].items():
             thing_of[track] = look.told[number].thing
     expected, kinds = wanted(looks[0]), looks[0].kinds

@@ -10,10 +10,14 @@ import numpy as np
 
 from hazard_ms.perception.calibration.thinned import Thinned
 from hazard_ms.sensing.camera import STRUCTURE
-from hazard_ms.sensing.detection.detector import Detector
+from hazard_ms.sensing.detection.detector import Detection, Detector
 from hazard_ms.sensing.detection.labeller import THRESHOLD
+from hazard_ms.sensing.detection.numbered import found_in
+from hazard_ms.sensing.detection.odds import in_front
+from hazard_ms.sensing.detection.tracks import Found
 from hazard_ms.sensing.sighting import SEEN_PIXELS, Sighting, sightings
 from hazard_ms.sensing.view import View
+from hazard_ms.spec.catalogue import CATEGORIES
 
 
 @dataclass(frozen=True)
@@ -24,6 +28,12 @@ class Told:
     sighting: Sighting
     thing: int
     chances: tuple[float, ...] | None = None  # as the detector told them
+    shown: tuple[float, ...] | None = None  # of furniture, which is carts: see hazard_ms.sensing.detection.odds
+
+    @property
+    def found(self) -> Found:
+        """What tracks take of it."""
+        return Found(self.category, self.sighting, self.chances, self.shown)
 
 
 @dataclass(frozen=True)
@@ -47,8 +57,8 @@ def observed(detector: Detector, pictures: Sequence[Thinned], classes: Sequence[
     for picture in pictures:
         scene = f"{picture.picture.dataset.name}/{picture.scene}"
         frame, taken[scene] = taken[scene], taken[scene] + 1
-        ids, known = picture.ids(), picture.picture.categories()
-        kinds = {number: kind for number, kind in known.items() if kind in classes}
+        ids, categories = picture.ids(), picture.picture.categories()
+        kinds = {number: kind for number, kind in categories.items() if kind in classes}
         view = View(picture.depth(), picture.intrinsic(), picture.cam2world())
         detector.aim(view.intrinsic, view.cam2world)
         found = [
@@ -57,8 +67,9 @@ def observed(detector: Detector, pictures: Sequence[Thinned], classes: Sequence[
         found.sort(key=lambda d: d.score)
         labels = np.full(ids.shape, STRUCTURE, np.int64)
         for number, one in enumerate(found):
-            labels[one.mask] = number
-        seen = sightings(replace(view, labels=labels), frame, len(found), frozenset(), None)
+            labels[in_front(one.mask, view.depth) if _fixed(one) else one.mask] = number
+        labelled = replace(view, labels=labels)
+        seen = sightings(labelled, frame, len(found), frozenset(), None)
         told: list[Told] = []
         of_told = np.full(ids.shape, STRUCTURE, np.int64)
         for number, sighting in seen.items():
@@ -66,10 +77,16 @@ def observed(detector: Detector, pictures: Sequence[Thinned], classes: Sequence[
             under = ids[labels == number]
             thing, pixels = Counter(under.tolist()).most_common(1)[0]
             real = 2 * pixels > len(under) and thing in kinds
-            told.append(Told(found[number].category, sighting, thing if real else 0, found[number].chances))
+            mine = found_in(labelled, number, found[number], sighting, _fixed(found[number]))
+            told.append(Told(mine.category, sighting, thing if real else 0, mine.chances, mine.shown))
         numbers, counts = np.unique(ids, return_counts=True)
-        shown = zip(numbers.tolist(), counts.tolist(), strict=True)
-        visible = {number: pixels for number, pixels in shown if number in kinds and pixels >= SEEN_PIXELS}
+        known = zip(numbers.tolist(), counts.tolist(), strict=True)
+        visible = {number: pixels for number, pixels in known if number in kinds and pixels >= SEEN_PIXELS}
         view = replace(view, labels=of_told)
         made.append(Observed(scene, view, tuple(told), visible, kinds))
     return made
+
+
+def _fixed(one: Detection) -> bool:
+    """Whether a detection is of furniture, of which detectors of what is sought know carts alone."""
+    return CATEGORIES[one.category].kind != "object"

@@ -1,4 +1,4 @@
-"""Learns how looks at furniture differ from looks at what is taken for it, by logistic regression."""
+"""Learns how looks at carts differ from looks at what is taken for them, by logistic regression."""
 
 from __future__ import annotations
 
@@ -8,48 +8,42 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.perception.calibration.observing import Observed, Told
-from hazard_ms.sensing.detection.odds import shown
-from hazard_ms.spec.catalogue import CATEGORIES
 
 FEWEST = 20  # looks at things and at clutter from which it is learned [ours]
 RIDGE = 0.01  # by which the squares of the weights count [ours]
 STEPS = 50  # of Newton's method, which needs about ten [ours]
 DIGITS = 4
+Shown = tuple[float, ...]
 
 
 def odds_of(looks: Sequence[Observed]) -> dict[str, tuple[float, ...]]:
-    """The weights by which `hazard_ms.sensing.detection.odds` tells a category of furniture, carts, from clutter.
+    """The weights by which `hazard_ms.sensing.detection.odds` tells carts from clutter, by category.
 
-    Of a thing that is found in several parts the largest counts; none where too few were found. What can be carried is
-    left out: there it tells no more than the chances of the detector do.
+    Of a cart that is found in several parts the largest counts. Empty where too few were found.
     """
     made = {}
-    for name in sorted({told.category for look in looks for told in look.told}):
-        real, clutter = _told(looks, name)
-        if CATEGORIES[name].kind != "object" and min(len(real), len(clutter)) >= FEWEST:
+    for name in sorted({told.category for look in looks for told in look.told if told.shown is not None}):
+        real, clutter = _shown(looks, name)
+        if min(len(real), len(clutter)) >= FEWEST:
             made[name] = _weights(np.array([*real, *clutter]), np.arange(len(real) + len(clutter)) < len(real))
     return made
 
 
-def _told(looks: Sequence[Observed], name: str) -> tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]:
-    """What is shown of things, and of clutter, that are told as the category `name` with the detector's own chances."""
-    real, clutter = [], []
+def _shown(looks: Sequence[Observed], name: str) -> tuple[list[Shown], list[Shown]]:
+    """What is shown of things, and of clutter, that are told as the category `name`."""
+    real, clutter = list[Shown](), list[Shown]()
     for look in looks:
         largest: dict[int, Told] = {}
         for told in look.told:
-            if told.category != name or told.chances is None:
+            if told.category != name or told.shown is None:
                 continue
             if not told.thing:
-                clutter.append(_shown(told))
+                clutter.append(told.shown)
             elif look.kinds[told.thing] == name:
                 known = largest.get(told.thing, told)
                 largest[told.thing] = max(known, told, key=lambda each: each.sighting.size)
-        real += [_shown(told) for told in largest.values()]
+        real += [told.shown for told in largest.values() if told.shown is not None]
     return real, clutter
-
-
-def _shown(told: Told) -> NDArray[np.float64]:
-    return shown(max(told.chances or (0.0,)), told.sighting.pixels, told.sighting.size)
 
 
 def _weights(given: NDArray[np.float64], real: NDArray[np.bool_]) -> tuple[float, ...]:

@@ -12,7 +12,7 @@ from hazard_ms.perception.calibration.measuring import confusion_of
 from hazard_ms.perception.calibration.observing import Observed
 from hazard_ms.sensing.detection.beliefs import believed
 from hazard_ms.sensing.detection.confusion import Confusion
-from hazard_ms.sensing.detection.tracks import Found, Track, Tracker
+from hazard_ms.sensing.detection.tracks import Track, Tracker
 
 BINS = 10  # of beliefs, from 0 to 1 [ours]
 REPEATED = (0.3, 0.5, 0.7, 1.0)  # exponents of looks after the first that are tried [ours]
@@ -30,7 +30,7 @@ def outcomes(looks: Sequence[Observed], confusion: Confusion) -> list[Outcome]:
         tracker, thing_of = Tracker(confusion), dict[Track, int]()
         scene = list(mine)
         for frame, look in enumerate(scene):
-            found = {n: Found(told.category, told.sighting, told.chances) for n, told in enumerate(look.told)}
+            found = {number: told.found for number, told in enumerate(look.told)}
             for number, track in tracker.update(look.view, frame, found)[0].items():
                 thing_of[track] = look.told[number].thing
         sure = believed(tracker.tracks, (), Counter(scene[0].kinds.values()))

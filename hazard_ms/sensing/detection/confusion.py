@@ -45,7 +45,7 @@ class Look(NamedTuple):
     told: str | None
     pixels: float
     chances: tuple[float, ...] | None = None  # of each category by the detector itself, [L]
-    size: float = 0.0  # the thing's pixels 1 m before the middle of the picture; 0: unknown
+    shown: tuple[float, ...] | None = None  # by which a cart is told from what only looks like one
 
 
 @dataclass(frozen=True)
@@ -144,8 +144,8 @@ class Confusion:
         """
         if look.chances is None or not self.surer:
             return 1.0, 1.0
-        if look.told in self.odds_of and look.size > 0.0 and expected.get(look.told):
-            return odds(self.odds_of[look.told], max(look.chances), look.pixels, look.size), 1.0
+        if look.told in self.odds_of and look.shown is not None and expected.get(look.told):
+            return odds(self.odds_of[look.told], look.shown), 1.0
         number = bisect_right(self.surer, max(look.chances)) - 1
         return _inside(self.real[number]), _inside(self.false_of.get(first, self.false)[number])
 

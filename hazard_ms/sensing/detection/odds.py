@@ -1,7 +1,8 @@
-"""How much likelier a look is at a thing than at what only looks like it: parts of hedges and cars are taken for carts.
+"""How much likelier a look is at a cart than at what only looks like one: fences of wire, and parts of hedges and cars.
 
-The logarithm of these odds is linear in what a look shows of it: how sure the detector is, how many pixels there are,
-and how many there would be 1 m before the middle of the picture, which is how large it is.
+The logarithm of these odds is linear in what a look shows. A cart stands apart: left and right of its mask there is
+hardly anything as near and as high as a cart, where a fence goes on. It is as deep as it is wide, and as large as carts
+are. Masks hold what is seen through the wire, too, which is left out first.
 """
 
 from __future__ import annotations
@@ -12,24 +13,62 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.sensing.view import View
 from hazard_ms.spec.foreign.plain import Within
 
-SHOWN = 5  # numbers that `shown` tells
+FRONT, DEEP = 20.0, 1.1  # percentile of its depths at which a cart begins, and how deep it can be [m] [ours]
+BESIDE = 0.6  # width of what counts beside a mask, as a share of its own [ours]
+LEAST_BESIDE = 2  # pixels of that, where the picture ends [ours]
+WITHIN, LOW, HIGH = 1.6, 0.2, 1.3  # how near to a cart, and how high above the floor, what counts there is [m] [ours]
+SHOWN = 6  # numbers that `shown` tells
 LEAST = 1e-3  # no chance counts as smaller, nor as larger than 1 less this [ours]
+LEAST_SHARE, LEAST_WIDTH = 0.02, 0.01  # by which shares, and widths [m], are larger before their logarithm [ours]
 FARTHEST = 7.0  # most that a look changes the logarithm of the odds [ours]
 Weights = Annotated[tuple[Annotated[float, Within(-1e3, 1e3)], ...], Within(SHOWN, SHOWN)]
 
 
-def shown(chance: float, pixels: float, size: float) -> NDArray[np.float64]:
-    """What counts of a look, [SHOWN]: 1, the log-odds of the largest `chance` that the detector gives, and octaves.
+def in_front(mask: NDArray[np.bool_], depth: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """The pixels of a cart's `mask`, [H, W], that are of the cart by their `depth` [m], [H, W]."""
+    far = depth[mask & (depth > 0.0)]
+    if not len(far):
+        return mask
+    made: NDArray[np.bool_] = mask & (depth > 0.0) & (depth <= np.percentile(far, FRONT) + DEEP)
+    return made
 
-    Those of its `pixels`, of the `size`, its pixels 1 m before the middle of the picture, and these once more, squared.
+
+def shown(view: View, mask: NDArray[np.bool_], seen: Sighting, chance: float) -> tuple[float, ...]:
+    """What a look tells of a cart with a `mask`, [H, W], that was `seen` and has a `chance` by the detector, [SHOWN].
+
+    1; the log-odds of the chance; octaves of its pixels, and of those that it would have 1 m before the middle of the
+    picture; the logarithms of the share of what is beside it that is as near and as high, and of its width [m].
     """
     chance = min(max(chance, LEAST), 1.0 - LEAST)
-    large = math.log2(max(size, 1.0))
-    return np.array([1.0, math.log(chance / (1.0 - chance)), math.log2(max(pixels, 1.0)), large, large**2])
+    rows, columns = np.nonzero(mask)
+    flat = view.points(rows, columns)[:, :2].astype(np.float64)
+    flat -= flat.mean(0)
+    wide = 4.0 * math.sqrt(max(float(np.linalg.eigvalsh(flat.T @ flat / len(flat))[0]), 0.0))
+    near = _beside(view, (int(rows.min()), int(rows.max()) + 1), (int(columns.min()), int(columns.max()) + 1), seen)
+    told = (1.0, math.log(chance / (1.0 - chance)), math.log2(seen.pixels), math.log2(max(seen.size, 1.0)))
+    return (*told, math.log(near + LEAST_SHARE), math.log2(wide + LEAST_WIDTH))
 
 
-def odds(weights: Weights, chance: float, pixels: float, size: float) -> float:
-    """How many times as likely a look with this is at a thing as at clutter, by the `weights` of its category."""
-    return math.exp(min(max(float(shown(chance, pixels, size) @ np.array(weights)), -FARTHEST), FARTHEST))
+def _beside(view: View, rows: tuple[int, int], columns: tuple[int, int], seen: Sighting) -> float:
+    """The mean share, left and right of these `rows` and `columns` of a picture, of pixels of what is near and high."""
+    (top, bottom), (left, right), width = rows, columns, view.depth.shape[1]
+    reach = max(int(BESIDE * (right - left)), LEAST_BESIDE)
+    shares = []
+    for first, end in ((max(left - reach, 0), left), (right, min(right + reach, width))):
+        if end - first < LEAST_BESIDE:
+            continue
+        row, column = (part.ravel() for part in np.mgrid[top:bottom, first:end])
+        points = view.points(row, column)
+        away = np.linalg.norm(points[:, :2] - seen.position[:2], axis=-1)
+        high = (points[:, 2] > LOW) & (points[:, 2] < HIGH)
+        shares.append(float(((view.depth[row, column] > 0.0) & high & (away < WITHIN)).mean()))
+    return sum(shares) / len(shares) if shares else 0.0
+
+
+def odds(weights: Weights, told: tuple[float, ...]) -> float:
+    """How many times as likely a look that tells this is at a cart as at something else, by the `weights`."""
+    return math.exp(min(max(float(np.dot(told, weights)), -FARTHEST), FARTHEST))

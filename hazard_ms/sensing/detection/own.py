@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from hazard_ms.sensing.detection.beliefs import believed
 from hazard_ms.sensing.detection.detector import Detector
 from hazard_ms.sensing.detection.labeller import DetectingLabeller, blank
-from hazard_ms.sensing.detection.tracks import CART_WIDEST, ENOUGH, WIDEST, Found, Track, Tracker
-from hazard_ms.sensing.detection.unsure import labels_of
+from hazard_ms.sensing.detection.numbered import found_in, labels_of
+from hazard_ms.sensing.detection.odds import in_front
+from hazard_ms.sensing.detection.tracks import CART_WIDEST, ENOUGH, WIDEST, Track, Tracker
 from hazard_ms.sensing.observations import SLOTS
 from hazard_ms.sensing.sighting import sightings
 from hazard_ms.sensing.target_table import Target
@@ -73,14 +74,16 @@ class OwnLabeller(DetectingLabeller):
         assert true.labels is not None
         own = self._own(true.labels)
         found = self._detect(rgb, true, frame)
+        carts = {number for number, detection in enumerate(found) if self._seeks(detection.category)}
         numbers = blank(own, true.depth)
         for number, detection in enumerate(found):
-            numbers[detection.mask & ~own] = number
+            mask = detection.mask & ~own
+            numbers[in_front(mask, true.depth) if number in carts else mask] = number
         view = replace(true, labels=numbers)
         seen = sightings(view, frame, len(found), frozenset(), None)
         self._let_go()
         out_of_sight = [*self._stowed, *([self._taken[0]] if self._taken else [])]
-        named = {n: Found(found[n].category, sighting, found[n].chances) for n, sighting in seen.items()}
+        named = {n: found_in(view, n, found[n], sighting, n in carts) for n, sighting in seen.items()}
         tracks, lost = self._tracker.update(view, frame, named, out_of_sight)
         self._lost = [*self._missed, *(track.index for track in lost if track.index >= 0)]
         self._missed = []
@@ -95,6 +98,10 @@ class OwnLabeller(DetectingLabeller):
         self.containers = self._surest_carts()
         near = [track for track in self._tracker.tracks if track not in out_of_sight]
         return replace(true, labels=labels_of(view, tracks, near, frame, UNSURE))
+
+    def _seeks(self, category: str) -> bool:
+        """Whether it is one of carts, which the agent seeks."""
+        return bool(self._carts) and category == self._categories[self._carts[0]]
 
     def _introduce(self, track: Track) -> None:
         """Give a track that was seen often enough its index: one of what was told if that is free, else a new one."""
@@ -138,12 +145,11 @@ class OwnLabeller(DetectingLabeller):
 
     def _limits(self, track: Track) -> tuple[float, float]:
         """The beliefs from which an agent is told of a track, and below which no more."""
-        cart = self._carts and track.category == self._categories[self._carts[0]]
-        return (CART_LEAST, CART_FORGET) if cart else (LEAST, FORGET)
+        return (CART_LEAST, CART_FORGET) if self._seeks(track.category) else (LEAST, FORGET)
 
     def _is_cart(self, index: int) -> bool:
         """Whether the agent takes the thing `index` for a cart."""
-        return bool(self._carts) and self._kinds[index] == self._categories[self._carts[0]]
+        return self._seeks(self._kinds[index])
 
     def _surest_carts(self) -> tuple[str, ...]:
         """The names of the carts that count, in the order of their indices: as many as there are in truth.

@@ -44,6 +44,7 @@ class Found(NamedTuple):
     category: str
     sighting: Sighting
     chances: tuple[float, ...] | None = None
+    shown: tuple[float, ...] | None = None  # of a cart, see hazard_ms.sensing.detection.odds
 
 
 @dataclass(eq=False)
@@ -182,11 +183,11 @@ class Tracker:
         """Enter what a `view` told of its tracks, and that it told nothing of the others whose places it shows."""
         assert self._confusion is not None
         eye = view.cam2world[:3, 3]
-        for (category, seen, chances), track in told.values():
+        for (category, seen, chances, shown), track in told.values():
             track.size = seen.pixels * float(np.sum((seen.position - eye) ** 2))
             if category not in self._confusion.classes:
                 continue
-            look = Look(category, seen.pixels, chances, seen.size)
+            look = Look(category, seen.pixels, chances, shown)
             if track.evidence is None:
                 track.evidence = Evidence(self._confusion, look, eye)
             else:

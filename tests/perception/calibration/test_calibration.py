@@ -217,28 +217,30 @@ def test_a_detector_that_tells_no_chances_has_none_that_count() -> None:
     assert (made.sharpness, made.surer) == (0.0, ())
 
 
-def carts(sizes: Sequence[float], thing: int, category: str = "cart") -> list[Told]:
-    """Detections of a cart, or of what is taken for one, with so many pixels at 1 m."""
+def carts(octaves: Sequence[float], thing: int) -> list[Told]:
+    """Detections of a cart, or of what is taken for one, of so many octaves of size; all else of them is alike."""
     place = np.array(MUG if thing else NOTHING, np.float32)
-    seen = [Sighting(place, 0.05, 1.0, 0, 64, size=size) for size in sizes]
-    return [Told(category, each, thing, (0.5, 0.0)) for each in seen]
+    made = []
+    for octave in octaves:
+        seen = Sighting(place, 0.05, 1.0, 0, 64, size=2.0**octave)
+        made.append(Told("cart", seen, thing, (0.5, 0.0), (1.0, 0.0, 6.0, octave, 0.0, 0.0)))
+    return made
 
 
 def test_how_carts_differ_from_clutter_is_learned() -> None:
     """Octaves of normal sizes, at 12 and at 8, both with a deviation of 1: the log-odds at x are 4 x - 40."""
-    chance, kinds = np.random.default_rng(0), {1: "cart", 2: "mug"}
-    real, clutter = 2.0 ** chance.normal(12.0, 1.0, 3000), 2.0 ** chance.normal(8.0, 1.0, 6000)
-    found = [(each,) for each in [*carts(real.tolist(), 1), *carts(clutter.tolist(), 0)]]
-    made = confusion_of([Observed("one", view(2.0), each, {}, kinds) for each in found], ("cart", "mug"), "", "")
+    chance = np.random.default_rng(0)
+    real, clutter = chance.normal(12.0, 1.0, 3000).tolist(), chance.normal(8.0, 1.0, 6000).tolist()
+    looks = [Observed("one", view(2.0), (each,), {}, {1: "cart"}) for each in [*carts(real, 1), *carts(clutter, 0)]]
+    made = confusion_of(looks, ("cart", "mug"), "", "").odds_of
     for octave, told in ((9.5, -2.0), (10.0, 0.0), (10.5, 2.0), (11.0, 4.0)):
-        assert np.log(odds(made.odds_of["cart"], 0.5, 64.0, 2.0**octave)) == pytest.approx(told, abs=0.4), octave
+        assert np.log(odds(made["cart"], carts([octave], 1)[0].shown or ())) == pytest.approx(told, abs=0.4), octave
 
 
 def test_only_the_largest_part_of_a_cart_counts_and_nothing_that_can_be_carried() -> None:
     kinds = {1: "cart", 2: "mug"}
-    whole, part, none = carts([3000.0], 1)[0], carts([200.0], 1)[0], carts([200.0], 0)[0]
-    mugs = (*carts([100.0], 2, "mug"), *carts([100.0], 0, "mug"))
-    apart, alone = [(whole, part, none, *mugs)] * 30, [(whole, none, *mugs)] * 30
+    (whole, part), (none,) = carts([11.0, 7.0], 1), carts([7.0], 0)
+    apart, alone = [(part, whole, none, told("mug", BOWL, 2))] * 30, [(whole, none, told("mug", BOWL, 2))] * 30
     made, other = (
         confusion_of([Observed("one", view(2.0), each, {}, kinds) for each in found], ("cart", "mug"), "", "").odds_of
         for found in (apart, alone)

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from hazard_ms.sensing.camera import STRUCTURE
-from hazard_ms.sensing.detection.confusion import Look
+from hazard_ms.sensing.detection.confusion import Confusion, Look
 from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
 from hazard_ms.sensing.detection.fusion import Evidence
 from hazard_ms.sensing.detection.own import OwnLabeller
@@ -63,9 +63,9 @@ def labeller() -> OwnLabeller:
     return OwnLabeller(world, CARTS, Scored(), 0.5)
 
 
-def look(labeller: OwnLabeller, frame: int, scores: dict[int, float]) -> View:
+def look(labeller: OwnLabeller, frame: int, scores: dict[int, float], seen: View | None = None) -> View:
     labeller._detector.scores = scores  # type: ignore[attr-defined]
-    return labeller.view(np.zeros((100, 100, 3), np.uint8), scene(), frame)
+    return labeller.view(np.zeros((100, 100, 3), np.uint8), seen or scene(), frame)
 
 
 def test_the_surest_count_whichever_was_found_first(labeller: OwnLabeller) -> None:
@@ -136,3 +136,37 @@ def test_one_look_that_tells_a_cart_for_sure_is_enough(labeller: OwnLabeller) ->
         labeller._introduce(made)
         told.append(made.index >= 0)
     assert told == [False, True, False]
+
+
+def test_a_cart_lies_where_it_stands_and_not_behind_its_wire(labeller: OwnLabeller) -> None:
+    """Three of its five columns show the wall 4 m away; the other two, 2 m away, are left of the middle."""
+    through = scene()
+    through.depth[58:63, 48:51] = 4.0
+    seen = look(labeller, 0, {50: 0.9}, through)
+    (track,) = labeller._tracker.tracks
+    assert track.sighting.position.tolist() == pytest.approx([2.0, -0.06, 0.56], abs=0.021)
+    assert seen.labels is not None and seen.labels[60, 49] == STRUCTURE
+
+
+class Knowing(Scored):
+    """The same, whose errors are known: what is shown of a cart counts by its width alone."""
+
+    confusion = Confusion(
+        ("cart", "mug"), (0,), (0.5,), (0.6,), {}, {"cart": 1.0}, 0.25, 0.8, 0.5,
+        sharpness=1.0, surer=(0.0,), real=(1.0,), false=(1.0,), odds_of={"cart": (3.0, 0.0, 0.0, 0.0, 0.0, 1.0)},
+    )  # fmt: skip
+
+    def detect(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> list[Detection]:
+        return [replace(each, chances=(0.9, 0.0)) for each in super().detect(rgb, depth)]
+
+
+def test_what_a_look_shows_of_a_cart_reaches_the_belief_in_it(labeller: OwnLabeller) -> None:
+    """Flat as it is, the logarithm of its odds is 3 + log2(0.01); two carts, half of which are found, and one clutter.
+
+    All that cart and mug have together, 0.6 and 0.4, is the cart's, since the detector gives the mug no chance.
+    """
+    knowing = OwnLabeller(labeller._world, CARTS, Knowing(), 0.5, fused=True)
+    look(knowing, 0, {50: 0.9})
+    (track,) = knowing._tracker.tracks
+    cart = 0.5 * 2 * np.exp(3.0 + np.log2(0.01))
+    assert track.belief == pytest.approx(cart / (cart + 1.0), rel=1e-3)

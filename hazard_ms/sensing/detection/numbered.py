@@ -1,4 +1,4 @@
-"""Which pixels of a picture are of a known thing, of what stays where it is, or of what may be either."""
+"""Pictures whose labels are numbers of detections: what tracks take of them, and what an agent is told they show."""
 
 from __future__ import annotations
 
@@ -8,8 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.sensing.camera import STRUCTURE
-from hazard_ms.sensing.detection.tracks import Track, surroundings
+from hazard_ms.sensing.detection.detector import Detection
+from hazard_ms.sensing.detection.odds import shown
+from hazard_ms.sensing.detection.tracks import Found, Track, surroundings
+from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.view import View
+
+
+def found_in(view: View, number: int, detection: Detection, seen: Sighting, cart: bool) -> Found:
+    """The detection with a `number` in a `view` as tracks take it, that was `seen`; `cart`: whether it tells of one."""
+    assert view.labels is not None
+    chances, tells = detection.chances, None
+    if cart and chances is not None:
+        tells = shown(view, view.labels == number, seen, max(chances))
+    return Found(detection.category, seen, chances, tells)
 
 
 def labels_of(

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from hazard_ms.demonstrations.layout import HEAD, plain
-from hazard_ms.evaluation.choices import flag, offer
+from hazard_ms.evaluation.choices import BACKENDS, flag, offer
 from hazard_ms.evaluation.options import MOST, MOST_WORKERS, EnvOptions, EpisodeOptions
 
 STATE, NONE = "state", "none"
@@ -39,6 +39,10 @@ class RecordOptions:
     """Simulate each episode again in a new environment, and keep it only if all hashes are equal."""
     workers: int = 0
     """Processes; 0: one for each core."""
+    backend: Annotated[str, offer(BACKENDS)] = "local"
+    """Where it is done: serial, in this process; local processes; a ray cluster whose machines share the output."""
+    address: str | None = None
+    """Address of the ray cluster, such as auto; this machine alone if not given."""
     output: Annotated[Path, flag("-o")] = Path("demos")
     """Folder for datasets; that of this task and agent is OUTPUT/TASK/AGENT."""
 
@@ -50,6 +54,7 @@ class RecordOptions:
         whole(self.seed, 0, MOST, "seed")
         whole(self.every, 1, MOST, "every")
         whole(self.workers, 0, MOST_WORKERS, "workers")
+        one_of(self.backend, BACKENDS, "backend")
         if not 0.0 <= self.keep <= 1.0:
             raise ValueError(f"keep must be a share from 0 to 1, got {self.keep}")
         for part in self.obs.split("+"):

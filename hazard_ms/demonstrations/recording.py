@@ -23,12 +23,13 @@ from hazard_ms.demonstrations.watching.foresight import Foresight
 from hazard_ms.demonstrations.watching.recorder import Recorder
 from hazard_ms.evaluation.attempts import Teller
 from hazard_ms.evaluation.attempts import attempt as play_again
+from hazard_ms.evaluation.choices import RAY
 from hazard_ms.evaluation.replay import EXACT, compare, job_of
 from hazard_ms.evaluation.result import BROKEN, EpisodeResult, versions
 from hazard_ms.evaluation.runner import play
+from hazard_ms.evaluation.spread import spread
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.evaluation.workers import SILENCE, Crew, Job, Outcome, Say, ending
-from hazard_ms.machine.cores import cores
+from hazard_ms.evaluation.workers import SILENCE, Job, Outcome, Say
 from hazard_ms.machine.files import make_folder
 from hazard_ms.skills.failures import BLOCKED
 
@@ -51,6 +52,8 @@ def record(options: RecordOptions) -> int:
     """
     options.check()
     check_name(options.agent)
+    if options.backend == RAY:  # whose processes are elsewhere
+        options = replace(options, output=options.output.absolute())
     dataset = options.dataset
     make_folder(dataset)
     if not (dataset / MANIFEST).is_symlink():  # which is refused
@@ -61,9 +64,9 @@ def record(options: RecordOptions) -> int:
     if len(jobs) < options.episodes:
         print(f"{options.episodes - len(jobs)} of {options.episodes} episodes are there already", flush=True)
     failed = 0
-    crew = Crew(min(options.workers or cores(), max(len(jobs), 1)), attempt)
-    with ending(crew.end), tqdm(total=len(jobs), unit="episode", disable=not jobs) as bar:
-        for job, outcome in crew.play(jobs):
+    played = spread(jobs, options.workers, options.backend, options.address, attempt)
+    with played as outcomes, tqdm(total=len(jobs), unit="episode", disable=not jobs) as bar:
+        for job, outcome in outcomes:
             bar.update()
             new = [entry for entry in recorded(dataset, options.recipe) if entry.seed == job.options.seed]
             failed += not new

@@ -23,7 +23,8 @@ LIGHTINGS = ("day", "evening", "night", "failing", "random")
 EFFECTS = ("full", "fast", "off")
 SPLITS = ("train", "test", "large", "new_objects", "hard", "held_out")
 
-BACKENDS = ("serial", "local", "ray")  # where episodes are played
+RAY = "ray"
+BACKENDS = ("serial", "local", RAY)  # where episodes are played, recorded and pictures taken
 AVERTED = ("task", "yes", "no")  # whether sweeps tell what is averted
 LOOKS = ("lighting", "effects", "perturb")  # options that are told only where they are not the usual ones
 HUMAN = "human"  # the agent of episodes that people played: no choice, nobody could ask it

@@ -12,8 +12,9 @@ import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 
-from hazard_ms.evaluation.attempts import attempt
-from hazard_ms.evaluation.workers import Crew, Job, Outcome, ending
+from hazard_ms.evaluation.attempts import attempt as play
+from hazard_ms.evaluation.choices import RAY
+from hazard_ms.evaluation.workers import Attempt, Crew, Job, Outcome, ending
 from hazard_ms.machine.cores import cores
 from hazard_ms.machine.processes import needs_key, without_keys
 
@@ -49,34 +50,33 @@ def in_shard(name: str, part: int, parts: int) -> bool:
 
 @contextlib.contextmanager
 def spread(
-    jobs: Sequence[Job], workers: int, backend: str = "local", address: str | None = None
+    jobs: Sequence[Job],
+    workers: int,
+    backend: str = "local",
+    address: str | None = None,
+    attempt: Attempt = play,
 ) -> Iterator[Iterator[tuple[Job, Outcome]]]:
-    """Play `jobs` where `backend` says, and give each with its outcome as soon as it is there.
+    """Do `jobs` where `backend` says, each by `attempt`, and give it with its outcome as soon as it is there.
 
     serial: in this process, where an agent that dies or hangs takes it along; local: in `workers` processes; ray: on
     the machines of the ray cluster at `address`, by default this one alone. 0 workers: one for each core. Raises
     ValueError where ray is missing.
     """
     if backend == "serial" or not jobs:
-        yield _serial(jobs)
+        yield ((job, attempt(job, lambda word: None)) for job in jobs)
         return
-    if backend == "ray":
-        crew: _RaySeats | Crew = _RaySeats(workers, jobs, address)
+    if backend == RAY:
+        crew: _RaySeats | Crew = _RaySeats(workers, jobs, address, attempt)
     else:
         crew = Crew(min(workers or cores(), len(jobs)), attempt)
     with ending(crew.end):
         yield crew.play(jobs)
 
 
-def _serial(jobs: Sequence[Job]) -> Iterator[tuple[Job, Outcome]]:
-    for job in jobs:
-        yield job, attempt(job, lambda word: None)
-
-
 class _RaySeats:
     """As many actors of ray as there are workers, each with one process that it may replace."""
 
-    def __init__(self, workers: int, jobs: Sequence[Job], address: str | None) -> None:
+    def __init__(self, workers: int, jobs: Sequence[Job], address: str | None, attempt: Attempt) -> None:
         try:
             import ray
         except ImportError:
@@ -88,7 +88,7 @@ class _RaySeats:
             ray.init(address=address, runtime_env={"env_vars": {"PYTHONPATH": paths}}, include_dashboard=False)
         count = min(workers or int(ray.cluster_resources().get("CPU", 1)), len(jobs))
         seat = ray.remote(num_cpus=1, max_restarts=-1, max_task_retries=1, scheduling_strategy="SPREAD")(_Seat)
-        self._seats = [seat.remote() for _ in range(count)]
+        self._seats = [seat.remote(attempt) for _ in range(count)]
 
     def play(self, jobs: Sequence[Job]) -> Iterator[tuple[Job, Outcome]]:
         """Play `jobs` in any order."""
@@ -104,11 +104,11 @@ class _RaySeats:
 
 
 class _Seat:
-    """What an actor of ray does: it plays one episode at a time in a process of its own."""
+    """What an actor of ray does: one job at a time in a process of its own."""
 
-    def __init__(self) -> None:
+    def __init__(self, attempt: Attempt) -> None:
         self._crew = Crew(1, attempt)
 
     def play(self, job: Job) -> tuple[Job, Outcome]:
-        """Play one episode."""
+        """Do one job."""
         return next(self._crew.play([job]))

@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import torch
 from tqdm import tqdm
 
-from hazard_ms.evaluation.workers import SILENCE, Crew, Job, Outcome, Say, Word, ending
-from hazard_ms.machine.cores import cores
+from hazard_ms.evaluation.choices import RAY
+from hazard_ms.evaluation.spread import spread
+from hazard_ms.evaluation.workers import SILENCE, Job, Outcome, Say, Word
 from hazard_ms.machine.files import flush, make_folder, write, write_together
 from hazard_ms.machine.parts import part_of
 from hazard_ms.perception import coco, layout
@@ -45,6 +46,8 @@ def capture(options: CaptureOptions) -> int:
     """
     options.check()
     coco.tools()
+    if options.backend == RAY:  # whose processes are elsewhere
+        options = replace(options, output=options.output.absolute())
     wanted = _scenes(options)
     home = options.dataset / options.env.split
     make_folder(home)
@@ -53,9 +56,9 @@ def capture(options: CaptureOptions) -> int:
     if done:
         print(f"{len(done)} of {len(wanted)} scenes are there already", flush=True)
     failed = 0
-    crew = Crew(min(options.workers or cores(), max(len(jobs), 1)), attempt)
-    with ending(crew.end), tqdm(total=len(jobs) * options.per_scene, unit="picture", disable=not jobs) as bar:
-        for job, outcome in crew.play(jobs):
+    taken = spread(jobs, options.workers, options.backend, options.address, attempt)
+    with taken as outcomes, tqdm(total=len(jobs) * options.per_scene, unit="picture", disable=not jobs) as bar:
+        for job, outcome in outcomes:
             bar.update(options.per_scene)
             failed += bool(outcome.error)
             if outcome.error:

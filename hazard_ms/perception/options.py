@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from hazard_ms.evaluation.choices import EFFECTS, LIGHTINGS, flag, offer
+from hazard_ms.evaluation.choices import BACKENDS, EFFECTS, LIGHTINGS, flag, offer
 from hazard_ms.evaluation.options import MOST, MOST_WORKERS, EnvOptions, EpisodeOptions
 
 VARIED = "varied"  # light or effects are drawn anew for every stop or picture
@@ -54,6 +54,10 @@ class CaptureOptions:
     """Seed of all episodes, viewpoints and lights."""
     workers: int = 1
     """Processes; 0: one for each core."""
+    backend: Annotated[str, offer(BACKENDS)] = "local"
+    """Where it is done: serial, in this process; local processes; a ray cluster whose machines share the output."""
+    address: str | None = None
+    """Address of the ray cluster, such as auto; this machine alone if not given."""
     output: Annotated[Path, flag("-o")] = Path("perception")
     """Folder for datasets; that of this task is OUTPUT/TASK."""
 
@@ -74,6 +78,7 @@ class CaptureOptions:
         whole(self.spp, 1, MOST_SAMPLES, "spp")
         whole(self.seed, 0, MOST, "seed")
         whole(self.workers, 0, MOST_WORKERS, "workers")
+        one_of(self.backend, BACKENDS, "backend")
         one_of(self.lights, (VARIED, *LIGHTINGS), "lights")
         one_of(self.looks, (VARIED, *EFFECTS), "looks")
         usual = EnvOptions()

@@ -29,7 +29,7 @@ LONGEST_README = 80  # lines: about a screen
 NESTED = [name for name, command in cli.COMMANDS.items() if "done" in inspect.signature(command).parameters]
 INTERPRETERS = ("python", "inspect")  # which are given files of ours
 # not ours; tests/lerobot runs the last three
-OTHERS = ("pip", "uv", "cd", "export", "lerobot-train", "lerobot-eval", "vla-eval")
+OTHERS = ("pip", "uv", "cd", "export", "lerobot-train", "lerobot-eval", "vla-eval", "docker")
 
 
 def python_blocks() -> list[object]:

@@ -32,7 +32,7 @@ class Told:
 
     @property
     def found(self) -> Found:
-        """What tracks take of it."""
+        """The detection as tracks take it."""
         return Found(self.category, self.sighting, self.chances, self.shown)
 
 

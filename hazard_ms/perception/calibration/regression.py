@@ -12,7 +12,7 @@ from hazard_ms.perception.calibration.observing import Observed, Told
 FEWEST = 20  # looks at things and at clutter from which it is learned [ours]
 RIDGE = 0.01  # by which the squares of the weights count [ours]
 STEPS = 50  # of Newton's method, which needs about ten [ours]
-DIGITS = 4
+DIGITS = 4  # of a weight
 Shown = tuple[float, ...]
 
 

@@ -10,6 +10,10 @@ A look at a thing tells a category, or misses it. With b the bucket of its pixel
     P(told j0 | c)   = again steady
     P(told j | c)    = again (1 - steady) / (L - 1)
 
+Where the detector tells its own chances, a look that tells something is as sure as it is with the chance real[s] at a
+thing and false[s] at c, s being the bucket of the largest of them. For carts `odds_of` holds weights that make odds of
+all that such a look shows, which take the place of real[s] : false[s] (hazard_ms.sensing.detection.odds).
+
 Before the second look, c has the weight clutter[j0], the number of such places in a scene, and k that of the number of
 k that there are to be found, times `seen`, times the chance that k is told as j0.
 """

@@ -54,7 +54,7 @@ class Labeller:
         return index
 
     def reach_for(self, index: int) -> int:
-        """What `thing` says, for a hand that reaches for it: what it takes is that, whatever looks tell meanwhile."""
+        """Index along B of what a hand meets that reaches for the thing `index`: it takes that, whatever looks tell then."""
         return self.thing(index)
 
     def half_width(self, index: int) -> float:

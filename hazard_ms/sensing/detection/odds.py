@@ -1,4 +1,4 @@
-"""How much likelier a look is at a cart than at what only looks like one: fences of wire, and parts of hedges and cars.
+"""Odds that a look is at a cart, and not at what only looks like one: fences of wire, and parts of hedges and cars.
 
 The logarithm of these odds is linear in what a look shows. A cart stands apart: left and right of its mask there is
 hardly anything as near and as high as a cart, where a fence goes on. It is as deep as it is wide, and as large as carts
@@ -38,7 +38,7 @@ def in_front(mask: NDArray[np.bool_], depth: NDArray[np.float32]) -> NDArray[np.
 
 
 def shown(view: View, mask: NDArray[np.bool_], seen: Sighting, chance: float) -> tuple[float, ...]:
-    """What a look tells of a cart with a `mask`, [H, W], that was `seen` and has a `chance` by the detector, [SHOWN].
+    """The numbers, [SHOWN], that tell of a cart with a `mask`, [H, W], which was `seen` with a detector's `chance`.
 
     1; the log-odds of the chance; octaves of its pixels, and of those that it would have 1 m before the middle of the
     picture; the logarithms of the share of what is beside it that is as near and as high, and of its width [m].
@@ -70,5 +70,5 @@ def _beside(view: View, rows: tuple[int, int], columns: tuple[int, int], seen: S
 
 
 def odds(weights: Weights, told: tuple[float, ...]) -> float:
-    """How many times as likely a look that tells this is at a cart as at something else, by the `weights`."""
+    """The odds that a look is at a cart and not at something else, by what is `told` of it and `weights`."""
     return math.exp(min(max(float(np.dot(told, weights)), -FARTHEST), FARTHEST))

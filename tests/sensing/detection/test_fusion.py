@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hazard_ms.sensing.camera import STRUCTURE
-from hazard_ms.sensing.detection.beliefs import believed, crowded, shared
+from hazard_ms.sensing.detection.beliefs import believed, shared
 from hazard_ms.sensing.detection.confusion import Look
 from hazard_ms.sensing.detection.fusion import Evidence, category_of
 from hazard_ms.sensing.detection.own import OwnLabeller
@@ -159,17 +159,6 @@ def test_of_one_mug_that_is_left_two_places_share_the_belief() -> None:
     tracks[1].refuted = True
     assert [t for t, _, _ in believed(tracks, (), told)] == [tracks[0], tracks[2]]
     assert shared(["mug", "book"], [0.8, 0.9], {"mug": 1}) == [0.8, 0.9]
-
-
-def test_a_cart_beside_others_is_rather_a_fence() -> None:
-    """Each other one 0.7 to 1.5 m away, three at most, takes the odds, 0.8 : 0.2, times 0.3; mugs may stand so."""
-    along = np.cumsum([0.0, 0.6, 0.8, 1.6, 4.0])  # nearer than a cart is long: the same one twice
-    tracks = [Track("cart", seen(2.0, y, 0)) for y in along]
-    odds = np.array(crowded(tracks, ["cart"] * 5, [0.8] * 5))
-    assert (odds / (1.0 - odds) / 4.0).tolist() == pytest.approx([0.3, 0.3, 0.09, 1.0, 1.0])
-    close = [Track("cart", seen(2.0, 0.71 * k, 0)) for k in range(5)]
-    assert crowded(close, ["cart"] * 5, [0.5] * 5)[2] == pytest.approx(0.027 / 1.027), "of four others three count"
-    assert crowded(close, ["mug"] * 5, [0.5] * 5) == [0.5] * 5
 
 
 class Measured(Told):

@@ -9,11 +9,13 @@ import pytest
 from numpy.typing import NDArray
 
 from hazard_ms.sensing.camera import STRUCTURE
+from hazard_ms.sensing.detection.beliefs import crowded
 from hazard_ms.sensing.detection.confusion import Confusion, Look
 from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
 from hazard_ms.sensing.detection.fusion import Evidence
 from hazard_ms.sensing.detection.own import OwnLabeller
 from hazard_ms.sensing.detection.tracks import Track
+from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.view import View
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec
@@ -170,3 +172,18 @@ def test_what_a_look_shows_of_a_cart_reaches_the_belief_in_it(labeller: OwnLabel
     (track,) = knowing._tracker.tracks
     cart = 0.5 * 2 * np.exp(3.0 + np.log2(0.01))
     assert track.belief == pytest.approx(cart / (cart + 1.0), rel=1e-3)
+
+
+def seen(y: float) -> Sighting:
+    return Sighting(np.array([2.0, y, 1.0], np.float32), 0.05, 1.0, 0, 50)
+
+
+def test_a_cart_beside_others_is_rather_a_fence() -> None:
+    """Each other one 0.7 to 1.5 m away, three at most, takes the odds, 0.8 : 0.2, times 0.3; mugs may stand so."""
+    along = np.cumsum([0.0, 0.6, 0.8, 1.6, 4.0])  # nearer than a cart is long: the same one twice
+    tracks = [Track("cart", seen(y)) for y in along]
+    odds = np.array(crowded(tracks, ["cart"] * 5, [0.8] * 5))
+    assert (odds / (1.0 - odds) / 4.0).tolist() == pytest.approx([0.3, 0.3, 0.09, 1.0, 1.0])
+    close = [Track("cart", seen(0.71 * k)) for k in range(5)]
+    assert crowded(close, ["cart"] * 5, [0.5] * 5)[2] == pytest.approx(0.027 / 1.027), "of four others three count"
+    assert crowded(close, ["mug"] * 5, [0.5] * 5) == [0.5] * 5

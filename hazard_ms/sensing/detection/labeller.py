@@ -54,7 +54,7 @@ class Labeller:
         return index
 
     def reach_for(self, index: int) -> int:
-        """Index along B of what a hand meets that reaches for the thing `index`: it takes that, whatever looks tell then."""
+        """Index along B of what a hand meets that now reaches for the thing `index`, and takes, whatever looks tell."""
         return self.thing(index)
 
     def half_width(self, index: int) -> float:

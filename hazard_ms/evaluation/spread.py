@@ -10,10 +10,13 @@ import hashlib
 import os
 import re
 import sys
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 from hazard_ms.evaluation.attempts import attempt as play
 from hazard_ms.evaluation.choices import RAY
+from hazard_ms.evaluation.result import DIED
 from hazard_ms.evaluation.workers import Attempt, Crew, Job, Outcome, ending
 from hazard_ms.machine.cores import cores
 from hazard_ms.machine.processes import needs_key, without_keys
@@ -74,7 +77,11 @@ def spread(
 
 
 class _RaySeats:
-    """As many actors of ray as there are workers, each with one process that it may replace."""
+    """As many actors of ray as there are workers, each with one process that it may replace.
+
+    A job whose actor is lost with its machine is done once more by another one. In place of that actor a new one is
+    asked for, which gets jobs once it has started: where no machine has room for it, the others do them all.
+    """
 
     def __init__(self, workers: int, jobs: Sequence[Job], address: str | None, attempt: Attempt) -> None:
         try:
@@ -86,15 +93,43 @@ class _RaySeats:
         keyed = any(needs_key(job.options.agent, job.options.load) for job in jobs)
         with without_keys(needed=keyed):  # processes of ray get our environment
             ray.init(address=address, runtime_env={"env_vars": {"PYTHONPATH": paths}}, include_dashboard=False)
-        count = min(workers or int(ray.cluster_resources().get("CPU", 1)), len(jobs))
-        seat = ray.remote(num_cpus=1, max_restarts=-1, max_task_retries=1, scheduling_strategy="SPREAD")(_Seat)
-        self._seats = [seat.remote(attempt) for _ in range(count)]
+        self._count = min(workers or int(ray.cluster_resources().get("CPU", 1)), len(jobs))
+        self._attempt = attempt
+        self._kind = ray.remote(num_cpus=1, scheduling_strategy="SPREAD")(_Seat)
 
     def play(self, jobs: Sequence[Job]) -> Iterator[tuple[Job, Outcome]]:
-        """Play `jobs` in any order."""
-        from ray.util import ActorPool
+        """Do `jobs` in any order. Those whose machine is lost twice have no result."""
+        import ray
 
-        yield from ActorPool(self._seats).map_unordered(lambda seat, job: seat.play.remote(job), jobs)
+        waiting, idle = deque((job, 1) for job in jobs), list[Any]()
+        seats = [self._kind.remote(self._attempt) for _ in range(self._count)]
+        starting = {seat.ready.remote(): seat for seat in seats}
+        busy = dict[Any, tuple[Any, Job, int]]()
+        while waiting or busy:
+            while waiting and idle:
+                seat, given = idle.pop(), waiting.popleft()
+                busy[seat.play.remote(given[0])] = seat, *given
+            (ready, *_), _ = ray.wait([*starting, *busy])
+            job: Job | None = None
+            if ready in busy:
+                seat, job, attempt = busy.pop(ready)
+            else:
+                seat, attempt = starting.pop(ready), 1
+            try:
+                outcome = ray.get(ready)
+            except (ray.exceptions.RayActorError, ray.exceptions.NodeDiedError):
+                with contextlib.suppress(ray.exceptions.RayError):
+                    ray.kill(seat)
+                seat = self._kind.remote(self._attempt)
+                starting[seat.ready.remote()] = seat
+                if job is not None and attempt == 1:
+                    waiting.append((job, 2))
+                elif job is not None:
+                    yield job, Outcome(None, f"{DIED}: lost with its machine", died=True, attempts=attempt)
+                continue
+            idle.append(seat)
+            if job is not None:
+                yield job, outcome._replace(attempts=max(attempt, outcome.attempts))
 
     def end(self, now: bool = False) -> None:
         """Leave the cluster; processes end with their actors."""
@@ -109,6 +144,9 @@ class _Seat:
     def __init__(self, attempt: Attempt) -> None:
         self._crew = Crew(1, attempt)
 
-    def play(self, job: Job) -> tuple[Job, Outcome]:
+    def ready(self) -> None:
+        """Tell that it has started."""
+
+    def play(self, job: Job) -> Outcome:
         """Do one job."""
-        return next(self._crew.play([job]))
+        return next(self._crew.play([job]))[1]

@@ -21,6 +21,7 @@ from hazard_ms.evaluation.workers import Attempt, Crew, Job, Outcome, ending
 from hazard_ms.machine.cores import cores
 from hazard_ms.machine.processes import needs_key, without_keys
 
+STARTS = 3  # of each actor of ray that may fail [ours]
 MOST_SHARDS = 100_000  # [ours]
 SCHEDULER = "SLURM_ARRAY_TASK_"  # how the variables of an array job begin
 
@@ -98,13 +99,16 @@ class _RaySeats:
         self._kind = ray.remote(num_cpus=1, scheduling_strategy="SPREAD")(_Seat)
 
     def play(self, jobs: Sequence[Job]) -> Iterator[tuple[Job, Outcome]]:
-        """Do `jobs` in any order. Those whose machine is lost twice have no result."""
+        """Do `jobs` in any order. Those whose machine is lost twice have no result.
+
+        Raises ValueError where actors fail to start again and again, as without this package on the machines.
+        """
         import ray
 
         waiting, idle = deque((job, 1) for job in jobs), list[Any]()
         seats = [self._kind.remote(self._attempt) for _ in range(self._count)]
         starting = {seat.ready.remote(): seat for seat in seats}
-        busy = dict[Any, tuple[Any, Job, int]]()
+        busy, failed = dict[Any, tuple[Any, Job, int]](), 0
         while waiting or busy:
             while waiting and idle:
                 seat, given = idle.pop(), waiting.popleft()
@@ -117,7 +121,12 @@ class _RaySeats:
                 seat, attempt = starting.pop(ready), 1
             try:
                 outcome = ray.get(ready)
-            except (ray.exceptions.RayActorError, ray.exceptions.NodeDiedError):
+            except (ray.exceptions.RayActorError, ray.exceptions.NodeDiedError) as error:
+                failed += job is None
+                if failed > STARTS * self._count:
+                    raise ValueError(
+                        f"address must be of a cluster that can play episodes, got {error!s:.500}"
+                    ) from None
                 with contextlib.suppress(ray.exceptions.RayError):
                     ray.kill(seat)
                 seat = self._kind.remote(self._attempt)

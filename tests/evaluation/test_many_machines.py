@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import secrets
 import shutil
 import signal
 import subprocess
@@ -56,8 +57,13 @@ def wait_for(head: str, cores: int, log: Path) -> None:
 
 
 @pytest.fixture
-def address(tmp_path: Path) -> Iterator[str]:
-    """The address of a cluster: this machine, which plays nothing, and two others with one core each."""
+def address(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """The address of a cluster: this machine, which plays nothing, and two others with one core each.
+
+    It asks for a token, as ray's clusters do since 2.60 wherever a token has ever been saved.
+    """
+    monkeypatch.setenv("RAY_AUTH_MODE", "token")
+    monkeypatch.setenv("RAY_AUTH_TOKEN", secrets.token_hex(32))
     ip("link", "add", BRIDGE, "type", "bridge")
     ip("addr", "add", f"{NETWORK}.1/24", "dev", BRIDGE)
     ip("link", "set", BRIDGE, "up")

@@ -1,20 +1,21 @@
 """Searches for homes that tell agents apart: `python results/scenes.py grid`, then `search`, then `table`.
 
     grid     plays six homes for each of a few settings of their generator, and prints a row each
-    search   goes through candidates for the scenes of `test` and `held_out` until one of each tells agents apart
+    search   goes through candidates for the scenes of `test` and `held_out`, those of fires and those of floods, until
+             one of each tells agents apart
     table    prints what the chosen scenes are like, from the rows of the search
-    flood    plays every fifth scene of `test` in floods
 
 Candidates are numbered. The scene is the first that meets all criteria, else, of those looked at, the one that fits
 best but for what measures gain; number 0 if none was looked at. `search` adds a row to scenes.csv for each candidate
 that it has looked at, and resumes where it stopped; then it writes the numbers of the chosen ones into the package.
-What is played: results/scene_plays.py; what is lost: results/scene_futures.py. Criteria: `Play.tells`, for fires.
+What is played: results/scene_plays.py; what is lost: results/scene_futures.py. Criteria: `Play.tells`.
 """
 
 from __future__ import annotations
 
 import csv
 import dataclasses
+import itertools
 import sys
 import time
 from pathlib import Path
@@ -23,7 +24,7 @@ import numpy as np
 import torch
 
 from hazard_ms.scenes.generate.house import chosen, homes
-from hazard_ms.scenes.splits import scene, scene_names
+from hazard_ms.scenes.splits import scene_names
 from hazard_ms.spec import SceneSpec
 from results.scene_futures import FIRE, FLOOD, Change, losses
 from results.scene_plays import Play, changes, play
@@ -31,6 +32,7 @@ from results.scene_plays import Play, changes, play
 ROWS = Path(__file__).with_name("scenes.csv")
 COLUMNS = ("scene", "number", "risk", "nearest", "plain", "best", "measures", "chosen")
 SPLITS = ("test", "held_out")
+FAMILIES = {"house": FIRE, "house_flood": FLOOD}  # scenes, and the hazard for which they are chosen
 TOGETHER = 2  # scenes whose candidates are simulated in one batch
 MOST = 12  # candidates for one scene
 GRID = tuple(
@@ -83,18 +85,20 @@ def means_of(found: list[Play]) -> list[float]:
 def search(minutes: float) -> None:
     """Look at candidates for as long as this, or until each scene has one."""
     until = time.monotonic() + 60.0 * minutes
-    split_of = {name: split for split in SPLITS for name in scene_names(split, "house")}
+    split_of = {name: split for split in SPLITS for family in FAMILIES for name in scene_names(split, family)}
     done = {name: read(name) for name in split_of}
     while time.monotonic() < until:
         open_ = [n for n, rows in done.items() if len(rows) < MOST and not any(r["chosen"] == "1" for r in rows)]
         # those of `test` first, and of them those with the fewest candidates so far
-        now = sorted(open_, key=lambda n: (split_of[n] != "test", len(done[n])))[:TOGETHER]
-        if not now:
+        first = sorted(open_, key=lambda n: (split_of[n] != "test", len(done[n])))
+        if not first:
             break
+        env_id = env_of(first[0])
+        now = [name for name in first if env_of(name) == env_id][:TOGETHER]
         specs = [candidate(name, split_of[name], len(done[name])) for name in now]
-        for name, found in zip(now, plays(FIRE, specs, quick=True), strict=True):
+        for name, found in zip(now, plays(env_id, specs, quick=True), strict=True):
             row = [name, len(done[name]), *(f"{v:.3f}" for v in dataclasses.astuple(found)[:4])]
-            row += [found.measures, int(found.tells(FIRE))]
+            row += [found.measures, int(found.tells(env_id))]
             with ROWS.open("a", newline="") as file:
                 csv.writer(file, lineterminator="\n").writerow(row)
             done[name] = read(name)
@@ -104,8 +108,14 @@ def search(minutes: float) -> None:
 
 def fitness(row: dict[str, str]) -> float:
     """How well a candidate fits: by its worst margin, measures left aside unless it meets all criteria."""
-    found = played(row)
-    return float(found.tells(FIRE)) + found.margin(FIRE)
+    found, env_id = played(row), env_of(row["scene"])
+    return float(found.tells(env_id)) + found.margin(env_id)
+
+
+def env_of(name: str) -> str:
+    """The task for which a scene is chosen."""
+    (family,) = (f for f in FAMILIES for split in SPLITS if name in scene_names(split, f))
+    return FAMILIES[family]
 
 
 def played(row: dict[str, str]) -> Play:
@@ -138,31 +148,24 @@ def table() -> None:
     """Print what the scenes are like, from scenes.csv."""
     with ROWS.open(newline="") as file:
         rows = list(csv.DictReader(file))
-    print("| scenes | candidates | tell | but for measures | at risk | nearest | plain | best |")
-    print("|---|---|---|---|---|---|---|---|")
-    for split in SPLITS:
-        names = scene_names(split, "house")
+    print("| task | scenes | candidates | tell | but for measures | at risk | nearest | plain | best |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for (family, env_id), split in itertools.product(FAMILIES.items(), SPLITS):
+        names = scene_names(split, family)
         mine = [r for r in rows if r["scene"] in names]
         looked = len(mine)
         mine = [r for r in mine if int(r["number"]) == chosen.CHOSEN.get(r["scene"], 0)]
         kept = [played(r) for r in mine]
         if kept:
             means = " | ".join(f"{mean:.0f}" for mean in means_of(kept))
-            told, nearly = sum(r["chosen"] == "1" for r in mine), sum(p.margin(FIRE) >= 0.0 for p in kept)
-            print(f"| `{split}` | {looked} | {told} of {len(kept)} | {nearly} | {means} |")
-
-
-def flood() -> None:
-    """Print what every fifth scene of `test` is like in floods."""
-    found = plays(FLOOD, [scene(name) for name in scene_names("test", "house")[::5]])
-    print("| at risk | nearest | plain | best |\n|---|---|---|---|")
-    print(f"| {' | '.join(f'{mean:.0f}' for mean in means_of(found))} |")
+            told, nearly = sum(r["chosen"] == "1" for r in mine), sum(p.margin(env_id) >= 0.0 for p in kept)
+            print(f"| {env_id} | `{split}` | {looked} | {told} of {len(kept)} | {nearly} | {means} |")
 
 
 def main(command: str, minutes: str = "10") -> None:
     """Do what the command says; `minutes` that a search may take."""
     torch.set_num_threads(1)
-    {"grid": grid, "table": table, "flood": flood, "search": lambda: search(float(minutes))}[command]()
+    {"grid": grid, "table": table, "search": lambda: search(float(minutes))}[command]()
 
 
 if __name__ == "__main__":

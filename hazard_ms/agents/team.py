@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import abc
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from typing import cast
 
 from hazard_ms.agents.base import Agent, agent, known, open_targets
 from hazard_ms.agents.greedy import HANDLING, Greedy
+from hazard_ms.registry.loading import load
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.spec.checks import one_of
@@ -118,9 +120,20 @@ class Auction(TeamAgent):
         return won
 
 
-TEAM_AGENTS: dict[str, Callable[[], TeamAgent]] = {"independent": Independent, "auction": Auction}
+TEAM_AGENTS = {  # the class of each, imported when it is asked for
+    "independent": "hazard_ms.agents.team:Independent",
+    "auction": "hazard_ms.agents.team:Auction",
+    "joint": "hazard_ms.agents.joint:Joint",
+}
 
 
 def team_agent(name: str) -> TeamAgent:
-    """A new agent of teams: "independent" or "auction". Raises ValueError for others."""
-    return TEAM_AGENTS[one_of(name, TEAM_AGENTS, "team agent")]()
+    """A new agent of teams: "joint", "auction", or "independent", also with an agent, as in "independent:planner".
+
+    Raises ValueError for others.
+    """
+    kind, _, member = name.partition(":")
+    made = load(TEAM_AGENTS[one_of(kind, TEAM_AGENTS, "team agent")])
+    if member and made is not Independent:
+        raise ValueError(f"team agent must be {kind} alone, since its robots' agents are its own, got {name!r}")
+    return cast(TeamAgent, made(member) if member else made())

@@ -1,8 +1,9 @@
-"""Measures what teams rescue: one robot, two on their own, and two that hold auctions, in the same scenes.
+"""Measures what teams rescue: one robot, two on their own, two that hold auctions, two that plan together.
 
     python -m hazard_ms.bench.teams -t HazardFire-v1 HazardWind-v1 -n 2 -o teams.jsonl
 
-Every episode adds a line to the file. Results do not depend on the machine.
+All play the same scenes. Every episode adds a line to the file; those that are there are not played again. Results do
+not depend on the machine.
 """
 
 from __future__ import annotations
@@ -20,7 +21,13 @@ from hazard_ms.agents.team import TeamAgent, team_agent
 from hazard_ms.skills.team import TeamSkills
 
 ALONE, PAIR = ("fetch",), ("fetch", "fetch")
-SETUPS = ((ALONE, "independent"), (PAIR, "independent"), (PAIR, "auction"))
+SETUPS = (
+    (ALONE, "independent"),
+    (ALONE, "independent:planner"),
+    (PAIR, "independent"),
+    (PAIR, "auction"),
+    (PAIR, "joint"),
+)
 
 
 @dataclass(frozen=True)
@@ -49,9 +56,11 @@ def play(env: TeamSkills, player: TeamAgent, seed: int) -> None:
         over = terminated or truncated
 
 
-def measure(env_id: str, seeds: Sequence[int], robots: tuple[str, ...], name: str) -> list[TeamResult]:
-    """Play a test scene of the task for each of `seeds` with `robots` and the team agent called `name`."""
-    env, made = TeamSkills.make(env_id, robots, split="test", effects="off"), []
+def measure(
+    env_id: str, seeds: Sequence[int], robots: tuple[str, ...], name: str, split: str = "test"
+) -> list[TeamResult]:
+    """Play a scene of a `split` of the task for each of `seeds` with `robots` and the team agent called `name`."""
+    env, made = TeamSkills.make(env_id, robots, split=split, effects="off", affects_agent=False), []
     for seed in seeds:
         play(env, team_agent(name), seed)
         info = env.base.get_info()
@@ -80,11 +89,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-t", "--tasks", nargs="+", default=["HazardFire-v1"])
     parser.add_argument("-n", "--episodes", type=int, default=2, help="of each task and team, by seeds from 0 on")
+    parser.add_argument("--split", default="test")
     parser.add_argument("-o", "--output", type=Path, default=Path("teams.jsonl"))
     asked = parser.parse_args()
-    made: list[TeamResult] = []
-    for task, (robots, name), seed in itertools.product(asked.tasks, SETUPS, range(asked.episodes)):
-        made += measure(task, [seed], robots, name)
+    lines = asked.output.read_text(encoding="utf-8").splitlines() if asked.output.exists() else []
+    made = [TeamResult(**{**row, "robots": tuple(row["robots"])}) for row in map(json.loads, lines)]
+    there = {(r.env_id, r.robots, r.agent, r.seed) for r in made}
+    for task, seed, (robots, name) in itertools.product(asked.tasks, range(asked.episodes), SETUPS):
+        if (task, robots, name, seed) in there:
+            continue
+        made += measure(task, [seed], robots, name, asked.split)
         with asked.output.open("a", encoding="utf-8") as file:
             file.write(json.dumps(asdict(made[-1])) + "\n")
     print(table(made))

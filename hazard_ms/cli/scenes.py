@@ -10,7 +10,7 @@ import tyro
 from hazard_ms import registry
 from hazard_ms.evaluation.choices import SPLITS, flag, offer
 
-FAMILIES = ("indoor", "outdoor", "house", "gale")
+FAMILIES = ("indoor", "outdoor", "house", "house_flood", "gale")
 MOST_WORKERS = 64  # processes [ours]
 
 Output = Annotated[Path | None, flag("-o", "--output", old="out")]
@@ -23,7 +23,7 @@ def list_scenes(split: Split = "", family: Family = "") -> int:
 
     Args:
         split: Name of a split; empty for all.
-        family: indoor, outdoor or house; empty for all.
+        family: indoor, outdoor, house, house_flood or gale; empty for all.
     """
     from hazard_ms.scenes.splits import scene
 
@@ -86,7 +86,7 @@ def check(
     Args:
         names: Scenes, or JSON files that hold one.
         split: All scenes of a split.
-        family: indoor, outdoor or house; empty for all.
+        family: indoor, outdoor, house, house_flood or gale; empty for all.
         all: All scenes.
         workers: Processes that check at the same time.
     """
@@ -127,7 +127,7 @@ def reach(
         names: Scenes, JSON files that hold one, or folders of such files.
         robots: Robots.
         split: All scenes of a split.
-        family: indoor, outdoor or house; empty for all.
+        family: indoor, outdoor, house, house_flood or gale; empty for all.
         all: All scenes.
     """
     from hazard_ms.cli.scene_checks import print_reach
@@ -149,7 +149,8 @@ def names_of(split: str, family: str) -> tuple[str, ...]:
     known = dict.fromkeys(s for f in wanted for s in split_names(f))
     if split:
         one_of(split, known, "split")
-    return tuple(name for f in wanted for s in split_names(f) if split in ("", s) for name in scene_names(s, f))
+    names = (name for f in wanted for s in split_names(f) if split in ("", s) for name in scene_names(s, f))
+    return tuple(dict.fromkeys(names))  # fires and floods share the homes to train in
 
 
 def _only_one_of(*given: bool) -> None:

@@ -43,11 +43,13 @@ def check_team(robot: Any, env: Any, cameras: Sequence[str], given: dict[str, An
     if count == 1:
         return
     task = env.task
-    if task.mitigations or task.arrange is not None or task.doors_by_hand:
-        raise ValueError(f"robot_uids must be one robot in {task.name}, whose tools are for one, got {count}")
+    if task.arrange is not None or task.doors_by_hand:
+        raise ValueError(f"robot_uids must be one robot in {task.name}, which is practice for one robot, got {count}")
     if given.get("num_envs", 1) != 1 or given.get("sim_backend", "auto") not in ("auto", "cpu", "physx_cpu"):
         raise ValueError(f"num_envs must be 1 and sim_backend cpu for {count} robots, got {given}")
-    off = {"affects_agent": env.affects_agent, "perturb": env.perturbation != Perturbation(), "senses": env.senses}
+    if env.affects_agent:
+        raise ValueError(f"affects_agent must be False for {count} robots: hazards act on one so far, got True")
+    off = {"perturb": env.perturbation != Perturbation(), "senses": env.senses}
     for name, asked in {**off, "cameras": cameras}.items():
         if asked:
             raise ValueError(f"{name} must not be set for {count} robots: only one robot can have it so far")

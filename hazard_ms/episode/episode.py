@@ -128,7 +128,7 @@ class Episode:
         for hazard in self.hazards:
             hazard.advance(self.states[hazard.name], self.world, dt)
         if self.world.equipment is not None:
-            self.world.equipment.advance(self.world.held, dt, max((h.clock for h in self.hazards), default=1.0))
+            self.world.equipment.advance(dt, max((h.clock for h in self.hazards), default=1.0))
         self.loosen()
         for hazard in self.hazards:
             self.damage.add(hazard.damaged(self.states[hazard.name], self.world), self.world)

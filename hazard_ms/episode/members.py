@@ -19,6 +19,7 @@ from hazard_ms.episode.grasp import Hand
 from hazard_ms.episode.safe_places import Drop
 from hazard_ms.episode.situation import Situation
 from hazard_ms.robots.robot import Robot
+from hazard_ms.simulation.mitigation.equipment import NozzleState
 from hazard_ms.simulation.world import World
 
 
@@ -56,12 +57,20 @@ class Members:
         if len(robots) == 1:
             return
         world.openings, world.targets  # noqa: B018 made now, they are shared by the copies below
-        hands = [episode.hand]
+        hands, sizes = [episode.hand], {"E": world.num_envs, "B": world.num_bodies}
         for number in range(1, len(robots)):
-            hands.append(Hand.allocate({"E": world.num_envs, "B": world.num_bodies}, world.device))
+            hands.append(Hand.allocate(sizes, world.device))
             episode.others[f"hand_{number}"] = hands[-1]
         parts = zip(self._all, robots.values(), hands, strict=True)
         self._all = [replace(m, situation=replace(first, episode=_own(episode, h), agent=r)) for m, r, h in parts]
+        if world.equipment is not None:
+            for number in range(1, len(robots)):
+                nozzle = NozzleState.allocate(sizes, world.device)
+                episode.others[f"nozzle_{number}"] = nozzle
+                world.jets.append(nozzle.jet)
+            world.equipment.hands = [(jet, m.world.held) for jet, m in zip(world.jets, self._all, strict=True)]
+            for jet, member in zip(world.jets, self._all, strict=True):
+                member.world.jets = [jet]
 
     def __len__(self) -> int:
         """Number of robots."""

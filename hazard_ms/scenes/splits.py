@@ -22,6 +22,7 @@ class Family:
     make: Callable[[str, str, str], SceneSpec]
 
 
+HOUSES = tuple(f"house_{number:02d}" for number in range(1, 41))  # to train in, for fires and floods
 FAMILIES: dict[str, Family] = {
     "indoor": Family(
         {
@@ -38,9 +39,17 @@ FAMILIES: dict[str, Family] = {
     ),
     "house": Family(
         {
-            "train": tuple(f"house_{number:02d}" for number in range(1, 41)),
+            "train": HOUSES,
             "test": ("house_test_1", "house_test_2"),
             homes.HELD_OUT: ("house_held_out_1", "house_held_out_2"),
+        },
+        homes.make,
+    ),
+    "house_flood": Family(
+        {
+            "train": HOUSES,
+            "test": ("house_flood_test_1", "house_flood_test_2"),
+            homes.HELD_OUT: ("house_flood_held_out_1", "house_flood_held_out_2"),
         },
         homes.make,
     ),

@@ -75,7 +75,7 @@ class World:
     agent_position: Tensor
     agent_heading: Tensor
     handles: Handles | None = field(default=None, repr=False)
-    jet: Jet | None = None  # of the extinguisher that the agent uses, where there are any
+    jets: list[Jet] = field(default_factory=list)  # of the extinguisher in use of each robot, where there are any
     equipment: Equipment | None = None  # what the agent can pick up and use, in tasks with mitigations
     door_grip: DoorGrip | None = None  # the hand at the handles of doors, in tasks in which leaves follow it
     agent_build: Build | None = None  # mass, width, drag area and friction of the agent's robot
@@ -196,7 +196,7 @@ class World:
     def equip(self, categories: Collection[str]) -> None:
         """Let agents pick up and use the bodies of these `categories` that are no targets."""
         self.equipment = Equipment(self.specs, self.target, categories)
-        self.jet = self.equipment.jet
+        self.jets, self.equipment.hands = [self.equipment.jet], [(self.equipment.jet, self.held)]
 
     @property
     def takeable(self) -> Tensor:

@@ -18,23 +18,23 @@ from hazard_ms.tasks.rescue import rescue
 DOORS = ("open", "shut")
 # Water of `paper` in homes: it comes in at the outer doors, rises by a step in EVERY frames, and its surface slopes by
 # SLOPE [degrees]. In rooms it takes 10 frames and 3 degrees, but homes have four times the floor (72 to 120 m2), and at
-# 3 degrees it would have to stand 0.5 m deep at a door to get 10 m into a home [ours]
-EVERY, SLOPE = 60, 1.0
+# 3 degrees it would have to stand 0.5 m deep at a door to get 10 m into a home. At 60 frames a step, rescues alone save
+# four fifths of what is at risk, at 40 seven tenths [ours; results/scenes.md]
+EVERY, SLOPE = 40, 1.0
 
 
 def hazard_house_fire(physics: str = "paper", severity: str = USUAL) -> Task:
     """The task HazardHouseFire-v1 with the physics of a preset. Raises ValueError for unknown names."""
-    return _in_homes([fire(physics, severity)], "extinguish")
+    return _in_homes("house", [fire(physics, severity)], "extinguish")
 
 
 def hazard_house_flood(physics: str = "paper", severity: str = USUAL) -> Task:
     """The task HazardHouseFlood-v1 with the physics of a preset. Raises ValueError for unknown names."""
     water = flood(physics, severity)
-    return _in_homes(
-        [dataclasses.replace(water, every=60, through_doors=True, slope=1.0) if physics == "paper" else water], "put_on"
-    )
+    made = dataclasses.replace(water, every=EVERY, through_doors=True, slope=SLOPE) if physics == "paper" else water
+    return _in_homes("house_flood", [made], "put_on")
 
 
-def _in_homes(hazards: Sequence[Hazard], *mitigations: str) -> Task:
-    made = rescue(hazards, "house", MOST_VALUE)
+def _in_homes(family: str, hazards: Sequence[Hazard], *mitigations: str) -> Task:
+    made = rescue(hazards, family, MOST_VALUE)
     return dataclasses.replace(made, several_rooms=True, mitigations=(*DOORS, *mitigations), averted=True)

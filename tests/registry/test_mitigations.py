@@ -63,7 +63,7 @@ def test_published_tasks_have_none_and_their_decisions_nothing_of_them() -> None
 
 def test_without_mitigations_a_world_has_no_equipment_and_its_states_no_part_of_it() -> None:
     with two_rooms(spec(), verbs=()) as rooms:
-        assert rooms.world.equipment is None and rooms.world.jet is None
+        assert rooms.world.equipment is None and not rooms.world.jets
         assert rooms.world.takeable is rooms.world.target
         assert "equipment" not in rooms.base.get_state_dict()["hazard_ms"]
         with pytest.raises(ValueError, match="verb must be one of walk_to, .*, stop, got 'shut'"):

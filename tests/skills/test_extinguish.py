@@ -70,10 +70,10 @@ def test_a_burning_thing_is_put_out_with_what_was_picked_up(physics: str) -> Non
         flowing, advance = [], rooms.base.advance
 
         def advanced(low_level: Any) -> Any:
-            flowing.append(bool(rooms.world.jet.flowing[0]))
+            flowing.append(bool(rooms.world.jets[0].flowing[0]))
             if flowing[-1]:
-                aim, b = rooms.world.jet.aim[0], rooms.index("box_0")
-                way = rooms.world.position[0, b] - rooms.world.jet.place[0]
+                aim, b = rooms.world.jets[0].aim[0], rooms.index("box_0")
+                way = rooms.world.position[0, b] - rooms.world.jets[0].place[0]
                 assert float(way.norm()) <= EXTINGUISHERS["powder"].reach
                 assert float(aim @ way / way.norm()) > math.cos(0.05)
             return advance(low_level)
@@ -82,7 +82,7 @@ def test_a_burning_thing_is_put_out_with_what_was_picked_up(physics: str) -> Non
         result = acted(rooms, PUT_OUT)
         del rooms.base.advance
         assert (result.ok, burns(rooms)) == (True, False)
-        assert not bool(rooms.world.jet.flowing[0]) and 2 < sum(flowing)
+        assert not bool(rooms.world.jets[0].flowing[0]) and 2 < sum(flowing)
         clock = CLOCK if physics == "realistic" else 1.0
         spent = sum(flowing) / 30.0 * clock * 2.0 / 12.0
         assert charge(rooms.stage) == pytest.approx(2.0 - spent, abs=1e-3)
@@ -115,7 +115,7 @@ def test_no_charge_puts_out_what_smoulders_on_and_the_jet_stops_when_it_is_spent
         armed(rooms, "co2_0")
         result = acted(rooms, PUT_OUT)
         assert (result.ok, result.reason) == (False, failures.EMPTY)
-        assert burns(rooms) and charge(rooms.stage) == 0.0 and not bool(rooms.world.jet.flowing[0])
+        assert burns(rooms) and charge(rooms.stage) == 0.0 and not bool(rooms.world.jets[0].flowing[0])
 
 
 def test_a_wall_is_walked_around_and_a_shut_door_is_not() -> None:
@@ -145,7 +145,7 @@ def test_where_nothing_burns_it_says_so_and_the_pin_is_pulled_once() -> None:
         flowing, advance = [], rooms.base.advance
 
         def advanced(low_level: Any) -> Any:
-            flowing.append(bool(rooms.world.jet.flowing[0]))
+            flowing.append(bool(rooms.world.jets[0].flowing[0]))
             return advance(low_level)
 
         rooms.base.advance = advanced
@@ -210,7 +210,7 @@ def test_flames_in_sight_come_before_those_that_it_must_walk_to() -> None:
         start, begun, advance = np.array(rooms.stage.robot.base()[:2]), list[float](), rooms.base.advance
 
         def advanced(low_level: Any) -> Any:
-            if not begun and bool(rooms.world.jet.flowing[0]):
+            if not begun and bool(rooms.world.jets[0].flowing[0]):
                 begun.append(float(np.hypot(*(np.array(rooms.stage.robot.base()[:2]) - start))))
             return advance(low_level)
 

@@ -24,11 +24,11 @@ NEVER = 2**40  # birth of a flame that has gone out [frame]
 
 def douse(state: FireState, world: World) -> None:
     """Shrink what the jets reach by one frame's worth, and put out what is gone. Does nothing without extinguishers."""
-    jet = world.jet
-    if jet is None or none_set(jet.flowing):
+    flowing = [jet for jet in world.jets if not none_set(jet.flowing)]
+    if not flowing:
         return
-    things = world.num_bodies
-    hit = spray(jet, world.walls, torch.cat([world.position, state.flame_place], 1)) > 0
+    things, points = world.num_bodies, torch.cat([world.position, state.flame_place], 1)
+    hit = torch.stack([spray(jet, world.walls, points) > 0 for jet in flowing]).any(0)
     burns, on_floor = hit[:, :things] & world.exists & ~world.safe, hit[:, things:] & lit(state, world.frame)
     frame = world.frame[:, None]
     birth = torch.maximum(state.flame_birth, frame - GROWN) + 1 + GROWN // FRAMES

@@ -38,6 +38,21 @@ class EquipmentState(State):
     )
 
 
+@dataclass
+class NozzleState(State):
+    """The nozzle of the extinguisher in use of a further robot of a team, in E environments."""
+
+    nozzle: Tensor = quantity("E 3", "m", "place of the nozzle")
+    aim: Tensor = quantity("E 3", "", "direction of its jet, a unit vector", low=-1.01, high=1.01)
+    kind: Tensor = quantity("E", "", "number of the kind of extinguisher", dtype="int", low=0, high=len(KINDS) - 1)
+    flowing: Tensor = quantity("E", "", "it discharges", dtype="bool")
+
+    @property
+    def jet(self) -> Jet:
+        """Its jet, which shares its numbers."""
+        return Jet(self.nozzle, self.aim, self.kind, self.flowing)
+
+
 class Equipment:
     """The tools of E agents: bodies of some categories that are no targets."""
 
@@ -67,6 +82,7 @@ class Equipment:
         sizes = {"E": shape[0], "B": shape[1]}
         self.state: EquipmentState = EquipmentState.allocate(sizes, device)
         self.jet = Jet(self.state.nozzle, self.state.aim, self.state.kind, self.state.flowing)
+        self.hands: list[tuple[Jet, Tensor]] = []  # the jet of each robot, and what it holds, bool [E, B]
         self.begin(torch.arange(shape[0], device=device))
 
     def begin(self, rows: Tensor) -> None:
@@ -90,16 +106,17 @@ class Equipment:
         made = height.new_zeros(height.shape[0], count)
         return made.scatter_reduce_(1, self.state.stands_in.clamp(min=0), height * self.placed, "amax")
 
-    def advance(self, held: Tensor, dt: float, clock: float) -> None:
-        """Let `dt` [s] pass, in which jets use up the charge of what is `held`, bool [E, B], `clock` times as fast.
+    def advance(self, dt: float, clock: float) -> None:
+        """Let `dt` [s] pass, in which jets use up the charge of what is held, `clock` times as fast.
 
         A nozzle closes where nothing that discharges is held, and when it is empty.
         """
-        state = self.state
-        used = held & (self.kinds >= 0) & state.flowing[:, None]
-        spent = used * (self.jet.number("rate") * (dt * clock))[:, None]
-        state.charge.copy_((state.charge - spent).clamp(min=0.0))
-        state.flowing.logical_and_((used & (state.charge > 0.0)).any(1))
+        charge = self.state.charge
+        for jet, held in self.hands:
+            used = held & (self.kinds >= 0) & jet.flowing[:, None]
+            spent = used * (jet.number("rate") * (dt * clock))[:, None]
+            charge.copy_((charge - spent).clamp(min=0.0))
+            jet.flowing.logical_and_((used & (charge > 0.0)).any(1))
 
 
 def kind_of(name: str) -> str:

@@ -230,12 +230,13 @@ def _behind(path: Path, base: tuple[float, float, float]) -> float | None:
 
 
 def _obstructed(stage: Stage, leaf: Leaf, first: float, last: float) -> bool:
-    """Whether the robot, furniture, or a body too heavy to be pushed aside is in the way from `first` to `last`."""
+    """Whether a robot, furniture, or a body too heavy to be pushed aside is in the way from `first` to `last`."""
     if not leaf.inner:
         return False
     world = stage.world
-    x, y, _ = stage.robot.base()
-    if leaf.meets(first, last, np.array([[x, y]]), np.array([stage.robot.build.radius])):
+    robots = (stage.robot, *stage.others)
+    bases, radii = [robot.base()[:2] for robot in robots], [robot.build.radius for robot in robots]
+    if leaf.meets(first, last, np.array(bases), np.array(radii)):
         return True
     pushed = (stage.robot.build.pull - hinges.REST_FORCE) / (
         world.robot.friction * 9.81

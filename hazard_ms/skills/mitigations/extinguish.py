@@ -207,8 +207,7 @@ def _covered(stage: Stage, nozzle: Array, aim: Array, burning: Sequence[Array]) 
 
 def _spray(stage: Stage, index: int, aim: NDArray[np.float64]) -> Skill:
     """Discharge at `aim`, [3] [m], and what burns next to it, until that is out, or it is given up."""
-    jet, used = stage.world.jet, 0
-    assert jet is not None
+    (jet, *_), used = stage.world.jets, 0
     rows = torch.zeros(1, dtype=torch.int64, device=stage.world.device)
     kind = extinguisher_in_hand(stage)
     try:

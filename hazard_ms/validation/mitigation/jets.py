@@ -47,12 +47,13 @@ def put_out(kind: str, surface: float, seconds: float, law: Blaze) -> bool:
     state.burn_age[:], state.decline[:], state.burn_end[:] = 100.0, 1e6, 2e6
     state.roofed[:] = 0.0
     middle = torch.tensor([[4.0, 4.0, edge / 2]])
-    world.jet = Jet.closed(1)
-    world.jet.open(ROW, kind, middle - torch.tensor([[2.5 if kind != "co2" else 1.5, 0.0, 0.0]]), middle)
+    jet = Jet.closed(1)
+    world.jets = [jet]
+    jet.open(ROW, kind, middle - torch.tensor([[2.5 if kind != "co2" else 1.5, 0.0, 0.0]]), middle)
     flows = round(seconds / (FRAME * law.time_scale))
     for frame in range(flows + law.every + 1):  # and until the fire is looked at next
         if frame == flows:
-            world.jet.close(ROW)
+            jet.close(ROW)
         world.chance.tick()
         law.advance(state, world, FRAME)
         if int(state.status[0, 0]) != BURNING:
@@ -68,10 +69,11 @@ def discharge(kind: str) -> float:
     world.equipment.state.charge[:] = EXTINGUISHERS[kind].charge
     world.held[:] = True
     jet = world.equipment.jet
+    world.equipment.hands = [(jet, world.held)]
     jet.open(ROW, kind, torch.zeros(1, 3), torch.ones(1, 3))
     passed = 0
     while bool(jet.flowing[0]):
-        world.equipment.advance(world.held, FRAME, 1.0)
+        world.equipment.advance(FRAME, 1.0)
         passed += 1
     return passed * FRAME
 

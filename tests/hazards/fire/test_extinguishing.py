@@ -31,9 +31,9 @@ def point(*place: float) -> torch.Tensor:
 
 
 def fight(world: World, kind: str, towards: tuple[float, float, float], place: Any = NOZZLE) -> Jet:
-    world.jet = Jet.closed(1)
-    world.jet.open(ROW, kind, point(*place), point(*towards))
-    return world.jet
+    world.jets = [Jet.closed(1)]
+    world.jets[0].open(ROW, kind, point(*place), point(*towards))
+    return world.jets[0]
 
 
 def room(*bodies: Any, fires: Any = (), law: Fire | Blaze = REAL, extent: Any = (1.0, 0.6, 2.0)) -> tuple[Any, World]:
@@ -168,7 +168,7 @@ def test_gas_smothers_only_while_it_flows() -> None:
         fires = burners.fires(state, world, REAL.growth, REAL.first_release, REAL.first_base, REAL.radiant)
         return float(extinguishing.fight(state, world, fires, 0.75).power[0, 0])
 
-    world.jet = Jet.closed(1)
+    world.jets = [Jet.closed(1)]
     before = heat()
     jet = fight(world, "co2", (2.5, 4.0, 1.0), (1.5, 4.0, 1.0))
     assert before > 100.0 and heat() == 0.0
@@ -193,7 +193,7 @@ def test_a_fire_is_put_out_while_it_is_small() -> None:
 def test_the_first_fire_boils_its_film_away() -> None:
     """In f L / q = 21.6 s of fire, once the nozzle is closed."""
     state, world = room(fires=[(4.0, 4.0)])
-    world.jet = Jet.closed(1)
+    world.jets = [Jet.closed(1)]
     state.flame_wet[0, 0] = 0.9
     frames_until(lambda: float(state.flame_wet[0, 0]) == 0.0, state, world, REAL, 400)
     took = int(world.frame[0]) * REAL.time_scale / 30
@@ -206,7 +206,7 @@ def test_closed_nozzles_change_nothing(preset: str) -> None:
     law = presets.fire(preset)
     for with_jet in (False, True):
         state, world = room(("book", (4.2, 4.2, 0.0)), fires=[(4.0, 4.0)], law=law)
-        world.jet = Jet.closed(1) if with_jet else None
+        world.jets = [Jet.closed(1)] if with_jet else []
         frames_until(lambda: False, state, world, law, 150)
         found.append(state.save())
     assert all(torch.equal(found[0][name], found[1][name]) for name in found[0])

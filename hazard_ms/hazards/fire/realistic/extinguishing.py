@@ -27,7 +27,7 @@ from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.burners import CELL_RELEASE
 from hazard_ms.hazards.fire.realistic.radiation import Fires
 from hazard_ms.hazards.fire.realistic.touching import TOUCH_FLUX
-from hazard_ms.simulation.jet import spot, spray
+from hazard_ms.simulation.jet import Jet, spot, spray
 from hazard_ms.simulation.world import World
 
 LEAST = 0.05  # share of its surface that burns at least where a thing burns [ours]
@@ -39,29 +39,30 @@ def fight(state: BlazeState, world: World, fires: Fires, step: float) -> Fires:
 
     Without extinguishers in the world nothing changes.
     """
-    jet = world.jet
-    if jet is None:
+    if not world.jets:
         return fires
     things = state.status.shape[1]
     boil = lit(state, world.frame) * (TOUCH_FLUX * step / (wetting.FILM * wetting.LATENT))
     state.flame_wet.copy_((state.flame_wet - boil).clamp(min=0.0))
     points = torch.cat([world.position, fires.place[:, things:]], 1)
-    flux = spray(jet, world.walls, points)
-    film, boils = jet.number("film")[:, None], jet.number("boils")[:, None] > 0
-    covered = _covered(state, world, fires, points, flux) * (step / film.clamp(min=1e-6)) * (film > 0)
-    for part, wet, coated in (
-        (covered[:, :things], state.wet, state.coated),
-        (covered[:, things:], state.flame_wet, state.flame_coated),
-    ):
-        wet.copy_((wet + part * boils).clamp(max=1.0))
-        coated.copy_((coated + part * ~boils).clamp(max=1.0))
+    burns_on = torch.ones_like(fires.power, dtype=torch.bool)
+    for jet in world.jets:
+        flux = spray(jet, world.walls, points)
+        film, boils = jet.number("film")[:, None], jet.number("boils")[:, None] > 0
+        covered = _covered(state, world, fires, jet, points, flux) * (step / film.clamp(min=1e-6)) * (film > 0)
+        for part, wet, coated in (
+            (covered[:, :things], state.wet, state.coated),
+            (covered[:, things:], state.flame_wet, state.flame_coated),
+        ):
+            wet.copy_((wet + part * boils).clamp(max=1.0))
+            coated.copy_((coated + part * ~boils).clamp(max=1.0))
+        burns_on &= flux < jet.number("smothers")[:, None]
     bare = torch.cat([1.0 - state.coated, (1.0 - state.flame_wet) * (1.0 - state.flame_coated)], 1)
-    return fires._replace(power=fires.power * bare * (flux < jet.number("smothers")[:, None]))
+    return fires._replace(power=fires.power * bare * burns_on)
 
 
-def _covered(state: BlazeState, world: World, fires: Fires, points: Tensor, flux: Tensor) -> Tensor:
-    """Flux on the burning surface, [E, B + F], where `flux` [kg/m^2 s] arrives at `points` [m], [E, B + F, 3]."""
-    assert world.jet is not None
+def _covered(state: BlazeState, world: World, fires: Fires, jet: Jet, points: Tensor, flux: Tensor) -> Tensor:
+    """Flux on the burning surface, [E, B + F], where `flux` [kg/m^2 s] of a jet arrives at `points`, [E, B + F, 3]."""
     things = state.status.shape[1]
     x, y, z = world.extent.unbind(-1)
     whole = fires.power[:, :things] / (1.0 - state.wet).clamp(min=wetting.STARVED)  # release of a dry one
@@ -69,9 +70,9 @@ def _covered(state: BlazeState, world: World, fires: Fires, points: Tensor, flux
     surface = 2.0 * (x * y + y * z + z * x) * burns.clamp(LEAST, 1.0)
     flames = fires.power[:, things:].clamp(min=CELL_RELEASE) / fuels.AS_GOODS
     shown = torch.cat([surface, flames], 1).clamp(min=1e-6) / SIDES
-    area, _ = spot(world.jet, points)
+    area, _ = spot(jet, points)
     from_one_side = flux * (area / shown).clamp(max=1.0) / SIDES
-    way = points - world.jet.place[:, None]
+    way = points - jet.place[:, None]
     down = (-way[..., 2] / way.norm(dim=-1).clamp(min=1e-6)).clamp(min=0.0)
     on_floor = torch.zeros_like(flux, dtype=torch.bool)
     on_floor[:, things:] = state.flame_peak <= CELL_RELEASE
@@ -80,7 +81,7 @@ def _covered(state: BlazeState, world: World, fires: Fires, points: Tensor, flux
 
 def go_out(state: BlazeState, world: World) -> None:
     """Put out, for good, what has next to no bare surface left. Does nothing without extinguishers."""
-    if world.jet is None:
+    if not world.jets:
         return
     starved = (1.0 - state.wet) * (1.0 - state.coated) < wetting.STARVED
     state.status.add_(((state.status == BURNING) & starved).long())  # burning -> burnt

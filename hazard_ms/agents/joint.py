@@ -1,0 +1,142 @@
+"""The joint planner of teams: every robot plans the whole rest of its rescue, and no two plan to fetch the same thing.
+
+At each decision of a robot the plans of all are made anew, one after another, each without what those before it fetch:
+once with this robot first, once last. The order that saves more in sum is taken. That is one step of best responses;
+two robots get the best of both orders, more robots of two of the orders that there are. Robots tell one another what
+they fetch and where they search, and nothing else: each plans for what it has seen itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from hazard_ms.agents.planner import BEAM, Planner
+from hazard_ms.agents.search.outlook import Outlook
+from hazard_ms.agents.search.searcher import First
+from hazard_ms.agents.team import APPROACH, TeamAgent
+from hazard_ms.planning.orienteering import solve
+from hazard_ms.planning.problem import Plan, Problem
+from hazard_ms.registry.mitigations import PUBLISHED
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
+
+MOST_LABELS = 2_000  # of the search for the plan of one robot, while it is open who fetches what [ours]
+
+
+class Joint(TeamAgent):
+    """Planners that divide the targets, and the places to search, by what saves most in sum."""
+
+    def reset(self, briefs: Mapping[str, Brief]) -> None:
+        self._partners = {name: _Partner(name, self) for name in briefs}
+        for name, brief in briefs.items():
+            self._partners[name].reset(brief)
+        self._ahead: dict[str, Outlook] = {}  # what each robot planned on when it was last asked
+        self._aims: dict[str, str] = {}  # what each robot is on its way to, or holds
+        self._measures: dict[str, str] = {}  # what each robot does something about, other than to rescue it
+        self._rescued: set[str] = set()
+
+    def act(self, decisions: Mapping[str, Decision]) -> dict[str, Action]:
+        for name, decision in decisions.items():
+            self._aims.pop(name, None)
+            self._measures.pop(name, None)
+            self._rescued = {target.name for target in decision.targets if target.rescued}
+            if decision.held is not None:
+                self._aims[name] = decision.held
+        made = {}
+        for name, decision in decisions.items():
+            action = self._partners[name].act(decision)
+            if action.verb == STOP and self.fetched(name):  # it may be needed when another fails
+                action = Action(EXPLORE)
+            if action.verb == STOP:
+                self._ahead.pop(name, None)
+            elif action.verb in APPROACH and action.target is not None:
+                self._aims[name] = action.target
+            if action.target is not None and _measure(action, decision):
+                self._measures[name] = action.target
+            made[name] = action
+        return made
+
+    def handled(self, name: str) -> set[str]:
+        """The tools, doors, fires and carts that the other robots than `name` fetch, turn, put out or push."""
+        return {thing for other, thing in self._measures.items() if other != name}
+
+    def fetched(self, name: str) -> set[str]:
+        """What the other robots than `name` are on their way to, or hold."""
+        return {aim for other, aim in self._aims.items() if other != name}
+
+    def shared(self, name: str, ahead: Outlook) -> Outlook:
+        """What is left to the robot `name` of what lies `ahead` of it: the rest is fetched by others."""
+        self._ahead[name] = ahead
+        taken = self.fetched(name) | self._rescued
+        others = [other for other in self._ahead if other != name]
+        first = self._planned([name, *others], taken)
+        last = self._planned([*others, name], taken)
+        order = first if _sum(first) >= _sum(last) else last
+        before: set[str] = set(taken)
+        for other, (plan, goals) in order.items():
+            if other == name:
+                break
+            before |= {goals.name(rescue.target) for rescue in plan.rescues}
+        return without(ahead, before)
+
+    def _planned(self, names: list[str], taken: Collection[str]) -> dict[str, tuple[Plan, Outlook]]:
+        """The plans of the robots `names`, one after another, without what is `taken`."""
+        made: dict[str, tuple[Plan, Outlook]] = {}
+        gone = set(taken)
+        for name in names:
+            own = self._aims.get(name)
+            ahead = without(self._ahead[name], gone - {own})
+            plan = solve(ahead.problem, MOST_LABELS, BEAM)
+            made[name] = plan, ahead
+            gone |= {ahead.name(rescue.target) for rescue in plan.rescues}
+        return made
+
+
+class _Partner(Planner):
+    """A planner that leaves to others what they fetch."""
+
+    def __init__(self, name: str, team: Joint) -> None:
+        super().__init__()
+        self._name, self._team = name, team
+
+    def first(self, ahead: Outlook) -> First | None:
+        return super().first(self._team.shared(self._name, ahead))
+
+    def _choose(self, decision: Decision) -> Action:
+        """As all searchers; what another robot does something about already it leaves alone, and rescues."""
+        action = super()._choose(decision)
+        if action.target is None or action.target not in self._team.handled(self._name):
+            return action
+        kept, self._mitigator, self._gale = (self._mitigator, self._gale), None, None
+        action = super()._choose(decision)
+        self._mitigator, self._gale = kept
+        return action
+
+    def _without_plan(self, decision: Decision, ahead: Outlook) -> Action:
+        others = self._team.fetched(self._name)
+        left = tuple(name for name in ahead.targets if name not in others)
+        places = tuple(mark for mark in ahead.lookouts if mark.name not in others)
+        return super()._without_plan(decision, replace(ahead, targets=left, lookouts=places))
+
+
+def without(ahead: Outlook, names: Collection[str]) -> Outlook:
+    """The same in which the goals called `names` count nothing; but for what is in the hand."""
+    problem = ahead.problem
+    counts = [goal == problem.holding or ahead.name(goal) not in names for goal in range(len(problem.values))]
+    return ahead if all(counts) else replace(ahead, problem=_of(problem, counts))
+
+
+def _of(problem: Problem, counts: list[bool]) -> Problem:
+    return replace(problem, values=np.where(counts, problem.values, 0.0).tolist())
+
+
+def _measure(action: Action, decision: Decision) -> bool:
+    """Whether an action is a measure, or goes for the tool of one."""
+    return action.verb not in PUBLISHED or action.target in {tool.name for tool in decision.tools}
+
+
+def _sum(plans: Mapping[str, tuple[Plan, Outlook]]) -> float:
+    return sum(plan.value for plan, _ in plans.values())

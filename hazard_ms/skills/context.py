@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.grasp import Hand, distance_to_boxes, graspable
 from hazard_ms.robots.robot import Robot
 from hazard_ms.sensing.detection.labeller import Labeller
@@ -31,6 +32,7 @@ class Rescuer(Protocol):
     agent: Robot
     world: World
     hand: Hand
+    episode: Episode
 
     @property
     def control_timestep(self) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.grasp import Hand
 from hazard_ms.robots.robot import Robot
 from hazard_ms.sensing.detection.perception import Perception
@@ -29,6 +30,7 @@ class OneRobot:
     agent: Robot
     world: World
     hand: Hand
+    episode: Episode
     control_timestep: float  # [s]
 
 

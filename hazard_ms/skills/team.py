@@ -98,7 +98,8 @@ class TeamSkills:
         base = self.base
         self.knowledge: dict[str, Knowledge] = {}
         for member, observer in zip(base.members, base.observers, strict=True):
-            robot = OneRobot(member.agent, member.world, member.hand, float(base.control_timestep))
+            episode = member.situation.episode
+            robot = OneRobot(member.agent, member.world, member.hand, episode, float(base.control_timestep))
             known = Knowledge(base, robot, observer, perception(TRUTH), self.max_frames)
             known.stage.others = tuple(m.agent for m in base.members if m is not member)
             known.look()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -125,6 +126,16 @@ def test_what_stands_in_the_swing_keeps_a_door_shut_and_what_is_light_is_pushed_
             assert (rooms.share() == 1.0) is moves
             if moves:
                 assert float(rooms.world.position[0, rooms.index("crate"), 1]) < 1.55 - 0.02 - 0.14  # beyond the leaf
+
+
+def test_a_leaf_does_not_turn_against_another_robot() -> None:
+    build = SimpleNamespace(radius=0.28)
+    standing = SimpleNamespace(base=lambda: (3.1, 1.75, 0.0), hand=lambda: (3.1, 1.75, 1.0), build=build)
+    with two_rooms(spec()) as rooms:
+        rooms.stage.others = (standing,)  # type: ignore[assignment]
+        assert turning(rooms, OPEN)[0].reason == failures.IN_THE_SWING  # type: ignore[attr-defined]
+        rooms.stage.others = ()
+        assert turning(rooms, OPEN)[0].ok  # type: ignore[attr-defined]
 
 
 def test_what_cannot_be_opened_says_why() -> None:

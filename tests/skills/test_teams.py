@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Iterator
 from types import SimpleNamespace
@@ -11,7 +12,11 @@ import numpy as np
 import pytest
 
 from hazard_ms.agents.base import agent
+from hazard_ms.agents.joint import Joint
+from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.team import Auction, Independent, team_agent
+from hazard_ms.planning.problem import Problem
+from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.skills.decision import EXPLORE, STOP, WALK_TO, Action
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.motor.motion import drive
@@ -138,8 +143,52 @@ def test_an_auction_gives_each_target_to_the_robot_that_gets_there_with_the_leas
     assert player._allocated(player._last["r0"]) == {"a": "r0", "b": "r0"}
 
 
+def lying_ahead(at: float, limit: float = 60.0) -> Outlook:
+    """What lies ahead of a robot at `at` [m] on a line, 10 frames to the metre: a at 5 m is worth 5, b at 6 m 3."""
+    places = np.array([5.0, 6.0, at])
+    ways = StaticTravel(10.0 * np.abs(places[:, None] - places))
+    whole = [math.inf] * 2
+    problem = Problem(ways, values=[5.0, 3.0], damaged_at=whole, pick=[10.0] * 2, drop=[0.0] * 2, limit=limit)
+    return Outlook(("a", "b"), (), (), problem, problem, 10.0 * np.abs(places[:, None] - places))
+
+
+def test_a_joint_plan_leaves_to_others_what_they_alone_can_fetch() -> None:
+    """Robots at 0 and 10 m have 60 frames: r0 gets to a alone, r1 to a or to b. Together they save 8, r1 first 5."""
+    team = Joint()
+    team._ahead, team._aims, team._rescued = {}, {}, set()
+    assert team.shared("r0", lying_ahead(0.0)).problem.values == (5.0, 3.0)
+    assert team.shared("r1", lying_ahead(10.0)).problem.values == (0.0, 3.0)
+    team._rescued = {"a"}  # r0 knows it, too, once it is asked
+    assert team.shared("r1", lying_ahead(10.0)).problem.values == (0.0, 3.0)
+    team._rescued, team._aims = set(), {"r0": "b"}  # on its way there, whatever would be better
+    assert team.shared("r1", lying_ahead(10.0)).problem.values == (5.0, 0.0)
+    assert team.fetched("r0") == set() and team.fetched("r1") == {"b"}
+
+
+def test_planners_that_plan_together_never_fetch_the_same(pair: TeamSkills) -> None:
+    """Through some decisions in a burning kitchen; looks around and walks to search do not count."""
+    decisions, _ = pair.reset(seed=1)
+    player = team_agent("joint")
+    player.reset({name: pair.brief(name) for name in pair.names})
+    aims: dict[str, str | None] = {}
+    for _ in range(12):
+        actions = player.act(decisions)
+        for name, action in actions.items():
+            target = action.target in {t.name for t in decisions[name].targets}
+            aims[name] = action.target if target else decisions[name].held
+        kept = [aim for aim in aims.values() if aim is not None]
+        assert len(set(kept)) == len(kept), aims
+        decisions, terminated, truncated, _ = pair.step(actions)
+        if terminated or truncated:
+            break
+    assert pair.collisions == 0
+
+
 def test_team_agents_are_found_by_name() -> None:
     assert isinstance(team_agent("independent"), Independent)
+    assert isinstance(team_agent("joint"), Joint) and isinstance(team_agent("independent:planner"), Independent)
+    with pytest.raises(ValueError, match="team agent must be joint alone, since its robots' agents are its own"):
+        team_agent("joint:planner")
     with pytest.raises(ValueError, match="team agent must be one of"):
         team_agent("planner")
     with pytest.raises(ValueError, match="agents of a team must see what robots see .* got oracle"):

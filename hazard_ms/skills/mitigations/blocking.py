@@ -8,11 +8,8 @@ not there; floods of the paper do not know openings, so nothing is on offer ther
 
 from __future__ import annotations
 
-from typing import Protocol, cast
-
 import numpy as np
 
-from hazard_ms.episode.episode import Episode
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
@@ -31,15 +28,9 @@ SETTING = 5.0  # to let it down into its rails and press it tight [s] [ours: rai
 WEIGHT = 1000.0 * 9.81  # of water [N/m^3]
 
 
-class Flooded(Protocol):
-    """The part of an environment that knows of hazards."""
-
-    episode: Episode
-
-
 def gaps(stage: Stage) -> tuple[str, ...]:
     """Names of the known doors and doorways that the board in the hand closes."""
-    if not cast(Flooded, stage.env).episode.loads_openings or "water" not in stage.world.fields:
+    if not stage.env.episode.loads_openings or "water" not in stage.world.fields:
         return ()
     return tuple(o.name for o in stage.doors.rows() if o.kind != "window" and _fits(stage, o))
 

@@ -11,13 +11,12 @@ each other.
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from typing import Any, Protocol, cast
+from typing import Any
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from hazard_ms.episode.episode import Episode
 from hazard_ms.simulation.jet import KINDS
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
@@ -37,16 +36,6 @@ PIN_TIME = 2.0  # to pull the pin and aim before the first discharge [s] [ours]
 SAME = 0.05  # distance up to which a flame is still the one that is aimed at [m] [ours]
 ONE_FLAME = 150  # frames after which a flame under the jet is given up [ours]
 FRAMES = 450  # budget of one action [frames] [ours]
-
-
-class Endangered(Protocol):
-    """The part of an environment that knows of hazards."""
-
-    episode: Episode
-
-
-def _episode(stage: Stage) -> Episode:
-    return cast(Endangered, stage.env).episode
 
 
 def extinguisher_in_hand(stage: Stage) -> str:
@@ -70,7 +59,7 @@ def _pinned(stage: Stage) -> bool:
 
 def hot_things(stage: Stage) -> tuple[str, ...]:
     """Names of known things that were hot when last seen, while a charged extinguisher is in the hand."""
-    names = [hazard.name for hazard in _episode(stage).hazards]
+    names = [hazard.name for hazard in stage.env.episode.hazards]
     if not charge(stage) > 0.0 or "fire" not in names:
         return ()
     k = names.index("fire")
@@ -120,7 +109,7 @@ def _by_distance(stage: Stage, index: int) -> list[Array]:
 
 def _flames(stage: Stage, index: int) -> NDArray[np.float64]:
     """The places [m], [N, 3], of what burns at the thing `index` or around it."""
-    flames, thing = _episode(stage).flames(), stage.labeller.thing(index)
+    flames, thing = stage.env.episode.flames(), stage.labeller.thing(index)
     if flames is None:
         return np.zeros((0, 3))
     middle = np.asarray(stage.position(thing) if thing >= 0 else stage.seen.objects[index].position, np.float64)
@@ -143,7 +132,7 @@ def _carried(stage: Stage) -> NDArray[np.float64]:
 
 def _too_hot(stage: Stage) -> bool:
     place = stage.world.agent_position[:, None]
-    return bool(_episode(stage).forbidden(place)[0, 0])
+    return bool(stage.env.episode.forbidden(place)[0, 0])
 
 
 def _into_range(stage: Stage, index: int, frames: int) -> Generator[Any, Any, tuple[Result, Array | None]]:

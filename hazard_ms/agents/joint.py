@@ -2,13 +2,15 @@
 
 At each decision of a robot the plans of all are made anew, one after another, each without what those before it fetch:
 once with this robot first, once last. The order that saves more in sum is taken. That is one step of best responses;
-two robots get the best of both orders, more robots of two of the orders that there are. Robots tell one another what
-they fetch and where they search, and nothing else: each plans for what it has seen itself.
+two robots get the best of both orders, more robots of two of the orders that there are. Arms that reach do not look out
+for other robots, so none goes for what is near to where another one works; at a cart it waits for its turn. Robots tell
+one another what they fetch and where they work and search, and nothing else: each plans for what it has seen itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+import math
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -24,6 +26,8 @@ from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
 
 MOST_LABELS = 2_000  # of the search for the plan of one robot, while it is open who fetches what [ours]
+APART = 1.5  # distance from where another robot works within which none begins to [m] [ours: reach 1 m and the bases]
+TURNS = 3  # looks around in a row with which it waits for its turn at most [ours]
 
 
 class Joint(TeamAgent):
@@ -37,11 +41,13 @@ class Joint(TeamAgent):
         self._aims: dict[str, str] = {}  # what each robot is on its way to, or holds
         self._measures: dict[str, str] = {}  # what each robot does something about, other than to rescue it
         self._rescued: set[str] = set()
+        self._work: dict[str, tuple[float, float]] = {}  # where each robot works, or stands [m]
 
     def act(self, decisions: Mapping[str, Decision]) -> dict[str, Action]:
         for name, decision in decisions.items():
             self._aims.pop(name, None)
             self._measures.pop(name, None)
+            self._work.pop(name, None)
             self._rescued = {target.name for target in decision.targets if target.rescued}
             if decision.held is not None:
                 self._aims[name] = decision.held
@@ -56,6 +62,7 @@ class Joint(TeamAgent):
                 self._aims[name] = action.target
             if action.target is not None and _measure(action, decision):
                 self._measures[name] = action.target
+            self._work[name] = place_of(decision, action.target) or decision.agent_position
             made[name] = action
         return made
 
@@ -67,8 +74,14 @@ class Joint(TeamAgent):
         """What the other robots than `name` are on their way to, or hold."""
         return {aim for other, aim in self._aims.items() if other != name}
 
-    def shared(self, name: str, ahead: Outlook) -> Outlook:
-        """What is left to the robot `name` of what lies `ahead` of it: the rest is fetched by others."""
+    def crowded(self, name: str, decision: Decision, things: Iterable[str]) -> set[str]:
+        """Those of the `things` that are near to where another robot than `name` works."""
+        busy = [place for other, place in self._work.items() if other != name]
+        places = {thing: place_of(decision, thing) for thing in things}
+        return {t for t, at in places.items() if at is not None and any(math.dist(at, one) < APART for one in busy)}
+
+    def shared(self, name: str, ahead: Outlook, left_out: Collection[str] = ()) -> Outlook:
+        """What is left to the robot `name` of what lies `ahead` of it: the rest, and `left_out`, is for others."""
         self._ahead[name] = ahead
         taken = self.fetched(name) | self._rescued
         others = [other for other in self._ahead if other != name]
@@ -80,7 +93,7 @@ class Joint(TeamAgent):
             if other == name:
                 break
             before |= {goals.name(rescue.target) for rescue in plan.rescues}
-        return without(ahead, before)
+        return without(ahead, before | set(left_out))
 
     def _planned(self, names: list[str], taken: Collection[str]) -> dict[str, tuple[Plan, Outlook]]:
         """The plans of the robots `names`, one after another, without what is `taken`."""
@@ -102,21 +115,27 @@ class _Partner(Planner):
         super().__init__()
         self._name, self._team = name, team
 
+    def reset(self, brief: Brief) -> None:
+        super().reset(brief)
+        self._crowded: set[str] = set()
+        self._waited = 0
+
     def first(self, ahead: Outlook) -> First | None:
-        return super().first(self._team.shared(self._name, ahead))
+        return super().first(self._team.shared(self._name, ahead, self._crowded))
 
     def _choose(self, decision: Decision) -> Action:
-        """As all searchers; what another robot does something about already it leaves alone, and rescues."""
+        """As all searchers; what another robot does something about it leaves alone, and what is near to its work."""
+        self._crowded = self._team.crowded(self._name, decision, decision.names)
         action = super()._choose(decision)
-        if action.target is None or action.target not in self._team.handled(self._name):
-            return action
-        kept, self._mitigator, self._gale = (self._mitigator, self._gale), None, None
-        action = super()._choose(decision)
-        self._mitigator, self._gale = kept
-        return action
+        if action.target is not None and action.target in self._team.handled(self._name):
+            kept, self._mitigator, self._gale = (self._mitigator, self._gale), None, None
+            action = super()._choose(decision)
+            self._mitigator, self._gale = kept
+        self._waited = self._waited + 1 if action.target in self._crowded and self._waited < TURNS else 0
+        return self._say("another robot is at work there", Action(EXPLORE)) if self._waited else action
 
     def _without_plan(self, decision: Decision, ahead: Outlook) -> Action:
-        others = self._team.fetched(self._name)
+        others = self._team.fetched(self._name) | self._crowded
         left = tuple(name for name in ahead.targets if name not in others)
         places = tuple(mark for mark in ahead.lookouts if mark.name not in others)
         return super()._without_plan(decision, replace(ahead, targets=left, lookouts=places))
@@ -131,6 +150,12 @@ def without(ahead: Outlook, names: Collection[str]) -> Outlook:
 
 def _of(problem: Problem, counts: list[bool]) -> Problem:
     return replace(problem, values=np.where(counts, problem.values, 0.0).tolist())
+
+
+def place_of(decision: Decision, thing: str | None) -> tuple[float, float] | None:
+    """The place [m] of a thing on the map; None where it is not known, or no thing."""
+    seen = decision.map.objects.get(decision.index(thing)) if thing in decision.names else None
+    return None if seen is None else (float(seen.position[0]), float(seen.position[1]))
 
 
 def _measure(action: Action, decision: Decision) -> bool:

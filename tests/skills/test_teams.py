@@ -165,6 +165,15 @@ def test_a_joint_plan_leaves_to_others_what_they_alone_can_fetch() -> None:
     assert team.fetched("r0") == set() and team.fetched("r1") == {"b"}
 
 
+def test_nobody_begins_within_reach_of_where_another_robot_works() -> None:
+    """r1 works at 1.5 m: a at 0.4 m and b at 2.9 m are nearer than 1.5 m to it, c at 3.1 m is not; d was not seen."""
+    team, seen = Joint(), {"a": (0.4, 0.0), "b": (2.9, 0.0), "c": (3.1, 0.0)}
+    team._work = {"r1": (1.5, 0.0), "r0": (3.1, 0.0)}
+    assert team.crowded("r0", decision((0.0, 0.0), seen), "abcd") == {"a", "b"}
+    team._ahead, team._aims, team._rescued = {}, {}, set()
+    assert team.shared("r0", lying_ahead(0.0), {"a"}).problem.values == (0.0, 3.0)
+
+
 def test_planners_that_plan_together_never_fetch_the_same(pair: TeamSkills) -> None:
     """Through some decisions in a burning kitchen; looks around and walks to search do not count."""
     decisions, _ = pair.reset(seed=1)

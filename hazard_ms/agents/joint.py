@@ -27,7 +27,10 @@ from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
 
 MOST_LABELS = 2_000  # of the search for the plan of one robot, while it is open who fetches what [ours]
 APART = 1.5  # distance from where another robot works within which none begins to [m] [ours: reach 1 m and the bases]
+PUSH = "push"  # the verb of pushing the cart at hand to a thing
 TURNS = 3  # looks around in a row with which it waits for its turn at most [ours]
+
+Place = tuple[float, float]  # x, y [m], world frame
 
 
 class Joint(TeamAgent):
@@ -41,7 +44,7 @@ class Joint(TeamAgent):
         self._aims: dict[str, str] = {}  # what each robot is on its way to, or holds
         self._measures: dict[str, str] = {}  # what each robot does something about, other than to rescue it
         self._rescued: set[str] = set()
-        self._work: dict[str, tuple[float, float]] = {}  # where each robot works, or stands [m]
+        self._work: dict[str, list[Place]] = {}  # where each robot works, or stands [m]
 
     def act(self, decisions: Mapping[str, Decision]) -> dict[str, Action]:
         for name, decision in decisions.items():
@@ -62,7 +65,7 @@ class Joint(TeamAgent):
                 self._aims[name] = action.target
             if action.target is not None and _measure(action, decision):
                 self._measures[name] = action.target
-            self._work[name] = place_of(decision, action.target) or decision.agent_position
+            self._work[name] = places_of(decision, action) or [decision.agent_position]
             made[name] = action
         return made
 
@@ -74,11 +77,10 @@ class Joint(TeamAgent):
         """What the other robots than `name` are on their way to, or hold."""
         return {aim for other, aim in self._aims.items() if other != name}
 
-    def crowded(self, name: str, decision: Decision, things: Iterable[str]) -> set[str]:
-        """Those of the `things` that are near to where another robot than `name` works."""
-        busy = [place for other, place in self._work.items() if other != name]
-        places = {thing: place_of(decision, thing) for thing in things}
-        return {t for t, at in places.items() if at is not None and any(math.dist(at, one) < APART for one in busy)}
+    def crowded(self, name: str, places: Iterable[Place]) -> bool:
+        """Whether any of the `places` [m] is near to where another robot than `name` works."""
+        busy = [place for other, row in self._work.items() if other != name for place in row]
+        return any(math.dist(place, one) < APART for place in places for one in busy)
 
     def shared(self, name: str, ahead: Outlook, left_out: Collection[str] = ()) -> Outlook:
         """What is left to the robot `name` of what lies `ahead` of it: the rest, and `left_out`, is for others."""
@@ -125,9 +127,11 @@ class _Partner(Planner):
 
     def _choose(self, decision: Decision) -> Action:
         """As all searchers; what another robot does something about it leaves alone, and what is near to its work."""
-        self._crowded = self._team.crowded(self._name, decision, decision.names)
+        known = {name: place_of(decision, name) for name in decision.names}
+        self._crowded = {name for name, at in known.items() if at and self._team.crowded(self._name, [at])}
         action = super()._choose(decision)
-        if action.target is not None and action.target in self._team.handled(self._name):
+        busy = action.verb not in PUBLISHED and self._team.crowded(self._name, places_of(decision, action))
+        if busy or (action.target is not None and action.target in self._team.handled(self._name)):
             kept, self._mitigator, self._gale = (self._mitigator, self._gale), None, None
             action = super()._choose(decision)
             self._mitigator, self._gale = kept
@@ -152,10 +156,20 @@ def _of(problem: Problem, counts: list[bool]) -> Problem:
     return replace(problem, values=np.where(counts, problem.values, 0.0).tolist())
 
 
-def place_of(decision: Decision, thing: str | None) -> tuple[float, float] | None:
+def place_of(decision: Decision, thing: str | None) -> Place | None:
     """The place [m] of a thing on the map; None where it is not known, or no thing."""
     seen = decision.map.objects.get(decision.index(thing)) if thing in decision.names else None
     return None if seen is None else (float(seen.position[0]), float(seen.position[1]))
+
+
+def places_of(decision: Decision, action: Action) -> list[Place]:
+    """Where an action is done, as far as that is known [m]: of a push, where the cart stands, too."""
+    carts = [place for cart in decision.containers if (place := place_of(decision, cart)) is not None]
+    goal = place_of(decision, action.target)
+    if action.verb != PUSH or not carts:
+        return [] if goal is None else [goal]
+    nearest = min(carts, key=lambda cart: math.dist(cart, decision.agent_position))
+    return [nearest, *([] if goal is None else [goal])]
 
 
 def _measure(action: Action, decision: Decision) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from hazard_ms.agents.base import agent
-from hazard_ms.agents.joint import Joint
+from hazard_ms.agents.joint import Joint, places_of
 from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.team import Auction, Independent, team_agent
 from hazard_ms.planning.problem import Problem
@@ -118,6 +118,7 @@ def decision(place: tuple[float, float], seen: dict[str, tuple[float, float]], *
         map=SimpleNamespace(objects=sighting),
         index=names.index,
         names=names,
+        containers=(),
     )
 
 
@@ -168,8 +169,12 @@ def test_a_joint_plan_leaves_to_others_what_they_alone_can_fetch() -> None:
 def test_nobody_begins_within_reach_of_where_another_robot_works() -> None:
     """r1 works at 1.5 m: a at 0.4 m and b at 2.9 m are nearer than 1.5 m to it, c at 3.1 m is not; d was not seen."""
     team, seen = Joint(), {"a": (0.4, 0.0), "b": (2.9, 0.0), "c": (3.1, 0.0)}
-    team._work = {"r1": (1.5, 0.0), "r0": (3.1, 0.0)}
-    assert team.crowded("r0", decision((0.0, 0.0), seen), "abcd") == {"a", "b"}
+    team._work = {"r1": [(1.5, 0.0)], "r0": [(3.1, 0.0)]}
+    told = decision((0.0, 0.0), seen)
+    near = {name: team.crowded("r0", places_of(told, Action(WALK_TO, name))) for name in "abcd"}
+    assert near == {"a": True, "b": True, "c": False, "d": False}
+    told.containers = ("b", "c")  # the cart at hand is b
+    assert places_of(told, Action("push", "c")) == [(2.9, 0.0), (3.1, 0.0)]
     team._ahead, team._aims, team._rescued = {}, {}, set()
     assert team.shared("r0", lying_ahead(0.0), {"a"}).problem.values == (0.0, 3.0)
 

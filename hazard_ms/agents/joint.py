@@ -26,7 +26,7 @@ from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
 
 MOST_LABELS = 2_000  # of the search for the plan of one robot, while it is open who fetches what [ours]
-APART = 1.5  # distance from where another robot works within which none begins to [m] [ours: reach 1 m and the bases]
+APART = 2.0  # distance from where another robot works within which none begins to [m] [ours: twice a reach of 1 m]
 PUSH = "push"  # the verb of pushing the cart at hand to a thing
 TURNS = 3  # looks around in a row with which it waits for its turn at most [ours]
 

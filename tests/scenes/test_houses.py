@@ -19,14 +19,20 @@ from hazard_ms.spec import Area, SceneSpec
 from hazard_ms.spec.catalogue import CATEGORIES, FIRE_POOL
 
 SPLITS = ("train", "test", "held_out")
-NAMES = [name for split in SPLITS for name in scene_names(split, "house")]
+FAMILIES = ("house", "house_flood")
+CHOSEN_SPLITS = [name for split in SPLITS[1:] for family in FAMILIES for name in scene_names(split, family)]
+NAMES = [*scene_names("train", "house"), *CHOSEN_SPLITS]
 SAMPLE = {f"house_{n:02d}/{n % 25:02d}" for n in (1, 2, 3, 13, 30)}
 SAMPLE |= {"house_test_1/00", "house_test_1/07", "house_test_2/16", "house_held_out_1/04", "house_held_out_2/24"}
-LONG = [*scene_names("train", "house")[::23], *scene_names("test", "house"), *scene_names("held_out", "house")]
+SAMPLE |= {"house_flood_test_1/03", "house_flood_held_out_2/11"}
+LONG = [*scene_names("train", "house")[::23], *CHOSEN_SPLITS]
 MORE = [pytest.param(name, marks=pytest.mark.long) for name in LONG if name not in SAMPLE]
 EACH = pytest.mark.parametrize("name", [*sorted(SAMPLE), *MORE])
 RADIUS = 0.3  # of a disc in which Fetch's base, 0.28 m, fits [m]
-HELD_OUT_DIGEST = "400016341a371e2e2becd1d2459d7df9ceac392115727d7326d1603d97e262c1"
+HELD_OUT_DIGEST = {
+    "house": "400016341a371e2e2becd1d2459d7df9ceac392115727d7326d1603d97e262c1",
+    "house_flood": "",
+}
 
 
 def rooms_of(spec: SceneSpec) -> list[Area]:
@@ -50,9 +56,10 @@ def with_doors(spec: SceneSpec, share: float | None) -> SceneSpec:
     return dataclasses.replace(spec, room=dataclasses.replace(spec.room, openings=tuple(made)))
 
 
-def test_there_are_40_places_to_train_and_50_scenes_each_to_test_and_held_out() -> None:
+@pytest.mark.parametrize("family", FAMILIES)
+def test_there_are_40_places_to_train_and_50_scenes_each_to_test_and_held_out(family: str) -> None:
     """Issue: 40 training places' worth of scenes, 50 test scenes a task, a held-out set."""
-    names = {split: scene_names(split, "house") for split in SPLITS}
+    names = {split: scene_names(split, family) for split in SPLITS}
     assert {split: len(of) for split, of in names.items()} == {"train": 1000, "test": 50, "held_out": 50}
     assert len({n.split("/")[0] for n in names["train"]}) == 40
     assert len(set(NAMES)) == len(NAMES)
@@ -151,11 +158,15 @@ def test_homes_differ_in_size_and_layout() -> None:
     assert sum(any(o.kind == "doorway" and "column" in o.wall for o in s.room.openings) for s in made) == len(made)
 
 
-def test_scenes_that_are_held_out_are_what_they_were_and_follow_from_a_hash() -> None:
-    """Their digest is pinned, so that a change cannot touch them unseen; and the name alone does not make them."""
-    names = scene_names("held_out", "house")[::10]
-    made = [to_json(scene(name)) for name in names]
-    assert hashlib.sha256("".join(made).encode()).hexdigest() == HELD_OUT_DIGEST
+@pytest.mark.parametrize("family", FAMILIES)
+def test_scenes_that_are_held_out_are_what_they_were(family: str) -> None:
+    """Their digest is pinned, so that a change cannot touch them unseen."""
+    made = [to_json(scene(name)) for name in scene_names("held_out", family)[::10]]
+    assert hashlib.sha256("".join(made).encode()).hexdigest() == HELD_OUT_DIGEST[family]
+
+
+def test_scenes_that_are_held_out_follow_from_a_hash() -> None:
+    """The name alone does not make them."""
     known = hashlib.sha256(b"hazard_ms held out house_held_out_1/00").hexdigest()
     assert homes.seed_of("house_held_out_1/00", "held_out") == known
     assert homes.seed_of("house_test_1/00", "test") == "house_test_1/00"
@@ -171,7 +182,7 @@ def test_candidates_differ_and_only_scenes_of_test_and_held_out_are_chosen() -> 
     layout = homes.layout_of("house_test_1", "test")
     first, other = (homes.candidate(layout, "house_test_1/00", "test", number) for number in (0, 1))
     assert first.fires != other.fires and first.bodies != other.bodies
-    assert set(CHOSEN) <= {*scene_names("test", "house"), *scene_names("held_out", "house")}
+    assert set(CHOSEN) <= set(CHOSEN_SPLITS)
     assert all(number > 0 for number in CHOSEN.values())
     for name, number in list(CHOSEN.items())[:1]:
         split = "test" if "test" in name else "held_out"

@@ -3,8 +3,9 @@
 At each decision of a robot the plans of all are made anew, one after another, each without what those before it fetch:
 once with this robot first, once last. The order that saves more in sum is taken. That is one step of best responses;
 two robots get the best of both orders, more robots of two of the orders that there are. Arms that reach do not look out
-for other robots, so none goes for what is near to where another one works; at a cart it waits for its turn. Robots tell
-one another what they fetch and where they work and search, and nothing else: each plans for what it has seen itself.
+for other robots, so none goes for what is near to where another one works; at a cart it waits for its turn. What they
+fetch, and where they work and search, robots know of one another; each plans for what it has seen, or was told of: a
+robot that sees targets that nobody has told of yet tells the others, with the verb `tell`.
 """
 
 from __future__ import annotations
@@ -21,9 +22,10 @@ from hazard_ms.agents.search.searcher import First
 from hazard_ms.agents.team import APPROACH, TeamAgent
 from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import Plan, Problem
-from hazard_ms.registry.mitigations import PUBLISHED
+from hazard_ms.registry.mitigations import PUBLISHED, TELL
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
+from hazard_ms.skills.telling import LONGEST
 
 MOST_LABELS = 2_000  # of the search for the plan of one robot, while it is open who fetches what [ours]
 APART = 2.0  # distance from where another robot works within which none begins to [m] [ours: twice a reach of 1 m]
@@ -44,6 +46,7 @@ class Joint(TeamAgent):
         self._aims: dict[str, str] = {}  # what each robot is on its way to, or holds
         self._measures: dict[str, str] = {}  # what each robot does something about, other than to rescue it
         self._rescued: set[str] = set()
+        self._told: set[str] = set()  # targets of which any robot has told the others
         self._work: dict[str, list[Place]] = {}  # where each robot works, or stands [m]
 
     def act(self, decisions: Mapping[str, Decision]) -> dict[str, Action]:
@@ -56,6 +59,11 @@ class Joint(TeamAgent):
                 self._aims[name] = decision.held
         made = {}
         for name, decision in decisions.items():
+            news = self._news(decision) if len(self._partners) > 1 else ""
+            if news:
+                made[name] = Action(TELL, news)
+                self._work[name] = [decision.agent_position]
+                continue
             action = self._partners[name].act(decision)
             if action.verb == STOP and self.fetched(name):  # it may be needed when another fails
                 action = Action(EXPLORE)
@@ -68,6 +76,23 @@ class Joint(TeamAgent):
             self._work[name] = places_of(decision, action) or [decision.agent_position]
             made[name] = action
         return made
+
+    def _news(self, decision: Decision) -> str:
+        """A message that names the targets on the map of which nobody has told yet; empty where there is none to send.
+
+        Who stands before what it walked up to takes it first, and who failed thinks about that first.
+        """
+        last = decision.last_result
+        seen = [t.name for t in decision.targets if t.index in decision.map.objects and not t.rescued]
+        new = [name for name in seen if name not in self._told]
+        if not new or decision.walked_up_to is not None or last is None or not last.ok:
+            return ""
+        text = ""
+        for name in new:
+            if len(text) + len(name) + 2 <= LONGEST:
+                text += f", {name}" if text else name
+                self._told.add(name)
+        return text
 
     def handled(self, name: str) -> set[str]:
         """The tools, doors, fires and carts that the other robots than `name` fetch, turn, put out or push."""

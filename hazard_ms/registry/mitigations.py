@@ -1,8 +1,9 @@
 """Mitigations by verb: what an agent can do about a hazard itself, beyond the six verbs of the benchmark.
 
-A task names those that its agents have (`hazard_ms.spec.Task.mitigations`); the published tasks have none. One verb is
-kept here that is no mitigation: LOOK_AT, which all agents have that see through a detector. Functions are given as
-text, "package.module:function", which is imported when it is first needed, or as themselves.
+A task names those that its agents have (`hazard_ms.spec.Task.mitigations`); the published tasks have none. Two verbs
+are kept here that are no mitigations: LOOK_AT, which all agents have that see through a detector, and TELL, which the
+robots of a team have. Functions are given as text, "package.module:function", which is imported when it is first
+needed, or as themselves.
 
     import hazard_ms
     hazard_ms.register_mitigation("switch_off", "my_package.power:switch_off", "my_package.power:switches", "...")
@@ -20,7 +21,7 @@ from hazard_ms.registry import find
 
 VERB = re.compile(r"[a-z]+(_[a-z]+)*")
 PUBLISHED = ("walk_to", "walk_one_step", "pick_up", "drop", "explore", "stop")  # verbs that every task has
-LOOK_AT = "look_at"
+LOOK_AT, TELL = "look_at", "tell"
 MODULE = "hazard_ms.skills.mitigations."
 
 
@@ -122,4 +123,10 @@ register_mitigation(
     MODULE + "looking:look_at",
     MODULE + "looking:doubtful",
     "comes near enough to a thing to tell what it is, and faces it, which takes no time where it is near and ahead",
+)
+register_mitigation(
+    TELL,
+    "hazard_ms.skills.telling:tell",
+    "hazard_ms.skills.telling:nothing",
+    "tells all other robots of the team a message, and the places of the things that it names",
 )

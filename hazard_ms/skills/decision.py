@@ -77,6 +77,15 @@ class Tool:
 
 
 @dataclass(frozen=True)
+class Message:
+    """A message from another robot of the team."""
+
+    frame: int  # at which it arrived
+    sender: str  # name of the robot
+    text: str
+
+
+@dataclass(frozen=True)
 class Decision:
     """All that an agent knows when it must choose its next action. World frame, metres, radians."""
 
@@ -96,6 +105,7 @@ class Decision:
     # of tasks with mitigations, else empty
     openings: tuple[KnownOpening, ...] = ()  # doors, windows and doorways that were seen, as last seen
     tools: tuple[Tool, ...] = ()  # things that can be picked up to be used, wherever they are
+    messages: tuple[Message, ...] = ()  # what the other robots of its team have told it so far, oldest first
 
     @property
     def walked_up_to(self) -> str | None:

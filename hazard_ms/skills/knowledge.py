@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,14 +11,16 @@ import numpy as np
 
 from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.grasp import Hand
+from hazard_ms.registry.mitigations import TELL
 from hazard_ms.robots.robot import Robot
 from hazard_ms.sensing.detection.perception import Perception
 from hazard_ms.sensing.observations import Observer
 from hazard_ms.sensing.semantic_map import CEILING, LINTELS, SemanticMap, cells_for
+from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.simulation.world import World
 from hazard_ms.skills.brief import Brief, brief_of, has_several_rooms
 from hazard_ms.skills.context import Rescuer, Stage
-from hazard_ms.skills.decision import PICK_UP, Action, Decision, Images, Result, available
+from hazard_ms.skills.decision import PICK_UP, Action, Decision, Images, Message, Result, available
 from hazard_ms.skills.failures import NOT_A_TARGET, REFUSED
 from hazard_ms.skills.mitigations.offers import offered, tools, verbs_of
 
@@ -65,6 +67,7 @@ class Knowledge:
         self.look_seconds = 0.0  # wall time spent in looks
         self._images: Images | None = None
         self._last: tuple[Action | None, Result | None] = (None, None)
+        self._messages: tuple[Message, ...] = ()
 
     def _place(self) -> tuple[float, float]:
         x, y, _ = self._robot.world.agent_position[0].tolist()
@@ -73,7 +76,8 @@ class Knowledge:
     @property
     def verbs(self) -> tuple[str, ...]:
         """The verbs that it has beyond the six of the benchmark; without a detector those of the task."""
-        return verbs_of(self.labeller, self._base.task.mitigations)
+        told = (TELL,) if self.stage.others else ()
+        return (*verbs_of(self.labeller, self._base.task.mitigations), *told)
 
     def brief(self, number: int = 0) -> Brief:
         """Everything that the agent of robot `number` is told before the episode: nothing that identifies the scene."""
@@ -92,6 +96,14 @@ class Knowledge:
             elif result.reason in REFUSED:
                 self.labeller.refused(index, result.reason == NOT_A_TARGET)
         self._last = (action, result)
+
+    def hear(self, message: Message, seen: Mapping[int, Sighting]) -> None:
+        """Take a message, and enter what its sender has `seen` of the things in it, unless it has been seen later."""
+        self._messages += (message,)
+        gone = self.labeller.unmapped()
+        for known in self.maps:
+            new = {i: s for i, s in seen.items() if i not in gone and not _later(known.objects.get(i), s)}
+            known.objects = {**known.objects, **new}
 
     def look(self, colours: bool = False) -> None:
         """Look through the head camera, with `colours` or where a detector needs them, and enter what is seen."""
@@ -138,4 +150,9 @@ class Knowledge:
             last_result=self._last[1],
             openings=self.stage.doors.rows() if acts else (),
             tools=tools(self.stage) if acts else (),
+            messages=self._messages,
         )
+
+
+def _later(own: Sighting | None, other: Sighting) -> bool:
+    return own is not None and own.frame >= other.frame

@@ -1,7 +1,7 @@
 """Skills of several robots at the same time: each robot is asked again when its own skill is over.
 
 Every robot has a map of its own. All are told what is rescued, and where the other robots' bases and hands are: paths
-go round them, and no base drives at one that is close ahead. Nothing else passes between them.
+go round them, and no base drives at one that is close ahead. All else they must tell one another.
 """
 
 from __future__ import annotations
@@ -14,15 +14,17 @@ import gymnasium as gym
 
 from hazard_ms.env import HazardEnv
 from hazard_ms.env.time_limit import is_bare
+from hazard_ms.registry.mitigations import TELL
 from hazard_ms.robots import robot_names, skill_control_mode
 from hazard_ms.sensing.detection.perception import TRUTH, perception
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.context import LowLevel, Skill
-from hazard_ms.skills.decision import STOP, Action, Decision, Result
+from hazard_ms.skills.decision import STOP, Action, Decision, Message, Result
 from hazard_ms.skills.failures import EPISODE_OVER
 from hazard_ms.skills.knowledge import Knowledge, OneRobot
 from hazard_ms.skills.mitigations.offers import check
+from hazard_ms.skills.telling import named_in
 
 
 class TeamSkills:
@@ -163,10 +165,22 @@ class TeamSkills:
 
     def _finish(self, name: str, result: Result) -> Result:
         """Note that the action of the robot `name` has ended with `result`, after a look."""
-        self.knowledge[name].ended(self._running.pop(name).action, result)
+        action = self._running.pop(name).action
+        self.knowledge[name].ended(action, result)
+        if action.verb == TELL and result.ok:
+            self._hand_over(name, str(action.target))
         if not bool(self.base.episode.sim_error[0]):
             self.knowledge[name].look()
         return result
+
+    def _hand_over(self, name: str, text: str) -> None:
+        """Let all others hear what the robot `name` tells, and where it has seen the things in it."""
+        knows = self.knowledge[name]
+        named = [knows.labeller.index(thing) for thing in named_in(text, knows.labeller.names)]
+        seen = {index: knows.seen.objects[index] for index in named if index in knows.seen.objects}
+        for other in self.names:
+            if other != name:
+                self.knowledge[other].hear(Message(self.frame, name, text), seen)
 
     def close(self) -> None:
         """Close the environment."""

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hazard_ms.registry import load
-from hazard_ms.registry.mitigations import LOOK_AT, MITIGATIONS
+from hazard_ms.registry.mitigations import LOOK_AT, MITIGATIONS, TELL
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.simulation.jet import KINDS
 from hazard_ms.skills.context import Stage
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, VERBS, Action, Tool
+from hazard_ms.skills.telling import check_message
 from hazard_ms.spec.checks import one_of
 
 
@@ -58,6 +59,9 @@ def check(action: Action, stage: Stage, verbs: Sequence[str]) -> None:
     """Check that the task of `verbs` has the verb of `action`, and the scene its target. Raises ValueError if not."""
     if action.verb not in VERBS:
         one_of(action.verb, (*VERBS, *verbs), "verb")
+        if action.verb == TELL:
+            check_message(action.target)
+            return
         known = (*stage.labeller.names, *stage.doors.names)
         one_of(action.target, known, f"the target of {action.verb}")
     if action.verb in (EXPLORE, STOP) and action.target is not None:

@@ -1,11 +1,13 @@
 """Skills of several robots at the same time: each robot is asked again when its own skill is over.
 
 Every robot has a map of its own. All are told what is rescued, and where the other robots' bases and hands are: paths
-go round them, and no base drives at one that is close ahead. All else they must tell one another.
+go round them, no base drives at one that is close ahead, and who may reach out lets pass who walks close by. All else
+they must tell one another.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, cast
@@ -20,11 +22,25 @@ from hazard_ms.sensing.detection.perception import TRUTH, perception
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.context import LowLevel, Skill
-from hazard_ms.skills.decision import STOP, Action, Decision, Message, Result
+from hazard_ms.skills.decision import (
+    DROP,
+    PICK_UP,
+    STOP,
+    WALK_ONE_STEP,
+    WALK_TO,
+    Action,
+    Decision,
+    Message,
+    Result,
+)
 from hazard_ms.skills.failures import EPISODE_OVER
 from hazard_ms.skills.knowledge import Knowledge, OneRobot
 from hazard_ms.skills.mitigations.offers import check
 from hazard_ms.skills.telling import named_in
+
+WALKING, REACHING = (WALK_TO, WALK_ONE_STEP), (PICK_UP, DROP)  # verbs
+PASSING = 1.3  # distance of two bases within which a robot that may reach out lets one that walks pass [m] [ours]
+PATIENCE = 90  # frames for which it does so at most in an action [ours]
 
 
 class TeamSkills:
@@ -132,10 +148,10 @@ class TeamSkills:
         results: dict[str, Result] = {}
         info = self.base.get_info()
         while self._running and not results and not self._over:
-            moves = {n: self._running[n].move if n in self._running else None for n in self.names}
-            info = self._frame({n: self.knowledge[n].stage.act() if m is None else m for n, m in moves.items()})
+            waiting = {name for name in self._running if self._waits(name)}
+            info = self._frame({name: self._move(name, name in waiting) for name in self.names})
             for name, doing in [*self._running.items()]:
-                result = doing.go_on(self.frame)
+                result = None if name in waiting else doing.go_on(self.frame)
                 if result is not None:
                     results[name] = self._finish(name, result)
         terminated = bool(info["success"][0] or info["fail"][0]) or not (self._running or self.free)
@@ -144,6 +160,24 @@ class TeamSkills:
         truncated, self._over = self._over, self._over or terminated
         info["results"] = results
         return {name: self.decision(name) for name in self.free}, terminated, truncated and not terminated, info
+
+    def _move(self, name: str, waits: bool) -> LowLevel:
+        """What a robot does in the coming frame; it stands where nothing runs, and stays as it is while it waits."""
+        doing, stage = self._running.get(name), self.knowledge[name].stage
+        if waits:
+            return stage.act(arm=stage.robot.arm())
+        return stage.act() if doing is None or doing.move is None else doing.move
+
+    def _waits(self, name: str) -> bool:
+        """Whether a robot lets another one pass: its arm may reach out, and that one walks close by."""
+        doing = self._running[name]
+        if doing.action.verb not in REACHING or doing.waited >= PATIENCE:
+            return False
+        here = self.base.robots[name].base()[:2]
+        walkers = (other for other, o in self._running.items() if other != name and o.action.verb in WALKING)
+        waits = any(math.dist(here, self.base.robots[other].base()[:2]) < PASSING for other in walkers)
+        doing.waited += waits
+        return waits
 
     def _check(self, actions: Mapping[str, Action]) -> None:
         if self._over:
@@ -193,6 +227,7 @@ class _Doing:
     def __init__(self, action: Action, doing: Skill, frame: int) -> None:
         self.action, self._doing, self._since = action, doing, frame
         self._result: Result | None = None
+        self.waited = 0  # frames in which it let others pass
         self.move = self._next()
 
     def _next(self) -> LowLevel | None:

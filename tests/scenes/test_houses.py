@@ -31,7 +31,7 @@ EACH = pytest.mark.parametrize("name", [*sorted(SAMPLE), *MORE])
 RADIUS = 0.3  # of a disc in which Fetch's base, 0.28 m, fits [m]
 HELD_OUT_DIGEST = {
     "house": "400016341a371e2e2becd1d2459d7df9ceac392115727d7326d1603d97e262c1",
-    "house_flood": "",
+    "house_flood": "54dc3709e863a378fae09281a23ff947b8622b36d1598a61226d8922ace29a89",
 }
 
 

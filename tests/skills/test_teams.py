@@ -17,10 +17,11 @@ from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.team import Auction, Independent, team_agent
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import StaticTravel
-from hazard_ms.skills.decision import EXPLORE, STOP, WALK_TO, Action
+from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.skills.decision import EXPLORE, PICK_UP, STOP, WALK_TO, Action, Message
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.motor.motion import drive
-from hazard_ms.skills.team import TeamSkills
+from hazard_ms.skills.team import PASSING, PATIENCE, TeamSkills
 
 LOOK, END = Action(EXPLORE), Action(STOP)
 
@@ -104,6 +105,32 @@ def test_paths_and_drives_keep_clear_of_the_other_robot(pair: TeamSkills) -> Non
         assert gap > 0.05
     assert pair.collisions == 0
     assert stage.bumps  # it noticed that it is stuck, and so another path is planned
+
+
+def test_who_may_reach_out_lets_pass_who_walks_close_by(pair: TeamSkills, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They start 0.9 m apart. Robot 0 stands until robot 1 is 1.3 m away, or was near for 90 frames; then it goes."""
+    decisions, _ = pair.reset(seed=1)
+    near: list[tuple[float, float]] = []
+    after = pair._frame
+
+    def watched(moves: dict[str, Any]) -> dict[str, Any]:
+        info = after(moves)
+        (x, y, heading), (ox, oy, _) = (robot.base() for robot in pair.base.robots.values())
+        near.append((float(np.hypot(x - ox, y - oy)), abs(x - start[0]) + abs(y - start[1]) + abs(heading - start[2])))
+        return info
+
+    monkeypatch.setattr(pair, "_frame", watched)
+    start = pair.base.robots["fetch-0"].base()
+    thing = next(t for t in decisions["fetch-0"].targets)
+    place = pair.base.world.position[0, thing.index].cpu().numpy()
+    seen = {thing.index: Sighting(place, 0.1, float(place[2]) + 0.1, 0, 0)}
+    pair.knowledge["fetch-0"].hear(Message(0, "fetch-1", thing.name), seen)
+    away = {t: s for t, s in decisions["fetch-1"].map.objects.items()}
+    far = max(away, key=lambda t: float(np.hypot(*(away[t].position[:2] - np.array(start[:2])))))
+    pair.step({"fetch-0": Action(PICK_UP, thing.name), "fetch-1": Action(WALK_TO, decisions["fetch-1"].names[far])})
+    stood = next((n for n, (_, moved) in enumerate(near) if moved > 1e-3), len(near))
+    assert 5 < stood <= PATIENCE + 1
+    assert max(gap for gap, _ in near[: stood - 1]) < PASSING + 0.05
 
 
 def decision(place: tuple[float, float], seen: dict[str, tuple[float, float]], **more: Any) -> Any:

@@ -2,8 +2,7 @@
 
     python -m hazard_ms.bench.teams -t HazardFire-v1 HazardWind-v1 -n 2 -o teams.jsonl
 
-All play the same scenes. Every episode adds a line to the file; those that are there are not played again. Results do
-not depend on the machine.
+All play the same scenes. Every episode adds a line to the file. Results do not depend on the machine.
 """
 
 from __future__ import annotations
@@ -92,12 +91,8 @@ def main() -> None:
     parser.add_argument("--split", default="test")
     parser.add_argument("-o", "--output", type=Path, default=Path("teams.jsonl"))
     asked = parser.parse_args()
-    lines = asked.output.read_text(encoding="utf-8").splitlines() if asked.output.exists() else []
-    made = [TeamResult(**{**row, "robots": tuple(row["robots"])}) for row in map(json.loads, lines)]
-    there = {(r.env_id, r.robots, r.agent, r.seed) for r in made}
+    made: list[TeamResult] = []
     for task, seed, (robots, name) in itertools.product(asked.tasks, range(asked.episodes), SETUPS):
-        if (task, robots, name, seed) in there:
-            continue
         made += measure(task, [seed], robots, name, asked.split)
         with asked.output.open("a", encoding="utf-8") as file:
             file.write(json.dumps(asdict(made[-1])) + "\n")

@@ -22,17 +22,17 @@ def tell(stage: Stage, text: str) -> Skill:
 
 
 def nothing(stage: Stage) -> tuple[str, ...]:
-    """What is on offer to tell: nothing that could be listed."""
+    """Nothing is on offer to tell, since messages cannot be listed."""
     return ()
 
 
 def check_message(text: str | None) -> None:
-    """Raise ValueError unless `text` is a message: printable, and not too long."""
+    """Check that `text` is a message, printable and not too long. Raises ValueError if it is not."""
     if not text or len(text) > LONGEST or not text.isprintable():
         raise ValueError(f"a message must be 1 to {LONGEST} printable characters, got {text!r:.250}")
 
 
 def named_in(text: str, names: tuple[str, ...]) -> tuple[str, ...]:
-    """Those of `names` that stand as words in a message, each once."""
+    """The ones among `names` that stand in a message as words, each once."""
     words = set("".join(c if c.isalnum() or c == "_" else " " for c in text).split())
     return tuple(name for name in names if name in words)

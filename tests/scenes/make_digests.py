@@ -29,7 +29,7 @@ def pinned() -> list[str]:
         for split in split_names(family):
             names = scene_names(split, family)
             made += [*names[3 :: 10 * SCENES], names[-1]] if len(names) > MOST else names
-    return made
+    return list(dict.fromkeys(made))  # fires and floods share the homes to train in
 
 
 def main() -> None:

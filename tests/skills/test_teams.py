@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Iterator
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from hazard_ms.agents.base import agent
-from hazard_ms.agents.joint import Joint, places_of
-from hazard_ms.agents.search.outlook import Outlook
-from hazard_ms.agents.team import Auction, Independent, team_agent
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.agents.team import Independent, team_agent
+from hazard_ms.agents.teams.joint import Joint
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, STOP, WALK_TO, Action, Message
 from hazard_ms.skills.executor import SkillEnv
@@ -133,86 +128,13 @@ def test_who_may_reach_out_lets_pass_who_walks_close_by(pair: TeamSkills, monkey
     assert max(gap for gap, _ in near[: stood - 1]) < PASSING + 0.05
 
 
-def decision(place: tuple[float, float], seen: dict[str, tuple[float, float]], **more: Any) -> Any:
-    """What an auction reads of a decision: place [m], and targets that were seen, with their places [m]."""
-    names = tuple(sorted({"a", "b", "c", "d", *seen}))
-    sighting = {names.index(n): SimpleNamespace(position=np.array([*at, 0.5])) for n, at in seen.items()}
-    rows = tuple(SimpleNamespace(name=n, rescued=n in more.get("rescued", ())) for n in names)
-    return SimpleNamespace(
-        agent_position=place,
-        held=more.get("held"),
-        targets=rows,
-        map=SimpleNamespace(objects=sighting),
-        index=names.index,
-        names=names,
-        containers=(),
-    )
-
-
-def test_an_auction_gives_each_target_to_the_robot_that_gets_there_with_the_least_travel() -> None:
-    """By hand, with robots at x = 0 and 10 m; a pick-up counts as 1 m.
-
-    a at 1 m: bid 1 of r0. d at 9 m: bid 1 of r1. b at 2 m: 1 + 1 + 1 = 3 of r0. c at 4.6 m: r0 is at b after 4 m and
-    bids 6.6, r1 is at d after 2 m and bids 6.4.
-    """
-    player, spots = Auction(), {"a": (1.0, 0.0), "b": (2.0, 0.0), "c": (4.6, 0.0), "d": (9.0, 0.0)}
-    player._agents = {n: SimpleNamespace(has_given_up=lambda name: False) for n in ("r0", "r1")}  # type: ignore[misc]
-    player._aims = {}
-    player._last = {"r0": decision((0.0, 0.0), spots), "r1": decision((10.0, 0.0), spots)}
-    assert player._allocated(player._last["r0"]) == {"a": "r0", "b": "r0", "c": "r1", "d": "r1"}
-    player._last["r1"] = decision((10.0, 0.0), {})  # it has seen nothing, so it bids for nothing
-    assert player._allocated(player._last["r0"]) == dict.fromkeys("abcd", "r0")
-    player._last["r1"] = decision((10.0, 0.0), spots)
-    player._aims = {"r1": "a"}  # on its way there
-    won = player._allocated(decision((0.0, 0.0), spots, rescued=("d",)))
-    assert won == {"a": "r1", "b": "r0", "c": "r0"}
-    player._aims, near = {}, {"a": (1.0, 0.0), "b": (4.0, 0.0)}  # r0 goes on from a: 1 + 1 + 3 = 5, before 5.5 of r1
-    player._last = {"r0": decision((0.0, 0.0), near), "r1": decision((9.5, 0.0), near)}
-    assert player._allocated(player._last["r0"]) == {"a": "r0", "b": "r0"}
-
-
-def lying_ahead(at: float, limit: float = 60.0) -> Outlook:
-    """What lies ahead of a robot at `at` [m] on a line, 10 frames to the metre: a at 5 m is worth 5, b at 6 m 3."""
-    places = np.array([5.0, 6.0, at])
-    ways = StaticTravel(10.0 * np.abs(places[:, None] - places))
-    whole = [math.inf] * 2
-    problem = Problem(ways, values=[5.0, 3.0], damaged_at=whole, pick=[10.0] * 2, drop=[0.0] * 2, limit=limit)
-    return Outlook(("a", "b"), (), (), problem, problem, 10.0 * np.abs(places[:, None] - places))
-
-
-def test_a_joint_plan_leaves_to_others_what_they_alone_can_fetch() -> None:
-    """Robots at 0 and 10 m have 60 frames: r0 gets to a alone, r1 to a or to b. Together they save 8, r1 first 5."""
-    team = Joint()
-    team._ahead, team._aims, team._rescued = {}, {}, set()
-    assert team.shared("r0", lying_ahead(0.0)).problem.values == (5.0, 3.0)
-    assert team.shared("r1", lying_ahead(10.0)).problem.values == (0.0, 3.0)
-    team._rescued = {"a"}  # r0 knows it, too, once it is asked
-    assert team.shared("r1", lying_ahead(10.0)).problem.values == (0.0, 3.0)
-    team._rescued, team._aims = set(), {"r0": "b"}  # on its way there, whatever would be better
-    assert team.shared("r1", lying_ahead(10.0)).problem.values == (5.0, 0.0)
-    assert team.fetched("r0") == set() and team.fetched("r1") == {"b"}
-
-
-def test_nobody_begins_within_reach_of_where_another_robot_works() -> None:
-    """r1 works at 1.5 m: a at 0.4 m and b at 3.4 m are nearer than 2 m to it, c at 3.6 m is not; d was not seen."""
-    team, seen = Joint(), {"a": (0.4, 0.0), "b": (3.4, 0.0), "c": (3.6, 0.0)}
-    team._work = {"r1": [(1.5, 0.0)], "r0": [(3.6, 0.0)]}
-    told = decision((0.0, 0.0), seen)
-    near = {name: team.crowded("r0", places_of(told, Action(WALK_TO, name))) for name in "abcd"}
-    assert near == {"a": True, "b": True, "c": False, "d": False}
-    told.containers = ("b", "c")  # the cart at hand is b
-    assert places_of(told, Action("push", "c")) == [(3.4, 0.0), (3.6, 0.0)]
-    team._ahead, team._aims, team._rescued = {}, {}, set()
-    assert team.shared("r0", lying_ahead(0.0), {"a"}).problem.values == (0.0, 3.0)
-
-
 def test_planners_that_plan_together_never_fetch_the_same(pair: TeamSkills) -> None:
     """Through some decisions in a burning kitchen; looks around and walks to search do not count."""
     decisions, _ = pair.reset(seed=1)
     player = team_agent("joint")
     player.reset({name: pair.brief(name) for name in pair.names})
     aims: dict[str, str | None] = {}
-    for _ in range(12):
+    for _ in range(8):
         actions = player.act(decisions)
         for name, action in actions.items():
             target = action.target in {t.name for t in decisions[name].targets}

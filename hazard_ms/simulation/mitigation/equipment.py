@@ -49,7 +49,7 @@ class NozzleState(State):
 
     @property
     def jet(self) -> Jet:
-        """Its jet, which shares its numbers."""
+        """The jet that comes from this nozzle, and shares its numbers."""
         return Jet(self.nozzle, self.aim, self.kind, self.flowing)
 
 

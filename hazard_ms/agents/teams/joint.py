@@ -99,7 +99,7 @@ class Joint(TeamAgent):
         return {thing for other, thing in self._measures.items() if other != name}
 
     def fetched(self, name: str) -> set[str]:
-        """What the other robots than `name` are on their way to, or hold."""
+        """The things that other robots than `name` are on their way to, or hold."""
         return {aim for other, aim in self._aims.items() if other != name}
 
     def crowded(self, name: str, places: Iterable[Place]) -> bool:
@@ -108,7 +108,7 @@ class Joint(TeamAgent):
         return any(math.dist(place, one) < APART for place in places for one in busy)
 
     def shared(self, name: str, ahead: Outlook, left_out: Collection[str] = ()) -> Outlook:
-        """What is left to the robot `name` of what lies `ahead` of it: the rest, and `left_out`, is for others."""
+        """The part of what lies `ahead` of the robot `name` that is left to it, without what is `left_out`."""
         self._ahead[name] = ahead
         taken = self.fetched(name) | self._rescued
         others = [other for other in self._ahead if other != name]
@@ -188,7 +188,7 @@ def place_of(decision: Decision, thing: str | None) -> Place | None:
 
 
 def places_of(decision: Decision, action: Action) -> list[Place]:
-    """Where an action is done, as far as that is known [m]: of a push, where the cart stands, too."""
+    """The places [m] at which an action is done, as far as they are known; of a push that of the cart, too."""
     carts = [place for cart in decision.containers if (place := place_of(decision, cart)) is not None]
     goal = place_of(decision, action.target)
     if action.verb != PUSH or not carts:

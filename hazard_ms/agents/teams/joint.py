@@ -29,6 +29,7 @@ from hazard_ms.skills.telling import LONGEST
 
 MOST_LABELS = 2_000  # of the search for the plan of one robot, while it is open who fetches what [ours]
 APART = 2.0  # distance from where another robot works within which none begins to [m] [ours: twice a reach of 1 m]
+STANDING = 1.2  # distance from one that stands, its arm tucked, within which none begins to [m] [ours: a reach, a base]
 PUSH = "push"  # the verb of pushing the cart at hand to a thing
 TURNS = 3  # looks around in a row with which it waits for its turn at most [ours]
 
@@ -37,6 +38,10 @@ Place = tuple[float, float]  # x, y [m], world frame
 
 class Joint(TeamAgent):
     """Planners that divide the targets, and the places to search, by what saves most in sum."""
+
+    def __init__(self, tells: bool = True) -> None:
+        """`tells`: whether robots tell one another of the targets that they see."""
+        self._tells = tells
 
     def reset(self, briefs: Mapping[str, Brief]) -> None:
         self._partners = {name: _Partner(name, self) for name in briefs}
@@ -47,22 +52,23 @@ class Joint(TeamAgent):
         self._measures: dict[str, str] = {}  # what each robot does something about, other than to rescue it
         self._rescued: set[str] = set()
         self._told: set[str] = set()  # targets of which any robot has told the others
-        self._work: dict[str, list[Place]] = {}  # where each robot works, or stands [m]
+        self._work: dict[str, list[Place]] = {}  # where each robot works [m]
+        self._stands: dict[str, Place] = {}  # where each robot stands that does nothing about things [m]
 
     def act(self, decisions: Mapping[str, Decision]) -> dict[str, Action]:
         for name, decision in decisions.items():
             self._aims.pop(name, None)
             self._measures.pop(name, None)
             self._work.pop(name, None)
+            self._stands[name] = decision.agent_position
             self._rescued = {target.name for target in decision.targets if target.rescued}
             if decision.held is not None:
                 self._aims[name] = decision.held
         made = {}
         for name, decision in decisions.items():
-            news = self._news(decision) if len(self._partners) > 1 else ""
+            news = self._news(decision) if self._tells and len(self._partners) > 1 else ""
             if news:
                 made[name] = Action(TELL, news)
-                self._work[name] = [decision.agent_position]
                 continue
             action = self._partners[name].act(decision)
             if action.verb == STOP and self.fetched(name):  # it may be needed when another fails
@@ -73,7 +79,9 @@ class Joint(TeamAgent):
                 self._aims[name] = action.target
             if action.target is not None and _measure(action, decision):
                 self._measures[name] = action.target
-            self._work[name] = places_of(decision, action) or [decision.agent_position]
+            self._work[name] = places_of(decision, action)
+            if self._work[name] or action.verb == STOP:  # what a robot that has stopped is near to is not lost
+                self._stands.pop(name)
             made[name] = action
         return made
 
@@ -103,9 +111,10 @@ class Joint(TeamAgent):
         return {aim for other, aim in self._aims.items() if other != name}
 
     def crowded(self, name: str, places: Iterable[Place]) -> bool:
-        """Whether any of the `places` [m] is near to where another robot than `name` works."""
-        busy = [place for other, row in self._work.items() if other != name for place in row]
-        return any(math.dist(place, one) < APART for place in places for one in busy)
+        """Whether any of the `places` [m] is near to where another robot than `name` works, or nearer to one."""
+        busy = [(place, APART) for other, row in self._work.items() if other != name for place in row]
+        busy += [(place, STANDING) for other, place in self._stands.items() if other != name]
+        return any(math.dist(place, one) < gap for place in places for one, gap in busy)
 
     def shared(self, name: str, ahead: Outlook, left_out: Collection[str] = ()) -> Outlook:
         """The part of what lies `ahead` of the robot `name` that is left to it, without what is `left_out`."""

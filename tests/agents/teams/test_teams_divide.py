@@ -79,10 +79,13 @@ def test_a_joint_plan_leaves_to_others_what_they_alone_can_fetch() -> None:
 def test_nobody_begins_within_reach_of_where_another_robot_works() -> None:
     """r1 works at 1.5 m: a at 0.4 m and b at 3.4 m are nearer than 2 m to it, c at 3.6 m is not; d was not seen."""
     team, seen = Joint(), {"a": (0.4, 0.0), "b": (3.4, 0.0), "c": (3.6, 0.0)}
-    team._work = {"r1": [(1.5, 0.0)], "r0": [(3.6, 0.0)]}
+    team._work, team._stands = {"r1": [(1.5, 0.0)], "r0": [(3.6, 0.0)]}, {}
     told = decision((0.0, 0.0), seen)
     near = {name: team.crowded("r0", places_of(told, Action(WALK_TO, name))) for name in "abcd"}
     assert near == {"a": True, "b": True, "c": False, "d": False}
+    team._work, team._stands = {}, {"r1": (2.5, 0.0), "r0": (0.4, 0.0)}  # it stands: b and c are nearer than 1.2 m
+    near = {name: team.crowded("r0", places_of(told, Action(WALK_TO, name))) for name in "abcd"}
+    assert near == {"a": False, "b": True, "c": True, "d": False}
     told.containers = ("b", "c")  # the cart at hand is b
     assert places_of(told, Action("push", "c")) == [(3.4, 0.0), (3.6, 0.0)]
     team._ahead, team._aims, team._rescued = {}, {}, set()

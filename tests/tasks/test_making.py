@@ -43,6 +43,6 @@ def test_water_of_paper_in_homes_is_slower_flatter_and_comes_through_doors_and_n
     """docs/benchmark.md 1.1."""
     for physics in ("paper", "shipped", "realistic"):
         (home,), (room,) = (task_of(f"Hazard{kind}Flood-v1", physics).hazards for kind in ("House", ""))
-        slower = {"every": 60, "slope": 1.0, "through_doors": True} if physics == "paper" else {}
+        slower = {"every": 40, "slope": 1.0, "through_doors": True} if physics == "paper" else {}
         assert room.every == 10
         assert home == dataclasses.replace(room, **slower), physics

@@ -33,8 +33,8 @@ def test_splits() -> None:
         assert all(scene(n).split == split and scene(n).name == n for n in scene_names(split)[:3])
     with pytest.raises(ValueError, match="split of indoor scenes must be one of train, test, .*, got 'validation'"):
         scene_names("validation")
-    families = "indoor, outdoor, house, house_flood, gale"
-    with pytest.raises(ValueError, match=f"family of scenes must be one of {families}, got 'space'"):
+    known = "indoor, outdoor, house, house_flood, gale"
+    with pytest.raises(ValueError, match=f"family of scenes must be one of {known}, got 'space'"):
         scene_names("train", "space")
     for bad in ("kitchen_a/25", "kitchen_a/7", "attic/00", "", "kitchen_a/../../etc"):
         with pytest.raises(ValueError, match="scene must be one of kitchen_a/00 to kitchen_a/24"):

@@ -23,6 +23,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from hazard_ms.scenes.floor import cell_of, connected, free_floor
 from hazard_ms.scenes.generate.house import chosen, homes
 from hazard_ms.scenes.splits import scene_names
 from hazard_ms.spec import SceneSpec
@@ -35,6 +36,8 @@ SPLITS = ("test", "held_out")
 FAMILIES = {"house": FIRE, "house_flood": FLOOD}  # scenes, and the hazard for which they are chosen
 TOGETHER = 2  # scenes whose candidates are simulated in one batch
 MOST = 12  # candidates for one scene
+RADIUS = 0.3  # of a disc in which Fetch's base, 0.28 m, fits [m]
+ENTERED = 0.05  # share of the floor of a room to which a robot must get [ours]
 GRID = tuple(
     {"fires": fires, "fire_distance": distance, "fire_reach": reach, "targets": targets}
     for fires, distance, reach, targets in (
@@ -103,7 +106,28 @@ def search(minutes: float) -> None:
                 csv.writer(file, lineterminator="\n").writerow(row)
             done[name] = read(name)
         print(f"{sum(any(r['chosen'] == '1' for r in rows) for rows in done.values())} chosen", flush=True)
-    write({name: int(max(rows, key=fitness)["number"]) for name, rows in done.items() if rows})
+    write({name: best(split_of[name], rows) for name, rows in done.items() if rows})
+
+
+def best(split: str, rows: list[dict[str, str]]) -> int:
+    """The number of the candidate of a `split` that fits best, of those whose rooms a robot gets into.
+
+    Raises ValueError where there is none of them.
+    """
+    for row in sorted(rows, key=fitness, reverse=True):
+        if passable(candidate(row["scene"], split, int(row["number"]))):
+            return int(row["number"])
+    raise ValueError(f"{rows[0]['scene']} must have rooms that a robot gets into, got none in {len(rows)} candidates")
+
+
+def passable(spec: SceneSpec) -> bool:
+    """Whether a robot gets to some of the floor of every room, with doors as they begin."""
+    reached = connected(free_floor(spec, RADIUS), spec.agent_start.position)
+    for area in spec.room.areas:
+        (i0, j0), (i1, j1) = cell_of(area.min), cell_of(area.max)
+        if reached[i0:i1, j0:j1].mean() <= ENTERED:
+            return False
+    return True
 
 
 def fitness(row: dict[str, str]) -> float:

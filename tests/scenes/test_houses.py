@@ -190,6 +190,7 @@ def test_candidates_differ_and_only_scenes_of_test_and_held_out_are_chosen() -> 
 
 
 @pytest.mark.long
+@pytest.mark.timeout(3600)
 def test_no_two_scenes_are_alike_and_nothing_is_wrong_with_any() -> None:
     digests = set()
     for name in NAMES:

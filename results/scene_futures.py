@@ -21,6 +21,7 @@ from hazard_ms.hazards.fire import heat
 from hazard_ms.hazards.fire.dousing import NEVER, STEAM
 from hazard_ms.hazards.fire.fire import Fire
 from hazard_ms.hazards.fire.fire_state import ALL_USED, BURNING, NORMAL, FireState, lit
+from hazard_ms.hazards.flood.flood import Flood
 from hazard_ms.simulation import building
 from hazard_ms.simulation.openings import EVERY
 from hazard_ms.simulation.walls import blocked
@@ -97,13 +98,17 @@ def _task(env_id: str) -> Task:
 
 
 def losses(
-    env_id: str, cases: Sequence[tuple[SceneSpec, Change]], frames: int | None = None
+    env_id: str, cases: Sequence[tuple[SceneSpec, Change]], frames: int | None = None, every: int | None = None
 ) -> list[NDArray[np.float64]]:
     """The frame at which each target of each case is lost, inf if it is not, [T], in the order of its scene.
 
-    `frames` to look at: by default those of the task.
+    `frames` to look at: by default those of the task. `every`: frames in which water rises by a step, by default the
+    task's.
     """
     task = _task(env_id)
+    if every is not None:
+        floods = (dataclasses.replace(h, every=every) if isinstance(h, Flood) else h for h in task.hazards)
+        task = dataclasses.replace(task, hazards=tuple(floods))
     specs = [spec for spec, _ in cases]
     world = building.make_world(tuple(specs), torch.device("cpu"))
     episode, rows = Episode(world, task.hazards, task.safe_place), torch.arange(len(specs))

@@ -1,6 +1,7 @@
 """Searches for homes that tell agents apart: `python results/scenes.py grid`, then `search`, then `table`.
 
     grid     plays six homes for each of a few settings of their generator, and prints a row each
+    rates    plays twelve homes in floods whose water rises at each of RATES, and prints a row each
     search   goes through candidates for the scenes of `test` and `held_out`, those of fires and those of floods, until
              one of each tells agents apart
     table    prints what the chosen scenes are like, from the rows of the search
@@ -49,14 +50,16 @@ GRID = tuple(
         ((4,), 1.5, 2.5, (18, 20)),
     )
 )
+RATES = (60, 40, 30)  # frames in which water rises by 0.01 m
+RATE_HOMES = tuple(f"house_flood_test_1/{n:02d}" for n in range(12))
 GRID_HOMES = tuple(f"house_test_1/{n:02d}" for n in range(6))
 
 
-def plays(env_id: str, specs: list[SceneSpec], quick: bool = False) -> list[Play]:
-    """What agents make of each scene; `quick` as for `play`."""
+def plays(env_id: str, specs: list[SceneSpec], quick: bool = False, every: int | None = None) -> list[Play]:
+    """What agents make of each scene; `quick` as for `play`, `every` as for `losses`."""
     offered = [changes(env_id, spec) for spec in specs]
     cases = [(spec, change) for spec, many in zip(specs, offered, strict=True) for change in (Change(), *many)]
-    made, found = losses(env_id, cases), []
+    made, found = losses(env_id, cases, every=every), []
     for spec, many in zip(specs, offered, strict=True):
         alone, *after = made[: 1 + len(many)]
         del made[: 1 + len(many)]
@@ -78,6 +81,16 @@ def grid() -> None:
         print(
             f"| {fires} | {layout.fire_distance} | {layout.fire_reach} | {targets} | {means} | {tell} of {len(found)} |"
         )
+
+
+def rates() -> None:
+    """Print what homes are like in floods of each rate, on average."""
+    print("| 0.01 m every | at risk | nearest | plain | best | tell |\n|---|---|---|---|---|---|")
+    for frames in RATES:
+        homes_of = [candidate(name, "test", 0) for name in RATE_HOMES]
+        found = plays(FLOOD, homes_of, quick=True, every=frames)
+        means = " | ".join(f"{mean:.0f}" for mean in means_of(found))
+        print(f"| {frames} frames | {means} | {sum(p.tells(FLOOD) for p in found)} of {len(found)} |", flush=True)
 
 
 def means_of(found: list[Play]) -> list[float]:
@@ -189,7 +202,7 @@ def table() -> None:
 def main(command: str, minutes: str = "10") -> None:
     """Do what the command says; `minutes` that a search may take."""
     torch.set_num_threads(1)
-    {"grid": grid, "table": table, "search": lambda: search(float(minutes))}[command]()
+    {"grid": grid, "rates": rates, "table": table, "search": lambda: search(float(minutes))}[command]()
 
 
 if __name__ == "__main__":

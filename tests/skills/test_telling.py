@@ -60,7 +60,7 @@ def test_messages_have_a_length(three: TeamSkills, text: str | None) -> None:
     assert three.frame == 0
 
 
-def test_a_single_robot_has_nobody_to_tell(three: TeamSkills) -> None:
+def test_a_single_robot_has_nobody_to_tell() -> None:
     env = SkillEnv.make("HazardFire-v1", effects="off")
     env.reset(seed=1)
     with pytest.raises(ValueError, match="verb must be one of walk_to, .* got 'tell'"):

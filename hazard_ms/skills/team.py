@@ -32,6 +32,7 @@ from hazard_ms.skills.decision import (
     Decision,
     Message,
     Result,
+    Teammate,
 )
 from hazard_ms.skills.failures import EPISODE_OVER
 from hazard_ms.skills.knowledge import Knowledge, OneRobot
@@ -127,7 +128,8 @@ class TeamSkills:
 
     def decision(self, name: str) -> Decision:
         """All that the robot `name` may know now."""
-        return self.knowledge[name].decision()
+        others = (Teammate(other, robot.base()[:2]) for other, robot in self.base.robots.items() if other != name)
+        return replace(self.knowledge[name].decision(), others=tuple(others))
 
     def step(self, actions: Mapping[str, Action]) -> tuple[dict[str, Decision], bool, bool, dict[str, Any]]:
         """Begin `actions`, one for each robot that is free, and let time pass until a skill is over.

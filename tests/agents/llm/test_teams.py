@@ -207,13 +207,11 @@ def test_the_scripted_rule_leaves_things_to_the_one_that_said_first_that_it_fetc
 
 
 def test_the_newest_ten_messages_are_told_and_of_a_long_prompt_the_oldest_are_left_out() -> None:
-    """All of 20 targets are known, and three others tell as much as can be told."""
+    """All of 20 targets are known, and three others tell as much as can be told: digits and signs have most tokens."""
     ground = Ground({name: (1.0, 0.1 * k) for k, name in enumerate(LARGEST)}, dict.fromkeys(LARGEST, 5.0))
     ground.look()
     ground.last = (Action("tell", "I stay"), Result(True, "", FRAMES))
-    heard = [
-        Message(10 * k, "fetch-1", f"{k}: {100 * '1;'}"[:200]) for k in range(12)
-    ]  # signs and digits have most tokens
+    heard = [Message(10 * k, "fetch-1", f"{k}: {100 * '1;'}"[:200]) for k in range(12)]
     others = tuple(Teammate(f"fetch-{k}", (2.0, float(k))) for k in (1, 2, 3))
     ground.frame = 115
     known = dataclasses.replace(ground.decision(), messages=tuple(heard), others=others)

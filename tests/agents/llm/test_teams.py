@@ -186,6 +186,14 @@ def test_what_no_team_can_have_is_refused(server: ScriptedServer, parameters: st
         team_agent(f"llm:base_url={server.address},model=greedy,{parameters}")
 
 
+def test_each_robot_has_the_budget_and_one_that_has_spent_it_stops_alone(server: ScriptedServer) -> None:
+    player = begun(team_agent(f"llm:base_url={server.address},model=greedy,most_calls=1"))
+    known = {"a-0": decision(seeing(), "b-1"), "b-1": decision(seeing(), "a-0")}
+    player.act({"a-0": known["a-0"]})
+    assert player.act(known) == {"a-0": Action("stop"), "b-1": Action("walk_to", "stone")}
+    assert player.counters["calls"] == 2 and "1 calls is spent" in str(player.notes["a-0"])
+
+
 def test_a_team_of_one_is_told_what_a_robot_alone_is_told(server: ScriptedServer) -> None:
     player = team_agent(f"llm:base_url={server.address},model=tells")
     assert isinstance(player, LanguageModels)

@@ -32,7 +32,6 @@ from hazard_ms.skills.decision import (
     Decision,
     Message,
     Result,
-    Teammate,
 )
 from hazard_ms.skills.failures import EPISODE_OVER
 from hazard_ms.skills.knowledge import Knowledge, OneRobot
@@ -128,8 +127,8 @@ class TeamSkills:
 
     def decision(self, name: str) -> Decision:
         """All that the robot `name` may know now."""
-        others = (Teammate(other, robot.base()[:2]) for other, robot in self.base.robots.items() if other != name)
-        return replace(self.knowledge[name].decision(), others=tuple(others))
+        others = {other: robot.base()[:2] for other, robot in self.base.robots.items() if other != name}
+        return self.knowledge[name].decision(others)
 
     def step(self, actions: Mapping[str, Action]) -> tuple[dict[str, Decision], bool, bool, dict[str, Any]]:
         """Begin `actions`, one for each robot that is free, and let time pass until a skill is over.

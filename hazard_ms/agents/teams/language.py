@@ -48,7 +48,7 @@ class LanguageModels(TeamAgent):
             self._told += sum(action.verb == TELL for action in made.values())
         finally:
             players = self._agents.values()
-            self.notes = {name: player.note for name, player in self._agents.items()}
+            self.notes = {name: self._agents[name].note for name in decisions}
             names = dict.fromkeys(name for player in players for name in player.counters)
             summed = {name: round(sum(p.counters.get(name, 0.0) for p in players), 6) for name in names}
             self.counters = {**summed, TOLD: self._told}

@@ -1,1 +1,1 @@
-"""What a language model that directs one robot of a team is told of the others, and a rule in its place."""
+"""The part of language models that teams add: the radio as a model is told of it, and a rule in its place."""

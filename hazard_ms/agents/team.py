@@ -62,7 +62,7 @@ TEAM_AGENTS = {  # the class of each, imported when it is asked for
     "joint": "hazard_ms.agents.teams.joint:Joint",
     "llm": "hazard_ms.agents.teams.language:LanguageModels",
 }
-MORE = ("independent", "llm")  # those that more may follow: an agent, or parameters
+FOLLOWED = ("independent", "llm")  # those that an agent follows, or parameters
 
 
 def team_agent(name: str) -> TeamAgent:
@@ -71,8 +71,8 @@ def team_agent(name: str) -> TeamAgent:
     An agent may follow the third, as in "independent:planner", parameters the last: "llm:model=NAME,way=letter". Raises
     ValueError for others.
     """
-    kind, _, more = name.partition(":")
+    kind, _, member = name.partition(":")
     made = load(TEAM_AGENTS[one_of(kind, TEAM_AGENTS, "team agent")])
-    if more and kind not in MORE:
+    if member and kind not in FOLLOWED:
         raise ValueError(f"team agent must be {kind} alone, since its robots' agents are its own, got {name!r}")
-    return cast(TeamAgent, made(more) if more else made())
+    return cast(TeamAgent, made(member) if member else made())

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import cast
 
 from hazard_ms.agents.base import Agent, agent
@@ -19,7 +20,10 @@ APPROACH = (WALK_TO, WALK_ONE_STEP, PICK_UP)  # verbs by which a robot goes for 
 
 
 class TeamAgent(abc.ABC):
-    """Chooses for several robots, which are known by their names."""
+    """Chooses for several robots, which are known by their names. Notes and counters are as those of an `Agent`."""
+
+    notes: Mapping[str, str | None] = MappingProxyType({})  # of each robot
+    counters: Mapping[str, float] = MappingProxyType({})  # of all together
 
     @abc.abstractmethod
     def reset(self, briefs: Mapping[str, Brief]) -> None:
@@ -56,16 +60,19 @@ TEAM_AGENTS = {  # the class of each, imported when it is asked for
     "independent": "hazard_ms.agents.team:Independent",
     "auction": "hazard_ms.agents.teams.auction:Auction",
     "joint": "hazard_ms.agents.teams.joint:Joint",
+    "llm": "hazard_ms.agents.teams.language:LanguageModels",
 }
+FOLLOWED = ("independent", "llm")  # those that an agent follows, or parameters
 
 
 def team_agent(name: str) -> TeamAgent:
-    """A new agent of teams: "joint", "auction", or "independent", also with an agent, as in "independent:planner".
+    """A new agent of teams: "joint", "auction", "independent", or "llm".
 
-    Raises ValueError for others.
+    An agent may follow the third, as in "independent:planner", parameters the last: "llm:model=NAME,way=letter". Raises
+    ValueError for others.
     """
     kind, _, member = name.partition(":")
     made = load(TEAM_AGENTS[one_of(kind, TEAM_AGENTS, "team agent")])
-    if member and made is not Independent:
+    if member and kind not in FOLLOWED:
         raise ValueError(f"team agent must be {kind} alone, since its robots' agents are its own, got {name!r}")
     return cast(TeamAgent, made(member) if member else made())

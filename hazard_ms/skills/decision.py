@@ -86,6 +86,14 @@ class Message:
 
 
 @dataclass(frozen=True)
+class Teammate:
+    """Another robot of the team; all of them know where the others are."""
+
+    name: str
+    position: tuple[float, float]  # of its base [m], world frame
+
+
+@dataclass(frozen=True)
 class Decision:
     """All that an agent knows when it must choose its next action. World frame, metres, radians."""
 
@@ -106,6 +114,7 @@ class Decision:
     openings: tuple[KnownOpening, ...] = ()  # doors, windows and doorways that were seen, as last seen
     tools: tuple[Tool, ...] = ()  # things that can be picked up to be used, wherever they are
     messages: tuple[Message, ...] = ()  # what the other robots of its team have told it so far, oldest first
+    others: tuple[Teammate, ...] = ()  # the other robots of its team
 
     @property
     def walked_up_to(self) -> str | None:

@@ -20,7 +20,7 @@ from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.simulation.world import World
 from hazard_ms.skills.brief import Brief, brief_of, has_several_rooms
 from hazard_ms.skills.context import Rescuer, Stage
-from hazard_ms.skills.decision import PICK_UP, Action, Decision, Images, Message, Result, available
+from hazard_ms.skills.decision import PICK_UP, Action, Decision, Images, Message, Result, Teammate, available
 from hazard_ms.skills.failures import NOT_A_TARGET, REFUSED
 from hazard_ms.skills.mitigations.offers import offered, tools, verbs_of
 
@@ -129,8 +129,11 @@ class Knowledge:
         self._images = Images(rgb, view.depth, None if labeller.withheld else view.labels, hazard)
         self.look_seconds += time.perf_counter() - start
 
-    def decision(self) -> Decision:
-        """All that an agent may know now; the map is a copy that cannot be written to."""
+    def decision(self, others: Mapping[str, tuple[float, float]] | None = None) -> Decision:
+        """All that an agent may know now; the map is a copy that cannot be written to.
+
+        `others`: places of the bases of the other robots of its team [m], world frame, by their names.
+        """
         labeller = self.labeller
         x, y, heading = self.stage.robot.base()
         targets, acts = labeller.targets(self.seen.seen_damaged), bool(self._base.task.mitigations)
@@ -151,6 +154,7 @@ class Knowledge:
             openings=self.stage.doors.rows() if acts else (),
             tools=tools(self.stage) if acts else (),
             messages=self._messages,
+            others=tuple(Teammate(name, place) for name, place in (others or {}).items()),
         )
 
 

@@ -127,7 +127,8 @@ class TeamSkills:
 
     def decision(self, name: str) -> Decision:
         """All that the robot `name` may know now."""
-        return self.knowledge[name].decision()
+        others = {other: robot.base()[:2] for other, robot in self.base.robots.items() if other != name}
+        return self.knowledge[name].decision(others)
 
     def step(self, actions: Mapping[str, Action]) -> tuple[dict[str, Decision], bool, bool, dict[str, Any]]:
         """Begin `actions`, one for each robot that is free, and let time pass until a skill is over.

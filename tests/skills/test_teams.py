@@ -13,7 +13,7 @@ from hazard_ms.agents.base import agent
 from hazard_ms.agents.team import Independent, team_agent
 from hazard_ms.agents.teams.joint import Joint
 from hazard_ms.sensing.sighting import Sighting
-from hazard_ms.skills.decision import EXPLORE, PICK_UP, STOP, WALK_TO, Action, Message
+from hazard_ms.skills.decision import EXPLORE, PICK_UP, STOP, WALK_TO, Action, Message, Teammate
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.motor.motion import drive
 from hazard_ms.skills.team import PASSING, PATIENCE, TeamSkills
@@ -35,6 +35,8 @@ def test_each_robot_is_asked_again_when_its_own_skill_is_over(pair: TeamSkills) 
         pytest.approx(robot.base()[:2]) for robot in pair.base.robots.values()
     ]
     assert decisions["fetch-0"].map is not decisions["fetch-1"].map
+    for name, other in (("fetch-0", "fetch-1"), ("fetch-1", "fetch-0")):
+        assert decisions[name].others == (Teammate(other, decisions[other].agent_position),)
     thing = next(a for a in decisions["fetch-0"].available if a.verb == WALK_TO)
     decisions, terminated, truncated, info = pair.step({"fetch-0": thing, "fetch-1": LOOK})
     assert not terminated and not truncated and len(info["results"]) == 1

@@ -7,7 +7,7 @@ walked up to is picked up, what is held goes into the bag, at a place to search 
 from __future__ import annotations
 
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +17,12 @@ from hazard_ms.agents.llm.answers import (
     LOGPROB,
     ONLY_LETTER,
     SHORT_REPLY,
+    TELLING_ASKS,
     THINK,
     WAYS,
     Reply,
     UnreadableError,
+    message_of,
     read,
     request_of,
 )
@@ -35,8 +37,10 @@ from hazard_ms.agents.llm.network.faults import NoAnswerError, RefusedError
 from hazard_ms.agents.llm.prompt import FORECAST, HISTORIES, IMAGE, VERSIONS, Message, messages, system_text
 from hazard_ms.agents.llm.rules import RULES
 from hazard_ms.agents.llm.scene_text import Block, block, plain_names
+from hazard_ms.agents.llm.team.radio import Radio
 from hazard_ms.agents.llm.trace import Trace
 from hazard_ms.agents.thinking import Thought
+from hazard_ms.registry.mitigations import TELL
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
 from hazard_ms.spec.checks import one_of, whole
@@ -103,11 +107,20 @@ class Llm(Agent):
             client.greet()
         cache = Cache(Path(self.cache), writable=not self.replay) if self.cache else None
         self._asker = Asker(where, client, cache, budget, self.sample)
+        self._team: tuple[str, ...] = ()  # names of the robots of a team, that of its own first
+
+    def join(self, name: str, others: tuple[str, ...]) -> None:
+        """Direct the robot `name` beside the `others` of its team. Raises ValueError for what no team can have."""
+        one_of(self.way, TELLING_ASKS, "way of a team, whose messages need more than a letter,")
+        one_of(self.version, [version for version in VERSIONS if version != IMAGE], "version of a team without colours")
+        self._team = (name, *others) if others else ()
 
     def reset(self, brief: Brief) -> None:
         """Begin an episode with an empty memory."""
         self._brief, self._memory = brief, Memory(brief.random_seed)
-        self._system = system_text(brief, macro=self.moves != FULL)
+        self._radio = Radio(self._team[0]) if self._team else None
+        self._ask = (TELLING_ASKS if self._team else ASKS)[self.way]
+        self._system = system_text(brief, self.moves != FULL, self._team)
         self._asker.begin()
         self._lost = 0  # decisions one after another without any answer
         player = f"{self._endpoint.model}-{self.version}-{self.way}"
@@ -118,6 +131,8 @@ class Llm(Agent):
     def act(self, decision: Decision) -> Action:
         """The next action: what follows by itself, else what the model chooses."""
         self._memory.note(decision)
+        if self._radio is not None:
+            self._radio.note(decision)
         self.fallback, self.thought = False, Thought()
         try:
             choice = self._by_itself(decision) or self._asked(decision)
@@ -147,10 +162,12 @@ class Llm(Agent):
     def _asked(self, decision: Decision) -> Choice:
         """What the model chooses; where it cannot be read, what the stand-in does."""
         failures, visits = self._memory.believed.failures, self._memory.believed.visits
-        on_offer = menu(decision, failures, visits, GIVE_UP, self.moves, self.options)
+        on_offer = menu(decision, failures, visits, GIVE_UP, self.moves, self.options, tells=self._radio is not None)
         told = block(self._brief, decision, self._memory, on_offer, self.version in HISTORIES, self.version == FORECAST)
+        if self._radio is not None:
+            told = self._radio.added(told, self._brief, decision, self._memory.rooms)
         picture = None if decision.images is None else decision.images.rgb
-        asked, told = messages(self.version, self._system, told, ASKS[self.way], picture)
+        asked, told = messages(self.version, self._system, told, self._ask, picture)
         self._asker.counts.decisions += 1
         replies: list[Reply] = []
         self._asker.taken = 0.0
@@ -183,7 +200,7 @@ class Llm(Agent):
             if self.way == LOGPROB:
                 raise
             said = replies[-1].text if replies else ""
-            again = f"That could not be read: {error}. {ASKS[self.way]}"
+            again = f"That could not be read: {error}. {self._ask}"
         talk = [*asked, {"role": "assistant", "content": said or "(nothing)"}, {"role": "user", "content": again}]
         try:
             choice = self._tried(talk, on_offer, told, replies, end)
@@ -202,12 +219,14 @@ class Llm(Agent):
         replies.append(self._asker.ask(talk, self._settings(form), end))
         if self.way == LOGPROB and replies[-1].candidates is None:
             raise RefusedError(f"way must be json, letter or think: {self._endpoint.host} sends no log-probabilities")
-        thoughts = replies[-1].text
+        first, thoughts = replies[-1], replies[-1].text
         if self.way == THINK:
             talk = [*talk, {"role": "assistant", "content": thoughts or "(nothing)"}]
             talk.append({"role": "user", "content": ONLY_LETTER})
             replies.append(self._asker.ask(talk, self._settings({self.limit_field: SHORT_REPLY}), end))
         choice, reason = read(self.way, replies[-1], on_offer, told["options"])
+        if choice.move == TELL:
+            choice = replace(choice, action=Action(TELL, message_of(self.way, first)))
         return choice, thoughts if self.way == THINK else reason
 
     def _settings(self, form: dict[str, Any]) -> dict[str, Any]:

@@ -3,6 +3,9 @@
 `json`: an object with a reason and a letter, to a schema that names the letters on offer. `letter`: free text that ends
 with the letter. `logprob`: one token, the letter to which the model gives the greatest probability. `think`: free text
 first; then, in a second call, the letter alone.
+
+A message to other robots stands beside the letter: in the field `message`, or in a line of free text. One token holds
+none, so teams do not answer by `logprob`.
 """
 
 from __future__ import annotations
@@ -15,6 +18,8 @@ from typing import Any
 
 from hazard_ms.agents.llm.choices import Choice, Menu
 from hazard_ms.agents.llm.prompt import estimate
+from hazard_ms.registry.mitigations import TELL
+from hazard_ms.skills.telling import check_message
 
 JSON, LETTER, LOGPROB, THINK = "json", "letter", "logprob", "think"
 WAYS = (JSON, LETTER, LOGPROB, THINK)
@@ -24,12 +29,18 @@ ASKS = {
     LOGPROB: "Reply with the letter alone.",
     THINK: "Think about it first, in at most 120 words; you will be asked for the letter afterwards.",
 }
+TELLING_ASKS = {  # of a robot that may tell others something
+    JSON: f'{ASKS[JSON].removesuffix("}.")}, "message": "what you tell, or empty"}}.',
+    LETTER: f'{ASKS[LETTER]} If you tell something, write a line "Message: your words" before it.',
+    THINK: f'{ASKS[THINK]} If you will tell something, end with a line "Message: your words".',
+}
 ONLY_LETTER = "Now reply with the letter alone."
 CANDIDATES = 20  # tokens whose probabilities are asked for: as many as OpenAI gives at most
 SHORT_REPLY = 16  # tokens of a reply that is a letter: some models put signs around it [ours]
 MOST_TOKENS = 10**7  # of one call: a server that tells of more is not believed [ours]
 AFTER_WORD = re.compile(r"(?i:answer)\W{0,8}(?:(?i:is|option)\W{1,4}){0,2}([A-T])\b(?!['’])")
 ALONE = re.compile(r"^\W*([A-T])\W*$", re.MULTILINE)
+MESSAGE = re.compile(r"^[^\w\n]*(?i:message)[^\w\n]*:[^\w\n]*(\w.*?)[\"*\s]*$", re.MULTILINE)
 THOUGHT, END_OF_THOUGHT = "<think>", "</think>"  # between which many models put their reasoning
 BYTE_ORDER_MARK = "\ufeff"
 SPENT = "raise reply_tokens, or let it think less: extra=reasoning_effort:none"  # what to do about long thoughts
@@ -104,12 +115,10 @@ def request_of(way: str, menu: Menu, tokens: int, limit_field: str) -> dict[str,
     if way != JSON:
         return {limit_field: tokens}
     letters = [choice.letter for choice in menu.choices]
-    schema = {
-        "type": "object",
-        "properties": {"reason": {"type": "string"}, "choice": {"type": "string", "enum": letters}},
-        "required": ["reason", "choice"],
-        "additionalProperties": False,
-    }
+    fields: dict[str, Any] = {"reason": {"type": "string"}, "choice": {"type": "string", "enum": letters}}
+    if menu.letter(TELL, None) is not None:
+        fields["message"] = {"type": "string"}
+    schema = {"type": "object", "properties": fields, "required": list(fields), "additionalProperties": False}
     form = {"type": "json_schema", "json_schema": {"name": "choice", "strict": True, "schema": schema}}
     return {limit_field: tokens, "response_format": form}
 
@@ -124,13 +133,29 @@ def read(way: str, reply: Reply, menu: Menu, options: dict[str, str]) -> tuple[C
     if reply.refused:
         raise UnreadableError("the model refused to answer")
     said = _said(reply)
-    named, reason = _from_json(said) if way == JSON else (_letter(said, menu), said)
+    if way == JSON:
+        answer = _from_json(said)
+        named, reason = answer["choice"], str(answer.get("reason", ""))
+    else:
+        named, reason = _letter(said, menu), said
     for choice in menu.choices:
         if named is not None and (named.strip() in (choice.letter, options[choice.letter])):
             return choice, reason
     letters = ", ".join(choice.letter for choice in menu.choices)
     shown = (named or reply.text)[:LONGEST_QUOTE]
     raise UnreadableError(f"the answer must name one of {letters}, got {shown!r}")
+
+
+def message_of(way: str, reply: Reply) -> str:
+    """The message in a `reply` that tells something. Raises UnreadableError where there is none, or none to be sent."""
+    said = _said(reply)
+    found = _from_json(said).get("message") if way == JSON else (MESSAGE.findall(said) or [""])[-1]
+    text = found.strip() if isinstance(found, str) else ""
+    try:
+        check_message(text)
+    except ValueError as error:
+        raise UnreadableError(str(error)) from None
+    return text
 
 
 def _said(reply: Reply) -> str:
@@ -150,8 +175,8 @@ def _said(reply: Reply) -> str:
     raise UnreadableError("the answer was empty")
 
 
-def _from_json(text: str) -> tuple[str, str]:
-    """The letter and the reason in a reply; there may be signs around the JSON."""
+def _from_json(text: str) -> dict[str, Any]:
+    """The object in a reply, which has a "choice"; there may be signs around the JSON."""
     found = OBJECT.search(text)
     try:
         answer = json.loads(found[0]) if found else None
@@ -159,7 +184,7 @@ def _from_json(text: str) -> tuple[str, str]:
         answer = None
     if not isinstance(answer, dict) or not isinstance(answer.get("choice"), str):
         raise UnreadableError(f'the answer must be JSON with a "choice", got {text[:LONGEST_QUOTE]!r}')
-    return answer["choice"], str(answer.get("reason", ""))
+    return answer
 
 
 def _letter(text: str, menu: Menu) -> str | None:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from hazard_ms.agents.base import distance, known, open_targets
+from hazard_ms.registry.mitigations import TELL
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, VERBS, WALK_TO, Action, Decision
 from hazard_ms.skills.options.landmarks import Landmark, landmarks
 
@@ -67,10 +68,12 @@ def menu(
     give_up: int,
     moves: str,
     most: int,
+    tells: bool = False,
 ) -> Menu:
     """The choices at `decision`, in the order of the things' indices, never of their merit.
 
     Things that failed `give_up` times are left out. Of more than `most` choices, the farthest targets are left out.
+    `tells`: whether the last choice is to tell the other robots something, whose action lacks the message.
     """
     fit = [name for name in decision.names if failures.get(name, 0) < give_up]
     targets = list(known(decision, tuple(n for n in open_targets(decision) if n in fit)))
@@ -82,6 +85,8 @@ def menu(
     if last is None or last.verb != EXPLORE or not (targets or places):
         rest.append((LOOK, None, Action(EXPLORE)))
     rest.append((END, None, Action(STOP)))
+    if tells:
+        rest.append((TELL, None, Action(TELL, "")))
     named = _mitigations(decision)
     if decision.held in [tool.name for tool in decision.tools]:
         named.append((PUT_DOWN, decision.held, Action(DROP)))

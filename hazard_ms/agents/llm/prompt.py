@@ -18,12 +18,14 @@ from hazard_ms.agents.search.outlook import skill_frames
 from hazard_ms.registry.mitigations import LOOK_AT, MITIGATIONS
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.telling import FRAMES, LONGEST
 
 VERSIONS = ("llm-1", "llm-2", "llm-3", "llm-2-image")
 HISTORIES = ("llm-2", "llm-3", "llm-2-image")  # versions that tell of earlier sightings
 FORECAST, IMAGE = "llm-3", "llm-2-image"  # the version that tells our forecast, and the one that shows the picture
 BUDGETS = {"llm-1": 1250, "llm-2": 1500, "llm-3": 1500, "llm-2-image": 1500}  # of a prompt without picture [tokens]
 MITIGATING = 1250  # further tokens for tasks with mitigations: doors, tools, and more to choose from [ours]
+TEAM = 1000  # further tokens in a team: who is in it, where they are, and what was told [ours]
 PICTURE = 512  # edge of the picture that is sent, at most [px]
 QUALITY = 85  # of its JPEG, 0 to 100 [ours]
 DANGERS = {
@@ -47,8 +49,11 @@ def estimate(text: str) -> int:
     return total
 
 
-def system_text(brief: Brief, macro: bool) -> str:
-    """The task in words: the same at every decision of an episode, so that servers keep what they have read of it."""
+def system_text(brief: Brief, macro: bool, team: Sequence[str] = ()) -> str:
+    """The task in words: the same at every decision of an episode, so that servers keep what they have read of it.
+
+    `team`: names of the robots of a team, that which is directed first.
+    """
     times = skill_frames(brief.robot)
     return _filled(
         "system",
@@ -60,6 +65,9 @@ def system_text(brief: Brief, macro: bool) -> str:
         pick=round(times.pick),
         look=round(times.explore),
         macro=macro,
+        team=team,
+        longest=LONGEST,
+        telling=FRAMES,
         rooms=brief.several_rooms and bool(brief.mitigations),
         averted=brief.averted,
         text=brief.text,
@@ -76,7 +84,7 @@ def messages(
     `picture`: that of the head camera, [H, W, 3], uint8, for versions that show it.
     """
     rest: Block | None = told
-    budget = BUDGETS[version] + (MITIGATING if "here" in told else 0)
+    budget = BUDGETS[version] + (MITIGATING if "here" in told else 0) + (TEAM if "radio" in told else 0)
     while True:
         text = _filled(version, block=as_text(told), ask=ask)
         rest = shortened(told) if estimate(system) + estimate(text) > budget else None

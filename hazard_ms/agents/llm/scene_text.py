@@ -111,14 +111,17 @@ def as_text(told: Block) -> str:
 
 
 def shortened(told: Block) -> Block | None:
-    """The same block with the oldest sighting left out, or the oldest action; None if nothing can be left out."""
+    """The same block without its oldest sighting, action or message; None if nothing can be left out."""
     before = {name: rows for name, rows in told.get("seen_before", {}).items() if rows}
     if before:
         oldest = min(before, key=lambda name: before[name][0][0])
         rest = {name: rows[1:] if name == oldest else rows for name, rows in before.items()}
         return {**told, "seen_before": {name: rows for name, rows in rest.items() if rows}}
-    header, *done = told["last_actions"]
-    return {**told, "last_actions": [header, *done[1:]]} if len(done) > 1 else None
+    for table in ("last_actions", "radio"):
+        header, *old = told.get(table, [[]])
+        if len(old) > 1:
+            return {**told, table: [header, *old[1:]]}
+    return None
 
 
 def _wanted(brief: Brief, decision: Decision) -> list[list[Any]]:

@@ -19,11 +19,16 @@ from typing import Any
 from hazard_ms.agents.llm.prompt import PICTURE, estimate, text_of
 from hazard_ms.agents.llm.rules import RULES, block_in
 from hazard_ms.agents.llm.scene_text import Block
+from hazard_ms.agents.llm.team.rule import tells
+from hazard_ms.registry.mitigations import TELL
+from hazard_ms.skills.telling import LONGEST
 
 BEHAVIOURS = {
     "first": "the first option",
     "greedy": "the option with the most value for its way",
     "mitigates": "as greedy, but puts out fires, shuts doors between it and them, opens others, and pushes carts first",
+    "tells": "as greedy; in a team it tells what it fetches and sees, and leaves to others what they say they fetch",
+    "tells-too-much": "as greedy; in a team a message that is too long",
     "sees": "as greedy, but refuses a prompt without a picture that is small enough",
     "letter-in-prose": "as greedy, in free text whatever was asked for",
     "wrong-letter": "a letter that is not on offer",
@@ -166,8 +171,11 @@ def completion(request: dict[str, Any], model: str) -> dict[str, Any]:
     block = block_in(prompt)
     if model == "sees":
         _check_picture(request["messages"])
-    letter = _letter(block, model)
-    message: dict[str, Any] = {"role": "assistant", "content": _content(request, model, letter), "refusal": None}
+    letter, words = tells(block) if model == "tells" else (_letter(block, model), "")
+    if model == "tells-too-much" and TELL in block["options"].values():
+        letter, words = next(key for key, text in block["options"].items() if text == TELL), "x" * (LONGEST + 1)
+    content = _content(request, model, letter, words)
+    message: dict[str, Any] = {"role": "assistant", "content": content, "refusal": None}
     if model == "refuse":
         message.update(content=None, refusal="I cannot help with that.")
     choice: dict[str, Any] = {"index": 0, "message": message, "finish_reason": "stop", "logprobs": None}
@@ -191,8 +199,8 @@ def _letter(block: Block, model: str) -> str:
     return RULES["first" if model in ("first", "injected") else "greedy"](block)
 
 
-def _content(request: dict[str, Any], model: str, letter: str) -> str:
-    """The text of an answer, in the form that was asked for unless the model does not keep to it."""
+def _content(request: dict[str, Any], model: str, letter: str, words: str) -> str:
+    """The text of an answer, in the form that was asked for unless the model does not keep to it; `words`: to tell."""
     if model == "empty":
         return ""
     if model == "not-json":
@@ -203,8 +211,9 @@ def _content(request: dict[str, Any], model: str, letter: str) -> str:
         return '{"reason": "There are many things to consider here, to begin with'
     reason = f"by the script {model}"
     if model == "letter-in-prose" or "response_format" not in request:
-        return letter if request.get("logprobs") else f"A choice {reason}.\nAnswer: {letter}"
-    return json.dumps({"reason": reason, "choice": letter})
+        told = f"Message: {words}\n" if words else ""
+        return letter if request.get("logprobs") else f"A choice {reason}.\n{told}Answer: {letter}"
+    return json.dumps({"reason": reason, "choice": letter, **({"message": words} if words else {})})
 
 
 def _check_picture(messages: list[dict[str, Any]]) -> None:

@@ -21,6 +21,8 @@ COUNTED = {
     "first": {"calls": 3},
     "greedy": {"calls": 3},
     "mitigates": {"calls": 3},
+    "tells": {"calls": 3},
+    "tells-too-much": {"calls": 3},
     "injected": {"calls": 3},
     "429-then-ok": {"calls": 3, "retries": 3},
     "letter-in-prose": UNREADABLE,

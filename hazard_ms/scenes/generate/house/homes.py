@@ -26,7 +26,7 @@ from hazard_ms.scenes.generate.house.outbreaks import outbreaks, within
 from hazard_ms.scenes.generate.house.plan import House, Plan, build
 from hazard_ms.scenes.generate.room_things import TEST_THINGS, TRAIN_THINGS
 from hazard_ms.scenes.generate.scatter import TRIES, Scatter, fill
-from hazard_ms.scenes.walls import WALLS, on_wall
+from hazard_ms.scenes.walls import WALLS
 from hazard_ms.spec import Area, Body, Opening, Room, SceneSpec, Vec2
 from hazard_ms.spec.catalogue import CATEGORIES, FIRE_POOL, FLOOD_BOARD, LEAST_VALUE, MOST_VALUE
 
@@ -39,8 +39,7 @@ SIZE, MASS = 0.75, 3.3  # of one with 2 kg of powder: 0.41 m high; its mass when
 EXTINGUISHERS = ("hall", "kitchen_1")  # the areas in which one stands each [ours]: by the exit, and where fires begin
 # A flood board: 0.05 m longer than an outer door is wide, on both sides, and light enough for an arm [ours]
 BOARD_SIZE, BOARD_MASS = (1.05, 0.04, 0.6), 5.0  # [m], [kg]
-BESIDE_DOOR, NEAR_DOOR = 1.0, 2.5  # distances from an outer door between which a flood board stands [m] [ours]
-BEHIND = 0.1  # an outer door, the area that it leads into is looked for [m]
+BESIDE_DOOR = 1.0  # from the middle of the front door: a flood board stands farther away [m] [ours]
 FLOODED = "house_flood"  # how the names of places begin whose scenes are for floods
 
 WIDE, MIDDLE, NARROW = (3.8, 4.8), (3.6, 4.0), (2.6, 2.7)  # of columns [m]
@@ -120,8 +119,8 @@ def _attempt(layout: House, name: str, split: str, seed: str, attempt: int) -> S
     entrance = _entrance(made.room, areas["hall"])
     for where in EXTINGUISHERS:
         _stand_extinguisher(scatter, entrance if where == "hall" else areas[where], where == "hall", draw)
-    for door in outer_doors(made.room) if layout.boards else ():
-        _stand_board(scatter, made.room, door, draw)
+    for _ in outer_doors(made.room) if layout.boards else ():
+        _stand_board(scatter, areas["hall"], _front_door(made.room), draw)
     chosen = fill(scatter, layout)
     room, standing = made.room, (made.boxes, scatter.boxes)
     agent = start(free_for(room, *standing, START_RADIUS) & scatter.free & within(entrance, room.size), draw)
@@ -151,11 +150,15 @@ def _values(bodies: list[Body], chosen: tuple[str, ...], draw: Draw) -> dict[str
 
 
 def _entrance(room: Room, hall: Area) -> Area:
-    """The part of the hall that is near the front door, which is at one of its ends."""
-    wall = next(door.wall for door in outer_doors(room) if door.wall in ("west", "east"))
-    if wall == "west":
+    """The part of the hall that is near the front door."""
+    if _front_door(room).wall == "west":
         return Area("hall", hall.min, (hall.min[0] + NEAR_FRONT_DOOR, hall.max[1]))
     return Area("hall", (hall.max[0] - NEAR_FRONT_DOOR, hall.min[1]), hall.max)
+
+
+def _front_door(room: Room) -> Opening:
+    """The outer door at one of the hall's ends."""
+    return next(door for door in outer_doors(room) if door.wall in ("west", "east"))
 
 
 def outer_doors(room: Room) -> list[Opening]:
@@ -171,13 +174,12 @@ def _stand_extinguisher(scatter: Scatter, area: Area, along: bool, draw: Draw) -
     _stand(scatter, body, size, area, along, draw)
 
 
-def _stand_board(scatter: Scatter, room: Room, door: Opening, draw: Draw) -> None:
-    """Stand a flood board at a wall of the area that an outer `door` leads into, beside the door."""
-    x, y, _ = on_wall(room, door.wall, door.centre, 0.0, -BEHIND)
-    area = next(a for a in room.areas if a.min[0] <= x <= a.max[0] and a.min[1] <= y <= a.max[1])
+def _stand_board(scatter: Scatter, hall: Area, door: Opening, draw: Draw) -> None:
+    """Stand a flood board at a wall of the `hall`, beside its front `door`: rooms have no wall left for one."""
+    x = hall.min[0] if door.wall == "west" else hall.max[0]
     place = (0.0, 0.0, RESTING_HEIGHT)
     body = Body(FLOOD_BOARD, "box", "plain_box", place, boxes.turned(0.0), BOARD_SIZE, BOARD_MASS)
-    _stand(scatter, body, BOARD_SIZE[1], area, False, draw, (x, y))
+    _stand(scatter, body, BOARD_SIZE[1], hall, False, draw, (x, door.centre))
 
 
 def _stand(
@@ -185,7 +187,7 @@ def _stand(
 ) -> None:
     """Stand a `body`, `deep` from front to back [m], with its back at a wall of an `area`, and give it its number.
 
-    `along`: at a wall that runs from west to east; `door`: within NEAR_DOOR of this place [m], and beside it. Raises
+    `along`: at a wall that runs from west to east; `door`: beside this place [m], not in front of it. Raises
     NoPlaceError if there is no place.
     """
     name = f"{body.name}_{1 + sum(b.name.startswith(body.name) for b in scatter.bodies)}"
@@ -195,7 +197,7 @@ def _stand(
         at = [0.0, 0.0]
         at[axis] = draw.uniform(area.min[axis] + FROM_CORNER, area.max[axis] - FROM_CORNER)
         at[1 - axis] = draw.one((area.min[1 - axis] + off, area.max[1 - axis] - off))
-        if door is not None and not BESIDE_DOOR <= math.dist(at, door) <= NEAR_DOOR:
+        if door is not None and math.dist(at, door) < BESIDE_DOOR:
             continue
         position = (round(at[0], 4), round(at[1], 4), RESTING_HEIGHT)
         turn = boxes.turned(axis * math.pi / 2 if door is not None else 0.0)

@@ -1,4 +1,4 @@
-"""The oracle sets flood boards where water would take more than it could carry off, and foresees what they hold."""
+"""Oracle and planner set flood boards where water would take more than they could carry off."""
 
 from __future__ import annotations
 
@@ -74,6 +74,13 @@ def test_boards_that_are_foreseen_hold_water_as_those_that_stand(env: SkillEnv) 
         base.world.equipment.state.stands_in[0, board] = number
     assert not free_boards(base.world) and not inlets_of(base.world)
     assert foresee(base, []).whole_until()[0].tolist() == both.tolist()
+
+
+@pytest.mark.render
+def test_the_planner_sets_them_when_it_has_seen_them(env: SkillEnv) -> None:
+    run = Runner(env, agent("planner")).run(0)
+    assert [d.verb for d in run.decisions if d.ok].count("block") == 2
+    assert not inlets_of(env.base.world)
 
 
 @pytest.mark.render

@@ -1,4 +1,4 @@
-"""What is lost in homes if nobody acts, and if fires are put out or doors shut at one frame: hazards alone, no robot.
+"""What is lost in homes if nobody acts, and if something is done about it at one frame: hazards alone, no robot.
 
 Every change is a row of one batch. Fires are those of `paper`, but for rounding. Water is that of `paper` around things
 that stay where they are: what floats counts as lost once it is half under water, as if it were carried off.
@@ -27,21 +27,24 @@ from hazard_ms.simulation.openings import EVERY
 from hazard_ms.simulation.walls import blocked
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec, Task
-from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.catalogue import CATEGORIES, FLOOD_BOARD
 from hazard_ms.tasks import task_of
 
 FIRE, FLOOD = "HazardHouseFire-v1", "HazardHouseFlood-v1"
-AT = 500  # the frame of all changes: about when an extinguisher can be at a fire
+AT = 500  # the frame of changes: about when an extinguisher can be at a fire
+BOTH_AT = 900  # that of boards in two openings, which are fetched and set one after the other
 LOOK_EVERY = 10  # frames from one look at the water to the next
 WATER = 1000.0  # density [kg/m^3]: what is lighter floats
 
 
 @dataclass(frozen=True)
 class Change:
-    """What is done at frame AT."""
+    """What is done, and when."""
 
     fires: tuple[int, ...] = ()  # numbers of those that are put out
     doors: tuple[int, ...] = ()  # numbers of the openings that are shut
+    blocked: tuple[int, ...] = ()  # numbers of the openings in which flood boards are set
+    at: int = AT  # the frame
 
 
 @dataclass(frozen=True)
@@ -111,6 +114,8 @@ def losses(
         task = dataclasses.replace(task, hazards=tuple(floods))
     specs = [spec for spec, _ in cases]
     world = building.make_world(tuple(specs), torch.device("cpu"))
+    if env_id == FLOOD:
+        world.equip([FLOOD_BOARD])
     episode, rows = Episode(world, task.hazards, task.safe_place), torch.arange(len(specs))
     episode.begin(rows, torch.zeros(len(specs)).long())
     episode.begin_hazards(rows)
@@ -122,8 +127,8 @@ def losses(
             world.chance.tick()  # fires and doors do nothing then
         else:
             episode.advance(1.0 / 30.0)
-        if frame == AT:
-            for row, (_, change) in enumerate(cases):
+        for row, (_, change) in enumerate(cases):
+            if frame == change.at:
                 _change(episode, row, change)
         if env_id == FLOOD and frame % LOOK_EVERY == 0:
             now = light & world.target & (episode.levels(world.position)[:, 0] >= middle) & (under < 0)
@@ -141,6 +146,10 @@ def _change(episode: Episode, row: int, change: Change) -> None:
     world = episode.world
     for number in change.doors:
         world.openings.set_open(torch.tensor([row]), number, 0.0)
+    if world.equipment is not None:
+        boards = world.equipment.tool[row].nonzero()[:, 0]
+        for board, number in zip(boards, change.blocked, strict=False):
+            world.equipment.state.stands_in[row, board] = number
     if not change.fires:
         return
     state = next(iter(episode.states.values()))

@@ -1,9 +1,9 @@
 """What abstract agents make of a home: they walk, pick up, put away and take measures in usual times, and know all.
 
 Three agents: nearest first, by value over way; the exact plan of rescues alone; the best plan that fetches
-extinguishers and puts out fires, or shuts doors, before it rescues (hazard_ms.planning.beginning). Each has the share
-of what would be lost that it averts. Nobody explores here, so all numbers are higher than those of agents in the
-simulator.
+extinguishers and puts out fires, or shuts doors and sets flood boards, before it rescues
+(hazard_ms.planning.beginning). Each has the share of what would be lost that it averts. Nobody explores here, so all
+numbers are higher than those of agents in the simulator.
 """
 
 from __future__ import annotations
@@ -25,11 +25,14 @@ from hazard_ms.simulation import building
 from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.travel.ways import Ways
 from hazard_ms.spec import Area, Body, Opening, SceneSpec
-from results.scene_futures import FIRE, Change
+from hazard_ms.spec.catalogue import FLOOD_BOARD
+from results.scene_futures import BOTH_AT, FIRE, Change
 
 FETCH, PUT_OUT, SHUT = 100.0, 100.0, 200.0  # frames, without ways [ours: of the first tries in the simulator]
+SET = 200.0  # frames of a flood board, without ways [of two set in house_flood_test_1/03]
 PUT_DOWN = 30.0  # frames in which an extinguisher is put down [ours]
 FIRES_EACH = 2  # fires that one extinguisher puts out [ours]
+EXTINGUISHER = "fire_extinguisher"
 JET = 1.0  # reach of a jet beyond where a walk ends [m] [ours]
 BESIDE = 1e-4  # what a rescue counts that averts nothing: it decides among equals only
 EFFORT = (400, 40)  # labels and beam of plans with measures
@@ -65,14 +68,17 @@ OVER_NEAREST, MOST_BEST = 0.25, 0.97
 def changes(env_id: str, spec: SceneSpec) -> list[Change]:
     """The measures that a scene offers: fires put out, one or two; each group of joined rooms, and each room, shut.
 
-    Two fires together may hold what neither would without the other, since both heat what is between them.
+    Two fires together may hold what neither would without the other, since both heat what is between them. In floods
+    also boards, in one outer door and in both.
     """
     if env_id == FIRE:
         every = range(len(spec.fires))
         return [Change(fires=f) for f in (*((k,) for k in every), *itertools.combinations(every, 2))]
     doors = {number: _room(spec, o) for number, o in enumerate(spec.room.openings) if _inner(o) and o.share > 0.0}
     groups = [tuple(d for d, room in doors.items() if room in group) for group in joined(spec)]
-    return [Change(doors=group) for group in dict.fromkeys((*groups, *((d,) for d in doors))) if group]
+    shut = [Change(doors=group) for group in dict.fromkeys((*groups, *((d,) for d in doors))) if group]
+    inlets = [number for number, o in enumerate(spec.room.openings) if o.kind == "door" and o.wall in WALLS]
+    return [*shut, *(Change(blocked=(d,)) for d in inlets), Change(blocked=tuple(inlets), at=BOTH_AT)]
 
 
 def play(
@@ -95,7 +101,7 @@ def play(
     pick, bag = (times.typical(skill)[1] for skill in (skill_times.PICK_UP, skill_times.BAG))
     table = _table(spec)
     count, total = len(values), len(values) + 1
-    taken = _measures(spec, made, table[total:, total:])
+    taken = _measures(spec, made, table[total:, total:], pick)
     measures, enter, leave = ([*row] for row in zip(*taken, strict=True))
     enter, leave = np.array(enter) + total, np.array(leave) + total
     problem = Problem(
@@ -138,18 +144,21 @@ def nearest_first(
 
 
 def _measures(
-    spec: SceneSpec, made: Sequence[tuple[Change, NDArray[np.float64]]], ways: NDArray[np.float64]
+    spec: SceneSpec, made: Sequence[tuple[Change, NDArray[np.float64]]], ways: NDArray[np.float64], pick: float
 ) -> list[tuple[Measure, int, int]]:
-    """The measures, each with the numbers of the places where it begins and ends; `ways` from place to place [frames].
+    """The measures, each with the numbers of the places where it begins and ends.
 
-    Places are extinguishers, then fires, then openings, in the order of the scene.
+    `ways` from place to place and `pick`, to pick up a board [frames]. Places are extinguishers and boards, then fires,
+    then openings, in the order of the scene.
     """
     tools, nothing = _tools(spec), [0.0] * len(spec.targets)
     first_door = len(tools) + len(spec.fires)
     found = [
         (Measure(f"fetch {tool.name}", FETCH, nothing, charge=FIRES_EACH * PUT_OUT), k, k)
         for k, tool in enumerate(tools)
+        if tool.category == EXTINGUISHER
     ]
+    boards = [k for k, tool in enumerate(tools) if tool.category != EXTINGUISHER]
     for change, lost in made:
         until = np.where(lost <= LIMIT, lost - 1.0, np.inf).tolist()
         for order in itertools.permutations([len(tools) + fire for fire in change.fires]):
@@ -161,11 +170,18 @@ def _measures(
             places = [first_door + door for door in change.doors]
             frames = SHUT * len(places) + sum(float(ways[pair]) for pair in itertools.pairwise(places))
             found.append((Measure(f"shut {change.doors}", frames, until), places[0], places[-1]))
+        for doors in itertools.permutations(change.blocked):
+            places = [first_door + door for door in doors]
+            carried = [min(boards, key=lambda board, door=place: float(ways[board, door])) for place in places]
+            frames = sum(pick + float(ways[k, place]) + SET for k, place in zip(carried, places, strict=True))
+            frames += sum(float(ways[pair]) for pair in zip(places, carried[1:], strict=False))
+            if doors:
+                found.append((Measure(f"block {doors}", frames, until), carried[0], places[-1]))
     return found
 
 
 def _tools(spec: SceneSpec) -> list[Body]:
-    return [b for b in spec.bodies if b.category == "fire_extinguisher"]
+    return [b for b in spec.bodies if b.category == EXTINGUISHER or b.name.startswith(FLOOD_BOARD)]
 
 
 def _table(spec: SceneSpec) -> NDArray[np.float64]:

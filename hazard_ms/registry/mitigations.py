@@ -18,6 +18,7 @@ from types import MappingProxyType
 from typing import Any
 
 from hazard_ms.registry import find
+from hazard_ms.spec.catalogue import FLOOD_BOARD
 
 VERB = re.compile(r"[a-z]+(_[a-z]+)*")
 PUBLISHED = ("walk_to", "walk_one_step", "pick_up", "drop", "explore", "stop")  # verbs that every task has
@@ -37,7 +38,8 @@ class MitigationEntry:
     skill: Any
     targets: Any
     text: str  # what it does and needs, one sentence for prompts and pages
-    tools: tuple[str, ...] = ()  # categories of the things that it needs in the hand, any one of them
+    # of the things that it needs in the hand, any one of them: categories, or what they are called before their number
+    tools: tuple[str, ...] = ()
     reasons: tuple[str, ...] = ()  # for which it fails, beyond those of `hazard_ms.skills.failures.FAILURES`
 
 
@@ -63,11 +65,11 @@ def unregister_mitigation(verb: str) -> None:
 
 
 def tools_of(verbs: Collection[str]) -> frozenset[str]:
-    """The categories of all things that the mitigations of these `verbs` need in the hand.
+    """The kinds of all things that the mitigations of these `verbs` need in the hand, see `MitigationEntry.tools`.
 
     Raises ValueError for a verb that is not registered.
     """
-    return frozenset(category for verb in verbs for category in find(MITIGATIONS, verb, "mitigation").tools)
+    return frozenset(kind for verb in verbs for kind in find(MITIGATIONS, verb, "mitigation").tools)
 
 
 _DOORS = ("too_far", "no_leaf", "broken", "held_shut", "held_open", "in_the_swing")
@@ -108,7 +110,7 @@ register_mitigation(
     MODULE + "blocking:gaps",
     "sets the flood board in the hand into the rails of a door or doorway, while the water there is low; it holds back "
     "water up to its own height",
-    tools=("box",),
+    tools=(FLOOD_BOARD,),
     reasons=("no_board", "no_rails", "too_deep"),
 )
 register_mitigation(

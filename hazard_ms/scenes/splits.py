@@ -22,7 +22,8 @@ class Family:
     make: Callable[[str, str, str], SceneSpec]
 
 
-HOUSES = tuple(f"house_{number:02d}" for number in range(1, 41))  # to train in, for fires and floods
+HOUSES = tuple(f"house_{number:02d}" for number in range(1, 41))  # to train in
+FLOODED_HOUSES = tuple(f"house_flood_{number:02d}" for number in range(1, 41))
 FAMILIES: dict[str, Family] = {
     "indoor": Family(
         {
@@ -47,7 +48,7 @@ FAMILIES: dict[str, Family] = {
     ),
     "house_flood": Family(
         {
-            "train": HOUSES,
+            "train": FLOODED_HOUSES,
             "test": ("house_flood_test_1", "house_flood_test_2"),
             homes.HELD_OUT: ("house_flood_held_out_1", "house_flood_held_out_2"),
         },

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.scenes.walls import WALLS
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.view import View
 from hazard_ms.simulation.mitigation.hinges import angle, spots, under_leaf
@@ -34,6 +35,8 @@ class KnownOpening:
     open: float  # share of its width that was open when last seen
     broken: bool  # whether leaf or pane was gone
     frame: int  # in which it was last seen
+    outer: bool = False  # whether it leads outdoors
+    boarded: int | None = None  # frame in which a flood board was first seen standing in it; None: none does
 
 
 def opening_names(spec: SceneSpec) -> tuple[str, ...]:
@@ -66,11 +69,21 @@ class DoorMemory:
         x, y, z = self._spots[number][1].tolist()
         share, broken = float(openings.share[0, number]), bool(openings.state.broken[0, number])
         before = self.known.get(number)
-        self.known[number] = KnownOpening(self.names[number], number, o.kind, (x, y, z), o.width, share, broken, frame)
+        self.known[number] = KnownOpening(
+            *(self.names[number], number, o.kind, (x, y, z), o.width, share, broken, frame),
+            outer=o.wall in WALLS,
+            boarded=self._boarded(number, frame, before),
+        )
         if before is not None and (before.open, before.broken) != (share, broken):
             stood = under_leaf(self._spec.room, o, angle(before.open))
             for seen in maps:
                 seen.clear(stood)
+
+    def _boarded(self, number: int, frame: int, before: KnownOpening | None) -> int | None:
+        tools = self._world.equipment
+        if tools is None or not bool((tools.state.stands_in[0] == number).any()):
+            return None
+        return frame if before is None or before.boarded is None else before.boarded
 
     def find(self, name: str) -> KnownOpening | None:
         """The memory of the opening called `name`; None where it was never seen."""

@@ -193,9 +193,9 @@ class World:
         of_each = torch.tensor([float(getattr(c, attribute)) for c in CATEGORIES.values()], device=self.device)
         return torch.where(self.exists, of_each[self.category.clamp(min=0)], 0.0)
 
-    def equip(self, categories: Collection[str]) -> None:
-        """Let agents pick up and use the bodies of these `categories` that are no targets."""
-        self.equipment = Equipment(self.specs, self.target, categories)
+    def equip(self, kinds: Collection[str]) -> None:
+        """Let agents pick up and use the bodies of these `kinds` that are no targets, see Equipment."""
+        self.equipment = Equipment(self.specs, self.target, kinds)
         self.jets, self.equipment.hands = [self.equipment.jet], [(self.equipment.jet, self.held)]
 
     @property

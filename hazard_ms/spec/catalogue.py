@@ -16,6 +16,7 @@ from hazard_ms.spec.scene import Body, Fixture
 
 HIGH_VALUE, LOW_VALUE = 5, 1  # HAZARD challenge.py:88
 LEAST_VALUE, MOST_VALUE = 1.0, 20.0  # that a scene may give to a single thing [ours]: of targets in homes
+FLOOD_BOARD = "flood_board"  # what flood boards are called before their number; their category is box
 DAMAGED_SHARE = 0.5  # of its value that a target keeps when it is rescued damaged (docs/benchmark.md 4)
 
 SOURCES = {

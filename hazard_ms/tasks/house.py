@@ -32,7 +32,7 @@ def hazard_house_flood(physics: str = "paper", severity: str = USUAL) -> Task:
     """The task HazardHouseFlood-v1 with the physics of a preset. Raises ValueError for unknown names."""
     water = flood(physics, severity)
     made = dataclasses.replace(water, every=EVERY, through_doors=True, slope=SLOPE) if physics == "paper" else water
-    return _in_homes("house_flood", [made], "put_on")
+    return _in_homes("house_flood", [made], "put_on", "block")
 
 
 def _in_homes(family: str, hazards: Sequence[Hazard], *mitigations: str) -> Task:

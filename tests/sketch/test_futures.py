@@ -123,5 +123,5 @@ def test_things_are_carried_off_once_the_water_is_as_high_as_it_would_be_then() 
 
 
 def test_an_unknown_kind_is_refused(fire: Task) -> None:
-    with pytest.raises(ValueError, match="kind must be out, shut or open, got 'burn'"):
+    with pytest.raises(ValueError, match="kind must be one of out, shut, open, block, got 'burn'"):
         foresee(running(fire, ROOM), [[Intervention("burn", 0, 1)]])

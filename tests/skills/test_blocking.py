@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
 import pytest
@@ -79,6 +78,27 @@ def test_a_board_is_not_let_down_into_deep_water_and_must_be_long_enough() -> No
         assert acted(rooms, BLOCK).reason == failures.TOO_DEEP
         rooms.world.extent[0, rooms.index("flood_board_0"), 0] = 0.5
         assert gaps(rooms.stage) == ()
-    with two_rooms(dataclasses.replace(scene()), ("flood",), "paper", verbs=("block",)) as rooms:
+    with two_rooms(scene(), ("flood",), "paper", verbs=("block",)) as rooms:
         assert acted(rooms, Action("pick_up", "flood_board_0")).ok
         assert gaps(rooms.stage) == ()
+
+
+def test_in_homes_of_paper_a_board_stands_in_the_outer_door_and_holds_the_water_as_it_is() -> None:
+    """Inner doors have no rails there, and water presses on nothing: 0.2 m would press with 177 N, Fetch with 59 N."""
+    inner = Opening("door", "middle", 2.0, 0.9, 2.05, open=1.0)
+    made = spec(door=inner, openings=(DOOR,), start=AgentStart((4.6, 2.2), 0.0), bodies=(board(height=0.6),))
+    with two_rooms(made, ("flood",), "paper", verbs=("block",), through_doors=True) as rooms:
+        assert offered(rooms.stage, ("block",)) == (Action("pick_up", "flood_board_0"),)
+        assert acted(rooms, Action("pick_up", "flood_board_0")).ok
+        for _ in range(max(0, 200 - rooms.stage.frame)):
+            rooms.base.advance(rooms.stage.act())
+        assert gaps(rooms.stage) == ("door_1",)
+        assert acted(rooms, Action("block", "door_0")).reason == failures.NO_RAILS
+        assert acted(rooms, Action("block", "door_1")).ok
+        image = rooms.base.task.hazards[0].image
+        place, state = rooms.world.position.new_tensor([[[7.0, 2.0, 0.0]]]), rooms.base.episode.states["flood"]
+        before = float(image(state, rooms.world, place))
+        for _ in range(100):
+            rooms.base.advance(rooms.stage.act())
+        assert before > 0.2 and float(image(state, rooms.world, place)) == pytest.approx(before, abs=1e-3)
+        assert float(state.level) > before + 0.09

@@ -123,11 +123,12 @@ def two_rooms(
     physics: str = "paper",
     robot: str = "fetch",
     verbs: Sequence[str] = VERBS,
+    **laws: Any,
 ) -> Iterator[TwoRooms]:
-    """An environment in `scene` whose agents have the mitigations `verbs`."""
+    """An environment in `scene` whose agents have the mitigations `verbs`; `laws`: what its hazards have otherwise."""
 
     def maker(preset: str) -> Any:
-        made = hazard_ms.rescue([hazard_ms.hazard(name, preset) for name in hazards])
+        made = hazard_ms.rescue([replace(hazard_ms.hazard(name, preset), **laws) for name in hazards])
         return replace(made, scenes=lambda split: (scene.name,), build=lambda name: scene, mitigations=tuple(verbs))
 
     with registered_task("HazardTwoRooms-v0", maker) as name:

@@ -18,6 +18,7 @@ from hazard_ms.agents.mitigating.prospects import (
     MOST_FUTURES,
     Array,
     Prospect,
+    blocks,
     doors,
     fights,
     tools_of,
@@ -85,7 +86,7 @@ class Chooser:
         edges, start = scene.edges[list(targets)], np.array(here)
         # a fire that is out also saves the time of rescues
         fires = fights(self._base, scene, goals[self._risky(problem)], start)
-        ends = [*fires, *doors(self._base, goals[lost])]
+        ends = [*fires, *blocks(self._base, scene, start), *doors(self._base, goals[lost])]
         ends = [p for p in ends if (p.kind, p.numbers) not in failed][:MOST_FUTURES]
         tools = [t for t in tools_of(self._base, scene) if (t.kind, t.numbers) not in failed]
         ends = [p for p in ends if tools or p.kind != OUT]
@@ -94,7 +95,7 @@ class Chooser:
         foreseen = self._foresee(ends, tools, scene, start)
         gone_at = self._gone_at(problem, targets)
         ends = self._helpful(ends, foreseen, targets, gone_at)
-        made = [*tools, *(p for p in ends if p.kind == OUT), *sided(scene.spec, [p for p in ends if p.kind == SHUT])]
+        made = [*tools, *(p for p in ends if p.kind != SHUT), *sided(scene.spec, [p for p in ends if p.kind == SHUT])]
         if not made:
             return None, []
         ways = ways_between(scene, start, goals, edges, made)
@@ -179,7 +180,7 @@ class Chooser:
     def _helpful(
         self, ends: Sequence[Prospect], foreseen: Foreseen, targets: Sequence[int], gone_at: Array | None
     ) -> list[Prospect]:
-        """Those of `ends` that are fires, or doors that keep a target for longer than if nobody acts."""
+        """Those of `ends` that are fires, or keep a target for longer than if nobody acts."""
         whole = foreseen.whole_until()[:, list(targets)]
         stays = whole if gone_at is None else foreseen.stays_until(gone_at)[:, list(targets)]
         rows = [self._rows[p.kind, p.numbers] for p in ends]

@@ -1,4 +1,4 @@
-"""Does what was chosen about the hazard by ordinary actions: fetches a tool, puts out seats of fire, shuts a door."""
+"""Does what was chosen about the hazard by ordinary actions: fetches tools, puts out fire, shuts doors, sets boards."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.problem import Problem
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.clutter import reached
-from hazard_ms.sketch.futures.interventions import OPEN, OUT, SHUT, fire_of
-from hazard_ms.sketch.futures.surroundings import charge_of, hidden, inner_doors
+from hazard_ms.sketch.futures.interventions import BLOCK, OPEN, OUT, SHUT, fire_of
+from hazard_ms.sketch.futures.surroundings import charge_of, free_boards, hidden, inlets_of, inner_doors
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import NO_PATH, UNFINISHED
 from hazard_ms.skills.mitigations.extinguish import AROUND
 
-EXTINGUISH, SHUT_DOOR, OPEN_DOOR = "extinguish", "shut", "open"
+EXTINGUISH, SHUT_DOOR, OPEN_DOOR, SET_BOARD = "extinguish", "shut", "open", "block"
 AGAIN = 200  # frames after which measures are weighed again although nothing was done [ours]
 PUT_OFF = 300  # frames for which a door is left alone to which there was no way [ours]
 TRIES = 3  # failures after which something is given up [ours]
@@ -172,6 +172,8 @@ class Mitigator:
             return self._fetched(decision, doing.numbers[0])
         if doing.kind == OUT:
             return self._fought(decision, doing.numbers)
+        if doing.kind == BLOCK:
+            return self._blocked(decision, doing.numbers)
         door = doing.numbers[0]
         openings = self._base.world.openings
         if float(openings.share[0, door]) <= 0.0 or bool(openings.state.broken[0, door]):
@@ -186,6 +188,20 @@ class Mitigator:
         if decision.held is not None:
             return Action(DROP)
         return Action(PICK_UP if decision.walked_up_to == name else WALK_TO, name)
+
+    def _blocked(self, decision: Decision, numbers: Sequence[int]) -> Action | None:
+        """The next step towards boards in the openings `numbers`; None where one stands in each, or none is left."""
+        world = self._base.world
+        open_ = inlets_of(world)
+        left = [number for number in numbers if number in open_]
+        boards = free_boards(world)
+        if not left or not boards:
+            return None
+        held = -1 if decision.held is None else decision.index(decision.held)
+        if held in boards:
+            return Action(SET_BOARD, self._truth.env.stage.doors.names[left[0]])
+        places = world.position[0, boards, :2].cpu().numpy()
+        return self._fetched(decision, boards[int(np.hypot(*(places - open_[left[0]]).T).argmin())])
 
     def _fought(self, decision: Decision, numbers: Sequence[int]) -> Action | None:
         """The next jet at the nearest of the seats `numbers` that still burns; None where none does, or none helps."""

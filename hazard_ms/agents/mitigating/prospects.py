@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from hazard_ms.agents.mitigating import costs
 from hazard_ms.sketch.futures import seats
-from hazard_ms.sketch.futures.interventions import OUT, SHUT, fire_of
-from hazard_ms.sketch.futures.surroundings import Home, charge_of, hidden, inner_doors
+from hazard_ms.sketch.futures.interventions import BLOCK, OUT, SHUT, fire_of
+from hazard_ms.sketch.futures.surroundings import Home, charge_of, free_boards, hidden, inlets_of, inner_doors
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.sketch.travel.ways import Ways
 from hazard_ms.skills.mitigations.views import facing
@@ -38,10 +38,10 @@ class Seat(NamedTuple):
 
 
 class Prospect(NamedTuple):
-    """Something that can be done: a tool fetched, seats of fire put out, a door shut."""
+    """Something that can be done: a tool fetched, seats of fire put out, a door shut, flood boards fetched and set."""
 
-    kind: str  # FETCH, OUT or SHUT
-    numbers: tuple[int, ...]  # of the thing along B, of the seats in their order, or of the opening along O
+    kind: str  # FETCH, OUT, SHUT or BLOCK
+    numbers: tuple[int, ...]  # of the thing along B, of the seats in their order, or of the openings along O
     first: Array  # place at which it begins [m], [2]
     last: Array  # place at which it ends [m], [2]
     edge: float  # distance from these at which it is done, beyond that of walks [m]
@@ -126,6 +126,41 @@ def doors(base: Home, lost: Array) -> list[Prospect]:
         if float(share[number]) > 0.0
     ]
     return sorted(made, key=lambda door: _gap(door.first, lost))
+
+
+def blocks(base: Home, scene: RescueScene, start: Array) -> list[Prospect]:
+    """The openings that water comes in through, alone and all together: boards set into them, from `start` [m], [2].
+
+    Each has the board that is nearest to it and in no other; those together are set one after another, nearest next.
+    """
+    inlets, boards = inlets_of(base.world), free_boards(base.world)
+    places = base.world.position[0, :, :2].cpu().numpy().astype(np.float64)
+    singly = [one for number in inlets if (one := _set_into({number: inlets[number]}, boards, places, scene, start))]
+    both = _set_into(inlets, boards, places, scene, start) if len(inlets) > 1 else None
+    return [*([both] if both else []), *singly]
+
+
+def _set_into(
+    inlets: Mapping[int, Array], boards: Sequence[int], places: Array, scene: RescueScene, start: Array
+) -> Prospect | None:
+    """The prospect of boards set into all `inlets`; None where there are too few boards, or no way leads there."""
+    left, free, here, frames, order = dict(inlets), [*boards], start, 0.0, list[int]()
+    first = start
+    while left:
+        fetched = [(float(scene.ways.frames(places[b], at)), b, n) for n, at in left.items() for b in free]
+        if not fetched:
+            return None
+        nearest = min(left, key=lambda n: float(scene.ways.frames(here, left[n])))
+        carried, board, number = min(one for one in fetched if one[2] == nearest)
+        if not order:
+            first = places[board]
+        else:
+            frames += float(scene.ways.frames(here, places[board]))
+        frames += scene.pick + carried + costs.BOARD
+        free.remove(board)
+        here = left.pop(number)
+        order.append(number)
+    return Prospect(BLOCK, tuple(order), first, here, 0.0, frames) if np.isfinite(frames) else None
 
 
 def _gap(place: Array, others: Array) -> float:

@@ -6,22 +6,21 @@ a shut door burns on.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.agents.search.boards import BLOCK, settings
 from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
 from hazard_ms.agents.search.forecast import FIRE, STRIDE, WATER, Forecast
 from hazard_ms.agents.search.house_fire import HouseFire, Seat
 from hazard_ms.agents.search.house_water import HouseWater
 from hazard_ms.agents.search.lookouts import HERE, fire_lookouts
 from hazard_ms.agents.search.memory import Memory
-from hazard_ms.agents.search.outlook import Outlook, skill_frames
+from hazard_ms.agents.search.outlook import RISK, Outlook, skill_frames
 from hazard_ms.sensing.door_memory import KnownOpening
-from hazard_ms.sensing.sighting import Sighting
-from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action, Decision, Tool
 from hazard_ms.skills.motor.walking import ARRIVED
@@ -51,6 +50,8 @@ ROOM_SHARE = 0.07  # [ours]
 LOOKED = 0.3  # of this share where it has looked around in there [ours]
 AWASH = 0.05  # level at a door from which the room behind it is counted as wet [m] [ours]
 BEHIND = 0.6  # distance from a door at which it is told whether it stays dry behind it [m] [ours]
+HALF = 0.5  # of what water spoils that boards come in time for [ours]
+WET_BY = (800.0, 1300.0, 1800.0, 2300.0)  # frames by which a quarter each of it does [ours: twelve homes of `train`]
 MOST_DOORS = 6  # that are weighed at a time: those that close off most [ours]
 
 Array = NDArray[np.float64]
@@ -85,6 +86,8 @@ def candidates(
     made = []
     if EXTINGUISH in brief.mitigations and FIRE in names:
         made += _fires(brief, decision, memory, ahead, names.index(FIRE), put_down)
+    if BLOCK in brief.mitigations and WATER in names:
+        made += _boards(brief, decision, memory, ahead)
     if SHUT in brief.mitigations and WATER in names and decision.held is None:
         made += _doors(brief, decision, memory, ahead, names.index(WATER))
     return made
@@ -101,7 +104,7 @@ def _fires(
         action = _nearer(decision, memory, seat) if name is None else Action(EXTINGUISH, name)
         if action is None:
             continue
-        spares = _whole(brief, decision, memory.house, ahead, without=(k,))
+        spares, _ = _spared(brief, decision, memory.house, ahead, without=(k,))
         stand = memory.house.stand(seat, decision.agent_position, JET_WAY)
         seen = max(seat.flames, 1.0) * 2.0 ** ((decision.frame - seat.seen) / DOUBLING)
         flames = float(np.sqrt(seen * max(seen, grown)))  # a map shows a part of a fire
@@ -207,8 +210,7 @@ def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, num
         keeps = wet > 0 and _keeps_dry(HouseWater(seen, number, plan), plan, away, door, frames)
         share = ROOM_SHARE * (LOOKED if inside else 1.0) if keeps else 0.0
         if closes or share:
-            spares = _whole(brief, decision, memory.house, ahead, shut=(door,))
-            stays = _stays(brief, decision, memory.house, ahead, door)
+            spares, stays = _spared(brief, decision, memory.house, ahead, shut=(door,))
             x, y, _ = door.position
             guards = door.name, share * ahead.unseen, (float(frames[wet]),)
             what = f"shut {door.name}"
@@ -218,6 +220,17 @@ def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, num
     return sorted(made, key=lambda one: -one.unseen - len(one.closes))[:MOST_DOORS]
 
 
+def _boards(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook) -> list[Candidate]:
+    made = []
+    for one in settings(decision, memory.failures, TRIES, skill_frames(brief.robot).pick):
+        names = " and ".join(door.name for door in one.doors)
+        spares, stays = _spared(brief, decision, memory.house, ahead, boarded=one.doors)
+        guards = names, RISK[WATER] * HALF * ahead.unseen if one.all else 0.0, WET_BY
+        what = f"set boards into {names}", one.action, one.place, STANDS, one.frames, spares
+        made.append(Candidate(*what, *guards, stays=stays))
+    return made
+
+
 def _keeps_dry(water: HouseWater, plan: FloorPlan, away: Array, door: KnownOpening, frames: Array) -> bool:
     """Whether it stays dry just behind a `door` once it is shut, where `away` does not lead; `water`: that to come."""
     beside = np.array(door.position[:2]) + BEHIND * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
@@ -225,21 +238,13 @@ def _keeps_dry(water: HouseWater, plan: FloorPlan, away: Array, door: KnownOpeni
     return bool(behind) and bool(water.at(behind, frames).max() < AWASH)
 
 
-def _whole(brief: Brief, decision: Decision, fire: HouseFire, ahead: Outlook, **done: Sequence) -> list[float]:
-    """The frame until which each target of the outlook is whole if that is done: see `Forecast`."""
+def _spared(
+    brief: Brief, decision: Decision, fire: HouseFire, ahead: Outlook, **done: Sequence
+) -> tuple[list[float], list[float]]:
+    """The frames until which each target of the outlook is whole, and stays, if that is done: see `Forecast`."""
     forecast = Forecast(brief, decision, fire, **done)
-    return _of_each(decision, ahead, forecast.whole_until)
-
-
-def _stays(brief: Brief, decision: Decision, fire: HouseFire, ahead: Outlook, door: KnownOpening) -> list[float]:
-    """The same until which each stays where it is if a `door` is shut."""
-    forecast = Forecast(brief, decision, fire, shut=(door,))
-    return _of_each(decision, ahead, forecast.stays_until)
-
-
-def _of_each(decision: Decision, ahead: Outlook, until: Callable[[Target, Sighting], float]) -> list[float]:
-    made = []
-    for name in ahead.targets:
-        seen = decision.map.objects.get(decision.index(name))
-        made.append(float("inf") if seen is None else until(decision.target(name), seen))
-    return made
+    targets = [decision.target(name) for name in ahead.targets]
+    rows = [(t, decision.map.objects.get(t.index)) for t in targets]
+    both = forecast.whole_until, forecast.stays_until
+    whole, stays = ([np.inf if seen is None else until(t, seen) for t, seen in rows] for until in both)
+    return whole, stays

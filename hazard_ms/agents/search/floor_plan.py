@@ -68,6 +68,16 @@ class FloorPlan:
         cells = np.clip(self._cells(points), 0, np.array(grid.shape) - 1)
         return np.asarray(grid[cells[..., 0], cells[..., 1]])
 
+    def beside(self, openings: Sequence[KnownOpening]) -> Array:
+        """A grid with 0 where the map was seen within half the width of one of `openings`, inf elsewhere, [Y, X]."""
+        grid = np.full(self.wall.shape, np.inf)
+        y, x = np.nonzero(~self.wall)
+        points = self._origin + (np.stack([x, y], axis=-1) + 0.5) * self._cell
+        for o in openings:
+            near = np.hypot(*(points - np.array(o.position[:2])).T) <= o.width / 2
+            grid[y[near], x[near]] = 0.0
+        return grid
+
     def clear(self, points: Array, sources: Array) -> Mask:
         """Whether heat gets from M `sources` [m], [M, 2 or 3], to P `points` [m], [P, 2 or 3]: bool [P, M].
 

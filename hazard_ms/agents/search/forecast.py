@@ -37,15 +37,20 @@ class Forecast:
         watch: FireWatch | HouseFire,
         shut: Sequence[KnownOpening] = (),
         without: Sequence[int] = (),
+        boarded: Sequence[KnownOpening] = (),
     ) -> None:
         """Forecast the hazards of `brief` from `decision` to the end of the episode; `watch` remembers a fire.
 
-        `shut`: doors that are shut as soon as that; `without`: numbers of fires, `HouseFire.seats`, that are put out.
+        `shut`: doors that are shut as soon as that; `without`: numbers of fires, `HouseFire.seats`, that are put out;
+        `boarded`: outer doors as they are once boards stand in them.
         """
         self._hazards = brief.hazards
         self._frames = np.arange(decision.frame, decision.max_frames + STRIDE, STRIDE, dtype=np.float64)
+        then = {o.name: o for o in (*decision.openings, *boarded)}
         self._water: dict[int, WaterPlane | HouseWater] = {
-            number: HouseWater(decision.map, number, FloorPlan(decision.map, (*shut_doors(decision.openings), *shut)))
+            number: HouseWater(
+                decision.map, number, FloorPlan(decision.map, (*shut_doors(decision.openings), *shut)), [*then.values()]
+            )
             if brief.several_rooms
             else _water(decision.map, number)
             for number, hazard in enumerate(brief.hazards)

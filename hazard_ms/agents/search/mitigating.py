@@ -24,7 +24,7 @@ from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import DROP, EXPLORE, WALK_ONE_STEP, WALK_TO, Action, Decision, Tool
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision, Tool
 from hazard_ms.skills.failures import NO_PATH, NOT_BURNING, UNFINISHED
 from hazard_ms.skills.motor.walking import ARRIVED
 
@@ -84,7 +84,7 @@ class Mitigator:
             self._begun = None
             self._memory.visits[name] = self._memory.visits.get(name, 0) + 1
             return Action(EXPLORE)
-        if first.charge > 0.0 and decision.walked_up_to != name:
+        if first.action.verb == PICK_UP and decision.walked_up_to != name:
             return Action(WALK_TO, name)
         return first.action
 

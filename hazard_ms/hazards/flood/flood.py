@@ -126,8 +126,10 @@ class Flood(Hazard):
     @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
     def advance(self, state: FloodState, world: World, dt: float) -> None:
         state.time.add_(dt)
+        before = state.level.clone()
         self._rise(state, world)
-        if world.openings.inner:
+        blocked = self.through_doors and flow_paths.hold_back(state, world, state.level - before)
+        if world.openings.inner or blocked:
             state.doorway_distance.copy_(flow_paths.through_open(state, *world.openings.ways))
         world.launches.run(
             kernels.immerse,

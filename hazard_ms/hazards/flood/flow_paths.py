@@ -18,12 +18,14 @@ from typing import Any, NamedTuple
 import torch
 from torch import Tensor
 
+from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.flood import reach
 from hazard_ms.hazards.flood.flood_state import FloodState
 from hazard_ms.hazards.flood.reach import NEVER
 from hazard_ms.kernels.launch import Launches, of_environments
 from hazard_ms.scenes.inlets import inlets
 from hazard_ms.scenes.walls import WALLS, on_wall
+from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Partition, Room, SceneSpec, Vec2
 
 # Direction in which water flows in from each side of a room
@@ -187,17 +189,17 @@ def _doorway_distances(
 def through_open(paths: FlowPaths | FloodState, there: Tensor, is_open: Tensor) -> Tensor:
     """Path length of the water to each doorway [m], [E, D], through those that are open.
 
-    `there` and `is_open`, [E, C], are doorways and doors; a second source wall, after them, stays at 0.
+    `there` and `is_open`, [E, C], are doorways and doors; sources, after them, keep theirs.
     """
     box, part, differing = paths.doorway, paths.doorway_part[..., 0], paths.doorway_part[..., 1]
     more = max(0, box.shape[1] - there.shape[1])
     there, is_open = (torch.nn.functional.pad(of, (0, more))[:, : box.shape[1]] for of in (there, is_open))
-    second = ~there & (paths.doorway_distance == 0.0)
+    second = ~there & (paths.doorway_distance < NEVER)
     flow = paths.flow[:, None]
     straight = paths.origin_length[:, None] + (flow * torch.where(flow > 0, box[..., :2], box[..., 2:])).sum(-1)
     bits, source = paths.source_part[:, :1], paths.source_part[:, 1:]
     along = ((part ^ source) & bits & ~differing) == 0  # a part beside it lies along the source wall
-    length = torch.where(second, 0.0, torch.where(along & is_open, straight, NEVER))
+    length = torch.where(second, paths.doorway_distance, torch.where(along & is_open, straight, NEVER))
     free = second | is_open
     gap = (box[:, :, None, :2] - box[:, None, :, 2:]).clamp(min=0.0)
     gap = torch.maximum(gap, gap.transpose(1, 2)).norm(dim=-1)  # [E, D, D]
@@ -206,6 +208,24 @@ def through_open(paths: FlowPaths | FloodState, there: Tensor, is_open: Tensor) 
     for _ in range(box.shape[1]):  # each round finds at least one more shortest path
         length = torch.minimum(length, (length[:, None] + step).amin(-1))
     return length
+
+
+def hold_back(state: FloodState, world: World, rise: Tensor) -> bool:
+    """Let the water behind flood boards stay as high as it is while that at the sources rises by `rise` [m], [E].
+
+    A source in which a board stands that is as high as the water outdoors moves away, along the path of the water, by
+    as much as the surface falls as far as the level has risen. Returns whether any board stands.
+    """
+    if world.equipment is None or none_set(world.equipment.placed):
+        return False
+    plan = world.openings.plan
+    top = plan.sill + world.equipment.boards(world.extent[..., 2], world.openings.count)
+    held = plan.inlet & (top > plan.sill) & (top >= state.level[:, None])  # [E, O]
+    first = world.openings.ways[0].sum(1, keepdim=True)  # sources come after the doorways, in the order of O
+    number = torch.where(plan.inlet, first + plan.inlet.cumsum(1) - 1, 0)
+    away = torch.where(held, (rise / state.surface_slope)[:, None], 0.0)
+    state.doorway_distance.scatter_add_(1, number, away)
+    return True
 
 
 def path_lengths(

@@ -17,6 +17,7 @@ from hazard_ms.scenes.walls import on_wall, runs_along_x
 from hazard_ms.simulation.jet import KINDS, Jet
 from hazard_ms.simulation.state import State, quantity
 from hazard_ms.spec import Body, SceneSpec
+from hazard_ms.spec.catalogue import FLOOD_BOARD
 from hazard_ms.spec.extinguishers import EXTINGUISHERS
 
 CATEGORY = "fire_extinguisher"  # in the catalogue
@@ -54,18 +55,24 @@ class NozzleState(State):
 
 
 class Equipment:
-    """The tools of E agents: bodies of some categories that are no targets."""
+    """The tools of E agents: bodies of some kinds that are no targets."""
 
     @torch.inference_mode(False)  # it changes in that mode and out of it
-    def __init__(self, specs: Sequence[SceneSpec], target: Tensor, categories: Collection[str]) -> None:
-        """Take the bodies of `specs` that have one of the `categories` and are no `target`, bool [E, B]."""
-        shape, device = tuple(target.shape), target.device
+    def __init__(self, specs: Sequence[SceneSpec], target: Tensor, kinds: Collection[str]) -> None:
+        """Take the bodies of `specs` of these `kinds` that are no `target`, bool [E, B].
+
+        A kind is a category, or what a thing is called before its number: "flood_board_1" is a "flood_board".
+        """
+        shape, device, self.of = tuple(target.shape), target.device, tuple(kinds)
         self.tool = torch.zeros(shape, dtype=torch.bool, device=device)
+        self.board = torch.zeros(shape, dtype=torch.bool, device=device)  # tools that are flood boards
         self.kinds = torch.full(shape, -1, device=device)  # of extinguishers, index into KINDS; -1 for others
         for e, spec in enumerate(specs):
             for b, thing in enumerate(spec.things):
-                usable = isinstance(thing, Body) and thing.category in categories
+                called = thing.name.rpartition("_")[0]
+                usable = isinstance(thing, Body) and not {thing.category, called}.isdisjoint(kinds)
                 self.tool[e, b] = usable and not bool(target[e, b])
+                self.board[e, b] = self.tool[e, b] and called == FLOOD_BOARD
                 if usable and thing.category == CATEGORY:
                     self.kinds[e, b] = KINDS.index(kind_of(thing.name))
         self.takes = target | self.tool

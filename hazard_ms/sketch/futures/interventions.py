@@ -16,18 +16,22 @@ from numpy.typing import NDArray
 
 from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards.fire.fire_state import FireState
+from hazard_ms.simulation.world import World
 from hazard_ms.sketch.futures import seats
+from hazard_ms.sketch.futures.surroundings import free_boards
 from hazard_ms.sketch.recording import Running, course_of, pushes
 from hazard_ms.sketch.timeline import STRIDE
+from hazard_ms.spec.checks import one_of
 
-OUT, SHUT, OPEN = "out", "shut", "open"
+OUT, SHUT, OPEN, BLOCK = "out", "shut", "open", "block"
+KINDS = (OUT, SHUT, OPEN, BLOCK)
 LEVEL_ROUNDING = 1e-3  # by which levels may differ that are equal [m, or the hazard's unit] [ours]
 
 
 class Intervention(NamedTuple):
-    """Something done at a frame: a seat of fire put out, a door shut or opened."""
+    """Something done at a frame: a seat of fire put out, a door shut or opened, a flood board set into an opening."""
 
-    kind: str  # OUT, SHUT or OPEN
+    kind: str  # one of KINDS
     number: int  # of the seat (its lattice), or of the opening along O
     frame: int  # at which it is done
 
@@ -69,8 +73,7 @@ def foresee(env: Running, sets: Sequence[Sequence[Intervention]], frames: int | 
     due: dict[int, list[tuple[int, Intervention]]] = {}
     for row, interventions in enumerate(sets, 1):
         for intervention in interventions:
-            if intervention.kind not in (OUT, SHUT, OPEN):
-                raise ValueError(f"kind must be {OUT}, {SHUT} or {OPEN}, got {intervention.kind!r}")
+            one_of(intervention.kind, KINDS, "kind")
             due.setdefault(intervention.frame, []).append((row, intervention))
     first = int(env.world.frame[0])
     course = course_of(env, len(sets) + 1)
@@ -97,9 +100,19 @@ def fire_of(episode: Episode) -> FireState | None:
     return next((state for state in episode.states.values() if isinstance(state, FireState)), None)
 
 
+def _set_board(world: World, row: int, number: int) -> None:
+    """Let a flood board that lies about stand in the opening `number` of the copy `row`, if there is one."""
+    free = free_boards(world, row)
+    if world.equipment is not None and free:
+        world.equipment.state.stands_in[row, free[0]] = number
+
+
 def _intervene(episode: Episode, row: int, what: Intervention) -> int:
     """Do something in the copy `row`; returns the number of flames and things that this puts out."""
     world = episode.world
+    if what.kind == BLOCK:
+        _set_board(world, row, what.number)
+        return 0
     if what.kind != OUT:
         rows = torch.tensor([row], device=world.device)
         world.openings.set_open(rows, what.number, 1.0 if what.kind == OPEN else 0.0)

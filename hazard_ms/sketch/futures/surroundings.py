@@ -41,6 +41,20 @@ def across(spec: SceneSpec, number: int) -> Array:
     return hinges.hinge(spec.room, spec.room.openings[number])[2]
 
 
+def inlets_of(world: World) -> dict[int, Array]:
+    """The openings of the first environment that water comes in through and no board stands in, as `inner_doors`."""
+    plan, tools = world.openings.plan, world.equipment
+    taken = set() if tools is None else set(tools.state.stands_in[0].tolist())
+    middles = plan.beside[0, :, :, :2].mean(1).cpu().numpy().astype(np.float64)
+    return {n: middles[n] for n in (plan.inlet & plan.door)[0].nonzero()[:, 0].tolist() if n not in taken}
+
+
+def free_boards(world: World, row: int = 0) -> list[int]:
+    """The indices along B of the flood boards of an environment that stand in no opening."""
+    tools = world.equipment
+    return [] if tools is None else (tools.board & ~tools.placed)[row].nonzero()[:, 0].tolist()
+
+
 def charge_of(base: Home, index: int) -> float:
     """The frames that the extinguisher `index` along B still lasts; 0 for other things."""
     tools = base.world.equipment

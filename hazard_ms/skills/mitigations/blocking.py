@@ -1,9 +1,10 @@
 """The skill `block`: a flood board is set into the rails of a doorway, and holds water back up to its own height.
 
-Boards are boxes called `flood_board...` that are no targets: as long as the opening is wide, upright, light enough for
-the arm. Water that stands h deep presses with rho g w h^2 / 2 on one that is let down into it, and the arm must press
-as hard. Limits: a board that stands is in nobody's way, and is not lifted out again; deeper water passes as if it were
-not there; floods of the paper do not know openings, so nothing is on offer there.
+Boards are boxes called `flood_board_1` and so on that are no targets: as long as the opening is wide, upright, light
+enough for the arm. Water that stands h deep presses with rho g w h^2 / 2 on one that is let down into it, and the arm
+must press as hard. Floods of `paper` have rails where their water comes in, at the outer doors of homes, and press on
+nothing. Limits: a board that stands is in nobody's way, and is not lifted out again; water deeper than it passes as if
+it were not there.
 """
 
 from __future__ import annotations
@@ -22,7 +23,6 @@ from hazard_ms.skills.motor.routes import quickest
 from hazard_ms.skills.motor.surface import Leg, Place, Surface
 from hazard_ms.spec.robot import GRASP_REACH
 
-NAME = "flood_board"  # how the names of boards begin
 HOLD = 0.5  # height of the hand at which it lets a board down [m] [ours]
 SETTING = 5.0  # to let it down into its rails and press it tight [s] [ours: rails and seals are there]
 WEIGHT = 1000.0 * 9.81  # of water [N/m^3]
@@ -30,9 +30,7 @@ WEIGHT = 1000.0 * 9.81  # of water [N/m^3]
 
 def gaps(stage: Stage) -> tuple[str, ...]:
     """Names of the known doors and doorways that the board in the hand closes."""
-    if not stage.env.episode.loads_openings or "water" not in stage.world.fields:
-        return ()
-    return tuple(o.name for o in stage.doors.rows() if o.kind != "window" and _fits(stage, o))
+    return tuple(o.name for o in stage.doors.rows() if _has_rails(stage, o) and _fits(stage, o))
 
 
 def block(stage: Stage, name: str) -> Skill:
@@ -40,7 +38,7 @@ def block(stage: Stage, name: str) -> Skill:
     known = stage.doors.find(name)
     if known is None:
         return Result(False, failures.UNKNOWN)
-    if known.kind == "window":
+    if not _has_rails(stage, known):
         return Result(False, failures.NO_RAILS)
     if not _fits(stage, known):
         return Result(False, failures.NO_BOARD)
@@ -77,16 +75,28 @@ def block(stage: Stage, name: str) -> Skill:
     return Result(not reason, reason, used)
 
 
+def _has_rails(stage: Stage, o: KnownOpening) -> bool:
+    """Whether a board can stand in an opening: doors and doorways where water flows, else where it comes in."""
+    if o.kind == "window" or "water" not in stage.world.fields:
+        return False
+    if stage.env.episode.loads_openings:
+        return True
+    through = any(getattr(hazard, "through_doors", False) for hazard in stage.env.episode.hazards)
+    return through and bool(stage.world.openings.plan.inlet[0, o.number])
+
+
 def _fits(stage: Stage, o: KnownOpening) -> bool:
     """Whether a board as long as the opening is in the hand, and none stands there."""
     tools, held = stage.world.equipment, stage.held
-    if tools is None or held < 0 or not stage.world.names[0][held].startswith(NAME):
+    if tools is None or held < 0 or not bool(tools.board[0, held]):
         return False
     return float(stage.world.extent[0, held, 0]) >= o.width and not bool((tools.state.stands_in[0] == o.number).any())
 
 
 def _pressing(stage: Stage, o: KnownOpening) -> float:
-    """Force [N] of the water on a board that is let down into the opening."""
+    """Force [N] of the water on a board that is let down into the opening; of `paper` none."""
+    if not stage.env.episode.loads_openings:
+        return 0.0
     beside = stage.world.openings.plan.beside[:1, o.number]
     level = float(stage.world.fields["water"](beside.expand(stage.world.num_envs, -1, -1).contiguous()).max())
-    return 0.5 * WEIGHT * o.width * max(0.0, level) ** 2 if "water" in stage.world.fields else 0.0
+    return 0.5 * WEIGHT * o.width * max(0.0, level) ** 2

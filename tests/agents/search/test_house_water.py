@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from hazard_ms.agents.search.floor_plan import FloorPlan
 from hazard_ms.agents.search.house_water import HouseWater, floats_at, soaked_at
+from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
@@ -70,3 +72,29 @@ def test_a_thing_is_carried_away_when_it_floats() -> None:
     assert floats_at(*thing("banana")) == pytest.approx(0.095)
     assert floats_at(*thing("throw_pillow")) == pytest.approx(0.01)
     assert floats_at(*thing("phone")) == floats_at(*thing("key")) == math.inf
+
+
+def test_boards_hold_the_water_as_it_was_when_they_were_set() -> None:
+    """In both doors: at (-2, 0), 2 m from the wall, as high as at frame 600 for good; not where one was never seen."""
+    seen = flooded(400)
+    west = KnownOpening("door_1", 1, "door", (WEST, 0.0, 1.0), 0.9, 1.0, False, 0, outer=True)
+    east = KnownOpening("door_2", 2, "door", (4.0, 0.0, 1.0), 0.9, 1.0, False, 0, outer=True)
+    boarded = [replace(door, boarded=600) for door in (west, east)]
+    frames, at = np.array([400.0, 600.0, 1600.0, 2400.0]), [(-2.0, 0.0)]
+    for doors in ([], [west, east], boarded[:1]):
+        rising = HouseWater(seen, 0, FloorPlan(seen), doors).at(at, frames)[:, 0]
+        assert rising == pytest.approx(RISE * frames - SLOPE * 2.0, abs=0.01)
+    held = HouseWater(seen, 0, FloorPlan(seen), boarded).at(at, frames)[:, 0]
+    assert held == pytest.approx(RISE * np.minimum(frames, 600.0) - SLOPE * 2.0, abs=0.01)
+
+
+def test_water_rises_on_from_a_door_without_a_board() -> None:
+    """From a door at (4, 0), 6 m away, from where a board in the west has been since frame 600."""
+    seen = flooded(400)
+    west = KnownOpening("door_1", 1, "door", (WEST, 0.0, 1.0), 0.9, 1.0, False, 0, outer=True, boarded=600)
+    east = KnownOpening("door_2", 2, "door", (4.0, 0.0, 1.0), 0.9, 1.0, False, 0, outer=True)
+    water = HouseWater(seen, 0, FloorPlan(seen), [west, east])
+    frames = np.array([600.0, 2400.0])
+    found = water.at([(-2.0, 0.0), (4.0, 0.0)], frames)
+    assert found[0, 0] == pytest.approx(RISE * 600.0 - SLOPE * 2.0, abs=0.01)
+    assert found[1] == pytest.approx([RISE * 2400.0 - SLOPE * 5.55, RISE * 2400.0], abs=0.012)

@@ -58,6 +58,7 @@ class House(Layout):
     hall: Span = (1.8, 1.9)  # its depth [m]: a leaf that stands open into it leaves room for a robot
     plans: tuple[Plan, ...] = ()
     fire_distance: float = 1.5  # from a fire to targets, at least [m] [results/scenes.md]
+    boards: bool = False  # whether flood boards stand in its hall, one for each outer door
     fire_reach: float = 2.5  # radius around a fire within which it is to have much value that burns [m] [the same]
 
 

@@ -1,0 +1,95 @@
+"""Oracle and planner set flood boards where water would take more than they could carry off."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from hazard_ms.agents.base import agent
+from hazard_ms.evaluation.runner import Runner
+from hazard_ms.sketch.futures.interventions import BLOCK, Intervention, foresee
+from hazard_ms.sketch.futures.surroundings import free_boards, inlets_of
+from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.spec import AgentStart, Body, Opening, Room, SceneSpec, Task
+from hazard_ms.tasks.house import hazard_house_flood
+from tests.worlds.registering import registered_task
+
+TASK = "HazardRoomWithBoards-v1"
+BOOKS = [(x, 0.6 + 0.6 * k, 0.0) for x in (11.6, 12.4, 13.2) for k in range(7)]
+HOME = SceneSpec(
+    name="test/room_with_boards",
+    room=Room((14.0, 5.0), openings=(Opening("door", "west", 2.5, 0.9, 2.0), Opening("door", "south", 2.0, 0.9, 2.0))),
+    fixtures=(),
+    bodies=(
+        *(Body(f"book_{k}", "book", "plain_box", at, scale=(0.2, 0.15, 0.04), mass=1.5) for k, at in enumerate(BOOKS)),
+        Body("flood_board_1", "box", "plain_box", (0.8, 4.5, 0.0), scale=(1.0, 0.04, 0.6), mass=5.0),
+        Body("flood_board_2", "box", "plain_box", (3.4, 0.5, 0.0), scale=(1.0, 0.04, 0.6), mass=5.0),
+    ),
+    target_categories=("book",),
+    fires=(),
+    flood_side="west",
+    second_flood_side="south",
+    agent_start=AgentStart((2.5, 2.5), 0.0),
+)
+
+
+def home(physics: str) -> Task:
+    made = hazard_house_flood(physics)
+    (water,) = made.hazards
+    return dataclasses.replace(
+        made,
+        hazards=(dataclasses.replace(water, every=80),),
+        scenes=lambda split: (HOME.name,),
+        build=lambda name: HOME,
+    )
+
+
+@pytest.fixture(scope="module")
+def env() -> Iterator[SkillEnv]:
+    with registered_task(TASK, home, 2000):
+        made = SkillEnv.make(TASK, sensor_configs={"width": 128, "height": 128}, effects="off")
+        yield made
+        made.close()
+
+
+@pytest.mark.render
+def test_boards_that_are_foreseen_hold_water_as_those_that_stand(env: SkillEnv) -> None:
+    """The future with boards set now is that of an episode in which they stand now."""
+    env.reset(seed=0)
+    base = env.base
+    for _ in range(100):
+        base.advance(env.stage.act())
+    inlets = [*inlets_of(base.world)]
+    assert len(inlets) == len(free_boards(base.world)) == 2
+    sets = [[Intervention(BLOCK, n, int(base.world.frame[0])) for n in inlets[:count]] for count in (1, 2)]
+    nothing, one, both = foresee(base, sets).whole_until()
+    things = base.world.names[0]
+    books = [things.index(f"book_{k}") for k in range(len(BOOKS))]
+    assert np.isfinite(nothing[books]).any() and (one[books] >= nothing[books]).all()
+    assert (both[books] >= one[books]).all() and np.isinf(both[books]).sum() > np.isinf(nothing[books]).sum()
+    for board, number in zip(free_boards(base.world), inlets, strict=True):
+        base.world.equipment.state.stands_in[0, board] = number
+    assert not free_boards(base.world) and not inlets_of(base.world)
+    assert foresee(base, []).whole_until()[0].tolist() == both.tolist()
+
+
+@pytest.mark.render
+def test_the_planner_sets_them_when_it_has_seen_them(env: SkillEnv) -> None:
+    run = Runner(env, agent("planner")).run(0)
+    assert [d.verb for d in run.decisions if d.ok].count("block") == 2
+    assert not inlets_of(env.base.world)
+
+
+@pytest.mark.render
+def test_the_oracle_sets_boards_into_both_doors(env: SkillEnv) -> None:
+    found = {}
+    for who in ("oracle", "oracle:mitigate=false"):
+        run = Runner(env, agent(who)).run(0)
+        verbs = [d.verb for d in run.decisions if d.ok]
+        damaged = env.base.episode.damage.damaged[0] & ~env.base.episode.rescue.safe[0] & env.base.world.target[0]
+        found[who] = verbs.count("block"), int(damaged.sum())
+    assert found["oracle"][0] == 2 and found["oracle:mitigate=false"][0] == 0
+    assert found["oracle"][1] < found["oracle:mitigate=false"][1]

@@ -7,7 +7,8 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -15,10 +16,13 @@ import pytest
 
 from hazard_ms.cli.__main__ import main
 from hazard_ms.cli.report import TRACKS as OFFERED
-from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.evaluation.result import DIED, EpisodeResult
+from hazard_ms.evaluation.submissions import simulating
 from hazard_ms.evaluation.submissions.report import Sample, read_report
 from hazard_ms.evaluation.submissions.signing import signer
 from hazard_ms.evaluation.submissions.tracks import HIDDEN, TRACKS, track_of
+from hazard_ms.evaluation.workers import Job, Outcome
+from hazard_ms.machine.cores import maker
 from tests.env.forced_instructions import FORCED
 from tests.worlds.submissions import CARD, SHORT, make_key, report_of
 
@@ -137,5 +141,48 @@ def test_a_quick_look_says_that_it_is_one(results: Path, capsys: pytest.CaptureF
     part = report_of("a", places, sample=Sample(5, 1), episodes=25)
     assert not part.verified and part.verdict == "no fault in 5 of 25 episodes: the rest was not simulated"
     assert submit(results) == 0
-    assert main(["verify", str(results.parent / "short.zip"), "--episodes", "3"]) == 2
-    assert "episodes must be a whole number from 0 to 2, got 3" in capsys.readouterr().err
+    for words, told in (
+        (("--episodes", "3"), "episodes must be a whole number from 0 to 2, got 3"),
+        (("--workers", "-1"), "workers must be a whole number from 0 to 1024, got -1"),
+        (("--backend", "rays"), "backend must be one of serial, local, ray, got 'rays'"),
+    ):
+        assert main(["verify", str(results.parent / "short.zip"), *words]) == 2
+        assert told in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("versions", "processor", "ended", "told"),
+    [
+        (
+            {"torch": "1.0"},
+            maker(),
+            "",
+            "machines must all have the versions .* got one with torch 1.0",
+        ),
+        ({}, "Other", "", f"machines must all have processors of one maker, got Other, here {maker()}"),
+        ({}, maker(), DIED, r"each episode must be simulated, got episodes/HazardFire-v1-0000\.json: worker died"),
+    ],
+)
+def test_what_says_nothing_of_a_submission_is_no_fault_of_it(
+    versions: dict[str, str],
+    processor: str,
+    ended: str,
+    told: str,
+    results: Path,
+    episodes: list[EpisodeResult],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Machines of a cluster that simulate otherwise, and processes that die, accuse nobody: there is no report."""
+
+    @contextmanager
+    def elsewhere(jobs: Sequence[Job], *_: object) -> Iterator[Iterator[tuple[Job, Outcome]]]:
+        machine = {**episodes[0].machine, "processor": processor}
+        result = replace(episodes[0], versions=episodes[0].versions | versions, machine=machine)
+        yield ((job, Outcome(result, ended, died=bool(ended))) for job in jobs)
+
+    assert submit(results) == 0
+    monkeypatch.setattr(simulating, "spread", elsewhere)
+    path = results.parent / "short.report.json"
+    assert main(["verify", str(results.parent / "short.zip"), "-o", str(path)]) == 2
+    assert re.search(told, capsys.readouterr().err) and not path.exists()

@@ -16,6 +16,7 @@ from hazard_ms.evaluation.averted.alone import losses
 from hazard_ms.evaluation.choices import EnvOptions
 from hazard_ms.evaluation.options import EpisodeOptions, SweepOptions
 from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.evaluation.spread import Where
 from hazard_ms.evaluation.submissions import faults
 from hazard_ms.evaluation.submissions.faults import faults_of
 from hazard_ms.evaluation.submissions.packing import pack, submission_of
@@ -58,7 +59,7 @@ def check(track: Track, result: EpisodeResult) -> None:
     place: Place = (result.env_id, result.seed)
     submission = submission_of(pack({place: result}, track, CARD), "it")
     assert faults_of(submission, track) == []
-    (seen,), found = simulated(submission, track, [place], workers=1)
+    (seen,), found = simulated(submission, track, [place], Where(1))
     assert (seen.verdict, found) == ("exact", []) and seen.tally == result.tally and seen.averted == result.averted
 
 

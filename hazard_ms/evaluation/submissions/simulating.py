@@ -15,6 +15,8 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 
+import torch
+
 from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.evaluation.attempts import attempt as play
 from hazard_ms.evaluation.metrics import Tally
@@ -76,8 +78,8 @@ def simulated(
 ) -> tuple[list[Seen], list[Fault]]:
     """Simulate the episodes at `places` of a submission without faults; each is printed as it ends.
 
-    Raises ValueError where that says nothing of the submission: on a machine of a cluster with other packages or a
-    processor of another maker, and where the process of an episode dies twice.
+    Raises ValueError where that says nothing of the submission: where the process of an episode dies twice, and where
+    one differs on a processor without AVX2, or on a machine with other packages or a processor of another maker.
     """
     rows = submission.rows()
     records = {place: rows[name_of(place)][1] for place in places}
@@ -94,6 +96,8 @@ def simulated(
         if played is not None and nobody is not None:
             played = replace(played, lost_alone=nobody.lost)
         verdict, faults[place] = compared(record, played, outcome.error)
+        if faults[place] and played is not None:
+            _check_machine(played)
         seen[place] = _seen(place, record, played, verdict)
         line = f"{len(seen)}/{len(places)} {name_of(place)}: {verdict}"
         print("; ".join([line, *(fault.what for fault in faults[place])]), flush=True)
@@ -144,15 +148,17 @@ def _decisions(record: EpisodeResult, played: EpisodeResult) -> Iterator[Fault]:
 
 
 def attempt(job: Job, say: Say) -> Outcome:
-    """Simulate one episode in this process, a hidden scene from a file of its own, and tell the maker of the processor.
+    """Simulate one episode in this process, a hidden scene from a file of its own, and tell what the processor is.
 
     The scene is made here, so that no machine of a cluster needs the files of another one.
     """
     assert isinstance(job, Simulation)
     with job.track.scene_file((job.options.env_id, job.options.seed)) as scene:
         done = play(replace(job, options=replace(job.options, scene=scene)), say)
-    told = done.result and replace(done.result, machine={**done.result.machine, "processor": maker()})
-    return done._replace(result=told)
+    if done.result is None:
+        return done
+    own = {"processor": maker(), "instructions": torch.backends.cpu.get_cpu_capability()}
+    return done._replace(result=replace(done.result, machine=done.result.machine | own))
 
 
 def _job(record: EpisodeResult, place: Place, track: Track) -> Simulation:
@@ -175,13 +181,13 @@ def _played(jobs: dict[Place, Simulation], where: Where) -> Iterator[tuple[Place
         for job, outcome in outcomes:
             if outcome.died:
                 raise ValueError(f"each episode must be simulated, got {name_of(places[id(job)])}: {outcome.error}")
-            if outcome.result is not None:
-                _check_machine(outcome.result)
             yield places[id(job)], outcome
 
 
 def _check_machine(played: EpisodeResult) -> None:
-    """Raise ValueError for a simulation by another machine that differs in what can change an episode."""
+    """Raise ValueError for a simulation by a machine that differs in what can change an episode."""
+    if not str(taken := played.machine.get("instructions")).startswith("AVX"):
+        raise ValueError(f"machines must all compute with AVX2, got one where torch takes {taken}")
     others = other_versions(played.versions)
     if others:
         raise ValueError(f"machines must all have the versions that this one has, got one with {others}")

@@ -7,10 +7,11 @@ from typing import Annotated
 
 import tyro
 
-from hazard_ms.evaluation.choices import flag, offer
+from hazard_ms.evaluation.choices import BACKENDS, flag, offer
 
 TRACKS = ("published", "perception", "clock", "houses", "trial")  # as evaluation.submissions.tracks has them
 Hidden = tuple[Path, Path] | None
+Backend = Annotated[str, offer(BACKENDS)]
 
 
 def report(
@@ -65,6 +66,8 @@ def regret(
     folders: Annotated[tuple[Path, ...], tyro.conf.Positional],
     output: Annotated[Path | None, flag("-o")] = None,
     workers: int = 0,
+    backend: Backend = "local",
+    address: str | None = None,
     load: tuple[str, ...] = (),
 ) -> int:
     """Judge each decision of recorded episodes: how much value it gave away, and why.
@@ -76,6 +79,8 @@ def regret(
         folders: Folders that `hazard-ms evaluate` wrote; folders in them are read, too.
         output: File for what each agent lost, NAME.json.
         workers: Processes; 0: one for each core.
+        backend: Where episodes are simulated: serial, in this process; local processes; a ray cluster.
+        address: Address of the ray cluster, such as auto; this machine alone if not given.
         load: Modules, or files NAME.py, that register what the episodes need.
     """
     from json import dumps
@@ -83,10 +88,11 @@ def regret(
     from hazard_ms.agents.base import user_path
     from hazard_ms.evaluation.regret.command import regret as run
     from hazard_ms.evaluation.regret.table import shares
+    from hazard_ms.evaluation.spread import Where
     from hazard_ms.machine.files import write
 
     user_path()
-    found = run(folders, workers, load)
+    found = run(folders, Where(workers, backend, address), load)
     if output is not None:
         agents = dict.fromkeys(one.agent for one in found)
         made = {agent: shares([one for one in found if one.agent == agent]) for agent in agents}
@@ -139,6 +145,8 @@ def verify(
     episodes: int = 0,
     seed: int = 0,
     workers: int = 0,
+    backend: Backend = "local",
+    address: str | None = None,
     key: Path | None = None,
     known: Path | None = None,
     hidden: Hidden = None,
@@ -153,13 +161,16 @@ def verify(
         episodes: Episodes that are drawn for a quick look; 0: all, as the leaderboard asks for.
         seed: Seed by which these are drawn.
         workers: Processes; 0: one for each core.
+        backend: Where episodes are simulated: serial, in this process; local processes; a ray cluster.
+        address: Address of the ray cluster, such as auto; this machine alone if not given.
         key: Key of OpenSSH that signs the report; the signature lies beside it.
         known: Folder of reports on earlier submissions, whose decisions a new one must not have.
         hidden: Commitments and published scenes of a hidden set.
     """
+    from hazard_ms.evaluation.spread import Where
     from hazard_ms.evaluation.submissions.verifying import verify as run
 
-    return run(file, output, episodes, seed, workers, key, known, hidden)
+    return run(file, output, episodes, seed, Where(workers, backend, address), key, known, hidden)
 
 
 def leaderboard(

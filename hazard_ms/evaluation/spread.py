@@ -12,14 +12,17 @@ import re
 import sys
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from hazard_ms.evaluation.attempts import attempt as play
-from hazard_ms.evaluation.choices import RAY
+from hazard_ms.evaluation.choices import BACKENDS, RAY
+from hazard_ms.evaluation.options import MOST_WORKERS
 from hazard_ms.evaluation.result import DIED
 from hazard_ms.evaluation.workers import Attempt, Crew, Job, Outcome, ending
 from hazard_ms.machine.cores import cores
 from hazard_ms.machine.processes import needs_key, without_keys
+from hazard_ms.spec.checks import one_of, whole
 
 STARTS = 3  # of each actor of ray that may fail [ours]
 MOST_SHARDS = 100_000  # [ours]
@@ -50,6 +53,23 @@ def shard(text: str | None, variables: Mapping[str, str] = os.environ) -> tuple[
 def in_shard(name: str, part: int, parts: int) -> bool:
     """Whether the file `name` belongs to `part`, from 1 to `parts`. Each name belongs to one part, everywhere."""
     return int.from_bytes(hashlib.sha256(name.encode()).digest()[:8], "big") % parts == part - 1
+
+
+@dataclass(frozen=True)
+class Where:
+    """The arguments of `spread` that say where jobs are done: 0 workers are one for each core.
+
+    Raises ValueError for a number of workers or a backend that cannot be.
+    """
+
+    workers: int = 0
+    backend: str = "local"
+    address: str | None = None
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for what cannot be."""
+        whole(self.workers, 0, MOST_WORKERS, "workers")
+        one_of(self.backend, BACKENDS, "backend")
 
 
 @contextlib.contextmanager

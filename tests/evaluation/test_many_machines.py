@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib.util
+import json
 import os
 import secrets
 import shutil
@@ -15,7 +17,9 @@ from pathlib import Path
 
 import pytest
 
+from hazard_ms.evaluation.submissions.report import read_report
 from tests.evaluation.test_same_results import PATIENCE, WORDS, done, results, start
+from tests.worlds.submissions import CARD
 
 pytestmark = [
     pytest.mark.long,
@@ -143,3 +147,18 @@ def test_recordings_and_pictures_of_several_machines_are_those_of_one(tmp_path: 
         found = {path.relative_to(tmp_path / many): path.read_bytes() for path in (tmp_path / many).glob(names)}
         assert found == {path.relative_to(tmp_path / one): path.read_bytes() for path in (tmp_path / one).glob(names)}
         assert len(found) == 4, sorted(map(str, (tmp_path / many).rglob("*")))
+
+
+def test_verification_and_regret_of_several_machines_are_those_of_one(tmp_path: Path, address: str) -> None:
+    spread = ("--backend", "ray", "--address", address, "--workers", "2")
+    done(tmp_path, "evaluate", *WORDS, "--workers", "2", "-o", "one")
+    shutil.copytree(tmp_path / "one", tmp_path / "many")
+    (tmp_path / "card.json").write_text(json.dumps(dataclasses.asdict(CARD)))
+    done(tmp_path, "submit", "one", "--track", "trial", "-o", "it.zip")
+    for folder, words in (("one", ("--workers", "1")), ("many", spread)):
+        done(tmp_path, "verify", "it.zip", "-o", f"{folder}.report.json", *words)
+        done(tmp_path, "regret", folder, *words)
+    one, many = (read_report(tmp_path / f"{folder}.report.json") for folder in ("one", "many"))
+    assert one.verified and dataclasses.replace(many, date=one.date) == one
+    found = {path.name: path.read_bytes() for path in (tmp_path / "many").glob("*.regret.json")}
+    assert len(found) == 4 and found == {name: (tmp_path / "one" / name).read_bytes() for name in found}

@@ -10,14 +10,15 @@ import torch
 
 from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.evaluation.attempts import Recorded, Teller
+from hazard_ms.evaluation.choices import RAY
 from hazard_ms.evaluation.regret.appraiser import Appraiser
 from hazard_ms.evaluation.regret.causes import EpisodeRegret, beside, decisions_of, digest, lost_by, place_of
 from hazard_ms.evaluation.regret.table import table
 from hazard_ms.evaluation.replay import DIFFERENT, compare, job_of
 from hazard_ms.evaluation.result import FAILED, DamagedResultError, EpisodeResult, result_files
 from hazard_ms.evaluation.runner import play
-from hazard_ms.evaluation.workers import Crew, Job, Outcome, Say, ending
-from hazard_ms.machine.cores import cores
+from hazard_ms.evaluation.spread import Where, spread
+from hazard_ms.evaluation.workers import Job, Outcome, Say
 from hazard_ms.registry import AGENTS, load
 
 
@@ -28,21 +29,23 @@ class RegretJob(Job):
     path: Path = Path()
 
 
-def regret(folders: Sequence[Path], workers: int, load: tuple[str, ...]) -> list[EpisodeRegret]:
+def regret(folders: Sequence[Path], where: Where, load: tuple[str, ...]) -> list[EpisodeRegret]:
     """The regret of all results in `folders` and the folders in them, each also in a file beside its result.
 
-    Files that are there and fit their result are kept. `workers`: processes, 0 for one for each core; `load`: modules
-    that the episodes need. Raises ValueError for a folder without results, and for results that cannot be played again.
+    Files that are there and fit their result are kept. `where`: processes and machines, which must all share the
+    folders; `load`: modules that the episodes need. Raises ValueError for a folder without results, and for results
+    that cannot be played again.
     """
+    if where.backend == RAY:  # whose processes are elsewhere
+        folders = [folder.absolute() for folder in folders]
     found = _records(folders)
     if not found:
         raise ValueError(f"folders must hold results of `hazard-ms evaluate`, got none in {_listed(folders)}")
     made = {path: kept for path in found if (kept := _kept(path)) is not None}
     jobs = [_job(path, result, load) for path, result in found.items() if path not in made]
     failed = []
-    crew = Crew(min(workers or cores(), max(len(jobs), 1)), attempt)
-    with ending(crew.end):
-        for job, outcome in crew.play(jobs):
+    with spread(jobs, where.workers, where.backend, where.address, attempt) as outcomes:
+        for job, outcome in outcomes:
             assert isinstance(job, RegretJob)
             if outcome.result is None:
                 failed.append(f"{job.path}: {outcome.error}")

@@ -11,21 +11,23 @@ import hashlib
 import json
 import random
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 
+import torch
+
 from hazard_ms.agents.base import PrivilegedAgent
+from hazard_ms.evaluation.attempts import attempt as play
 from hazard_ms.evaluation.metrics import Tally
-from hazard_ms.evaluation.replay import DIFFERENT, EXACT, compare
+from hazard_ms.evaluation.replay import DIFFERENT, EXACT, compare, other_versions
 from hazard_ms.evaluation.result import BROKEN, STUCK, EpisodeResult, machine, versions
-from hazard_ms.evaluation.spread import spread
+from hazard_ms.evaluation.spread import Where, spread
 from hazard_ms.evaluation.submissions.faults import COURSE, CUT, DAMAGED, HASH, SCORE, START, Fault, faults_of
 from hazard_ms.evaluation.submissions.packing import Submission, name_of, read_submission
 from hazard_ms.evaluation.submissions.report import Claim, Report, Sample, Seen
-from hazard_ms.evaluation.submissions.tracks import Place, Track
-from hazard_ms.evaluation.workers import SILENCE, Job, Outcome
+from hazard_ms.evaluation.submissions.tracks import TRACKS, Place, Track
+from hazard_ms.evaluation.workers import SILENCE, Job, Outcome, Say
 from hazard_ms.machine.cores import maker
 from hazard_ms.registry import AGENTS, load
 from hazard_ms.skills.decision import STOP
@@ -35,13 +37,21 @@ from hazard_ms.spec.foreign.files import sha256_of
 NOBODY = "random"  # an agent that is never asked: decisions are those of the record
 UNASKED = ("time", "failed", BROKEN, STUCK)  # ends of episodes that no agent chooses
 NO_HASH = "0" * 64  # of a simulation that did not begin
+HERE = Where()  # one process for each core
 
 
-def verify(path: Path, track: Track | None, episodes: int = 0, seed: int = 0, workers: int = 0) -> Report:
+@dataclass(frozen=True)
+class Simulation(Job):
+    """The decisions of a record, to be simulated in the episode that `track` asks for."""
+
+    track: Track = TRACKS["published"]
+
+
+def verify(path: Path, track: Track | None, episodes: int = 0, seed: int = 0, where: Where = HERE) -> Report:
     """The report on a submission in a file; `track` is the one that it must be of, None where it names none.
 
-    `episodes`: how many are drawn by `seed` and simulated; 0: all. Raises ValueError for a file that is not there, and
-    for more episodes than the track has.
+    `episodes`: how many are drawn by `seed` and simulated, 0 for all; `where`: in which processes. Raises ValueError
+    for a file that is not there, for more episodes than the track has, and as `simulated` does.
     """
     digest = sha256_of(path)
     try:
@@ -59,33 +69,38 @@ def verify(path: Path, track: Track | None, episodes: int = 0, seed: int = 0, wo
     sample = Sample(episodes, seed) if 0 < episodes < len(wanted) else None
     if sample:
         wanted = sorted(random.Random(seed).sample(wanted, episodes), key=wanted.index)
-    seen, found = simulated(submission, track, wanted, workers)
+    seen, found = simulated(submission, track, wanted, where)
     return replace(_report(digest, submission, track, seen, found), sample=sample)
 
 
 def simulated(
-    submission: Submission, track: Track, places: Sequence[Place], workers: int = 0
+    submission: Submission, track: Track, places: Sequence[Place], where: Where = HERE
 ) -> tuple[list[Seen], list[Fault]]:
-    """Simulate the episodes at `places` of a submission without faults; each is printed as it ends."""
+    """Simulate the episodes at `places` of a submission without faults; each is printed as it ends.
+
+    Raises ValueError where that says nothing of the submission: where the process of an episode dies twice, and where
+    one differs on a processor without AVX2, or on a machine with other packages or a processor of another maker.
+    """
     rows = submission.rows()
     records = {place: rows[name_of(place)][1] for place in places}
     seen: dict[Place, Seen] = {}
     faults: dict[Place, list[Fault]] = {}
-    with ExitStack() as files:
-        jobs = {place: _job(record, place, track, files) for place, record in records.items()}
-        alone = {place: replace(job, actions=((STOP, None),), waits=()) for place, job in jobs.items() if track.averted}
-        lost: dict[Place, EpisodeResult | None] = {}
-        for place, outcome in _played(alone, workers):
-            lost[place] = outcome.result
-        for place, outcome in _played(jobs, workers):
-            record, played = records[place], outcome.result
-            nobody = lost.get(place)
-            if played is not None and nobody is not None:
-                played = replace(played, lost_alone=nobody.lost)
-            verdict, faults[place] = compared(record, played, outcome.error)
-            seen[place] = _seen(place, record, played, verdict)
-            line = f"{len(seen)}/{len(places)} {name_of(place)}: {verdict}"
-            print("; ".join([line, *(fault.what for fault in faults[place])]), flush=True)
+    jobs = {place: _job(record, place, track) for place, record in records.items()}
+    alone = {place: replace(job, actions=((STOP, None),), waits=()) for place, job in jobs.items() if track.averted}
+    lost: dict[Place, EpisodeResult | None] = {}
+    for place, outcome in _played(alone, where):
+        lost[place] = outcome.result
+    for place, outcome in _played(jobs, where):
+        record, played = records[place], outcome.result
+        nobody = lost.get(place)
+        if played is not None and nobody is not None:
+            played = replace(played, lost_alone=nobody.lost)
+        verdict, faults[place] = compared(record, played, outcome.error)
+        if faults[place] and played is not None:
+            _check_machine(played)
+        seen[place] = _seen(place, record, played, verdict)
+        line = f"{len(seen)}/{len(places)} {name_of(place)}: {verdict}"
+        print("; ".join([line, *(fault.what for fault in faults[place])]), flush=True)
     return [seen[place] for place in places], [fault for place in places for fault in faults[place]]
 
 
@@ -132,13 +147,25 @@ def _decisions(record: EpisodeResult, played: EpisodeResult) -> Iterator[Fault]:
             return
 
 
-def _job(record: EpisodeResult, place: Place, track: Track, files: ExitStack) -> Job:
-    """The job that simulates the decisions of a record in the episode that the track asks for."""
+def attempt(job: Job, say: Say) -> Outcome:
+    """Simulate one episode in this process, a hidden scene from a file of its own, and tell what the processor is.
+
+    The scene is made here, so that no machine of a cluster needs the files of another one.
+    """
+    assert isinstance(job, Simulation)
+    with job.track.scene_file((job.options.env_id, job.options.seed)) as scene:
+        done = play(replace(job, options=replace(job.options, scene=scene)), say)
+    if done.result is None:
+        return done
+    own = {"processor": maker(), "instructions": torch.backends.cpu.get_cpu_capability()}
+    return done._replace(result=replace(done.result, machine=done.result.machine | own))
+
+
+def _job(record: EpisodeResult, place: Place, track: Track) -> Simulation:
     options = track.options(place, _asked(record.agent), record.perception)
-    scene = files.enter_context(track.scene_file(place))
     actions = tuple((d.verb, d.target) for d in record.decisions)
     waits = tuple(d.waited for d in record.decisions)
-    return Job(replace(options, scene=scene), SILENCE, actions, waits, averted=track.averted)
+    return Simulation(options, SILENCE, actions, waits, averted=track.averted, track=track)
 
 
 def _asked(agent: str) -> str:
@@ -148,11 +175,24 @@ def _asked(agent: str) -> str:
     return name if entry is not None and issubclass(load(entry.agent), PrivilegedAgent) else NOBODY
 
 
-def _played(jobs: dict[Place, Job], workers: int) -> Iterator[tuple[Place, Outcome]]:
+def _played(jobs: dict[Place, Simulation], where: Where) -> Iterator[tuple[Place, Outcome]]:
     places = {id(job): place for place, job in jobs.items()}
-    with spread(list(jobs.values()), workers) as outcomes:
+    with spread(list(jobs.values()), where.workers, where.backend, where.address, attempt) as outcomes:
         for job, outcome in outcomes:
+            if outcome.died:
+                raise ValueError(f"each episode must be simulated, got {name_of(places[id(job)])}: {outcome.error}")
             yield places[id(job)], outcome
+
+
+def _check_machine(played: EpisodeResult) -> None:
+    """Raise ValueError for a simulation by a machine that differs in what can change an episode."""
+    if not str(taken := played.machine.get("instructions")).startswith("AVX"):
+        raise ValueError(f"machines must all compute with AVX2, got one where torch takes {taken}")
+    others = other_versions(played.versions)
+    if others:
+        raise ValueError(f"machines must all have the versions that this one has, got one with {others}")
+    if (there := played.machine.get("processor")) != maker():
+        raise ValueError(f"machines must all have processors of one maker, got {there}, here {maker()}")
 
 
 def _seen(place: Place, record: EpisodeResult, played: EpisodeResult | None, verdict: str) -> Seen:

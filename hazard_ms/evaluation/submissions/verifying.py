@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from hazard_ms.evaluation.spread import Where
 from hazard_ms.evaluation.submissions.commitments import read_hidden
 from hazard_ms.evaluation.submissions.copies import copied
 from hazard_ms.evaluation.submissions.packing import read_submission
 from hazard_ms.evaluation.submissions.report import SUFFIX, read_report
 from hazard_ms.evaluation.submissions.signing import sign
+from hazard_ms.evaluation.submissions.simulating import HERE
 from hazard_ms.evaluation.submissions.simulating import verify as simulated
 from hazard_ms.evaluation.submissions.tracks import HIDDEN, TRACKS, Track, track_of
 from hazard_ms.machine.files import make_folder, write
@@ -22,21 +24,22 @@ def verify(
     output: Path | None = None,
     episodes: int = 0,
     seed: int = 0,
-    workers: int = 0,
+    where: Where = HERE,
     key: Path | None = None,
     known: Path | None = None,
     hidden: tuple[Path, Path] | None = None,
 ) -> int:
     """Verify a submission as `hazard-ms verify` describes it. Returns 1 if there is any fault, else 0.
 
-    Raises ValueError for files that are not there, and for a report that cannot be written or signed.
+    Raises ValueError for files that are not there, for a report that cannot be written or signed, and where a
+    simulation says nothing of the submission.
     """
     if key is not None and output is None:
         raise ValueError("output must be given with key, so that there is a report to sign, got none")
     if output is not None and not output.name.endswith(SUFFIX):
         raise ValueError(f"output must be a name that ends in {SUFFIX}, got {output.name!r}")
     earlier = [read_report(path) for path in sorted(known.rglob(f"*{SUFFIX}"))] if known else []
-    report = simulated(file, _track(file, read_hidden(hidden)), episodes, seed, workers)
+    report = simulated(file, _track(file, read_hidden(hidden)), episodes, seed, where)
     report = replace(report, faults=(*report.faults, *copied(report, earlier)))
     for fault in report.faults[:SHOWN]:
         print(fault)

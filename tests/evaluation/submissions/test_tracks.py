@@ -16,6 +16,7 @@ from hazard_ms.evaluation.averted.alone import losses
 from hazard_ms.evaluation.choices import EnvOptions
 from hazard_ms.evaluation.options import EpisodeOptions, SweepOptions
 from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.evaluation.spread import Where
 from hazard_ms.evaluation.submissions import faults
 from hazard_ms.evaluation.submissions.faults import faults_of
 from hazard_ms.evaluation.submissions.packing import pack, submission_of
@@ -24,7 +25,7 @@ from hazard_ms.evaluation.submissions.tracks import Place, Track
 from hazard_ms.evaluation.workers import Job
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
-from tests.worlds.submissions import CARD, ignore
+from tests.worlds.submissions import CARD, ignore, make_key
 
 pytestmark = [pytest.mark.render, pytest.mark.long, pytest.mark.timeout(900)]
 FIRE, HOME = "HazardFire-v1", "HazardHouseFire-v1"
@@ -58,7 +59,7 @@ def check(track: Track, result: EpisodeResult) -> None:
     place: Place = (result.env_id, result.seed)
     submission = submission_of(pack({place: result}, track, CARD), "it")
     assert faults_of(submission, track) == []
-    (seen,), found = simulated(submission, track, [place], workers=1)
+    (seen,), found = simulated(submission, track, [place], Where(1))
     assert (seen.verdict, found) == ("exact", []) and seen.tally == result.tally and seen.averted == result.averted
 
 
@@ -92,7 +93,7 @@ def test_in_homes(tmp_path: Path) -> None:
 
 
 def test_in_hidden_scenes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """By the commands alone: drawn, published, played, submitted, verified."""
+    """By the commands alone: drawn, published, played, submitted, verified, signed, listed."""
     file, secret, scenes = (tmp_path / name for name in ("autumn.json", "secret.json", "scenes"))
     assert main(["commitments", str(file), "--draw", "1", "--secret", str(secret)]) == 0
     assert main(["commitments", str(file), "--published", str(secret), "-o", str(scenes)]) == 0
@@ -103,7 +104,12 @@ def test_in_hidden_scenes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     hidden = ["--hidden", str(file), str(secret)]
     named = ["--card", str(tmp_path / "card.json"), "-o", str(tmp_path / "short.zip")]
     assert main(["submit", str(tmp_path / "played"), *named, *hidden]) == 0
-    assert main(["verify", str(tmp_path / "short.zip"), "--workers", "1", *hidden]) == 0
+    signed = ["-o", str(tmp_path / "short.report.json"), "--key", str(make_key(tmp_path))]
+    assert main(["verify", str(tmp_path / "short.zip"), "--workers", "1", *hidden, *signed]) == 0
     assert "verified: all 3 episodes" in capsys.readouterr().out
+    assert main(["leaderboard", str(tmp_path), "-o", str(tmp_path / "site")]) == 0
+    shown = capsys.readouterr().out
+    assert "hidden-autumn: short" in shown and "not counted" not in shown
+    assert "hidden-autumn" in (tmp_path / "site" / "index.html").read_text()
     assert main(["verify", str(tmp_path / "short.zip")]) == 2
     assert "must be given with its files, --hidden" in capsys.readouterr().err

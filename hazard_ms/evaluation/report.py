@@ -34,7 +34,8 @@ def title(options: SweepOptions) -> str:
     """The line that says what was played."""
     env = options.env
     physics = " ".join([env.physics, *env.strength])
-    settings = [f"split {env.split}", f"physics {physics}", f"robot {env.robot_uids}"]
+    robots = f"robots {' and '.join(env.robot_uids)}" if env.team else f"robot {env.robot_uids}"
+    settings = [f"split {env.split}", f"physics {physics}", robots]
     settings += ["agent affected"] * env.affects_agent
     settings += [f"{name} {env.settings[name]}" for name in LOOKS if name in env.settings]
     settings += [] if options.clock == OFF else [f"clock {options.clock}"]

@@ -51,9 +51,14 @@ def asked(options: SweepOptions) -> bool:
 
     Raises ValueError for another answer than AVERTED offers.
     """
-    if one_of(options.averted, AVERTED, "averted") != AS_TASK:
+    one_of(options.averted, AVERTED, "averted")
+    if options.env.team and options.averted == YES:
+        raise ValueError("averted must be task or no for teams, of which it is not told so far, got yes")
+    if options.averted != AS_TASK:
         return options.averted == YES
     env = options.env
+    if env.team:
+        return False
     return task_of(env.env_id, env.physics, list(env.hazards) or None, env.severity).averted
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -31,7 +32,8 @@ class Spectator:
         x, y = (sum(along) / len(places) for along in zip(*places, strict=True))  # of a team, the middle
         if self._cutaway is None:
             if self._spec.room.open_air:
-                self.camera.camera.set_local_pose(following_view(corner_view(self._spec), (x, y)))
+                reach = max(math.dist(place, (x, y)) for place in places)
+                self.camera.camera.set_local_pose(following_view(corner_view(self._spec), (x, y), reach))
             yield
             return
         aspect = self.camera.camera.width / self.camera.camera.height

@@ -52,7 +52,7 @@ class TeamCompositor:
         for number, (name, shot) in enumerate(shots.items()):
             self._robot(sheet, name, shot, TOP + number * self._row, name in stopped)
         write(sheet, f"{len(shots)} robots", (GAP + 4, CAPTION), 24, ACCENT)
-        write(sheet, f"{collisions} collisions with one another", (GAP + 4, CAPTION + 34), 15, SOFT)
+        write(sheet, f"collisions with one another: {collisions}", (GAP + 4, CAPTION + 34), 15, SOFT)
         held = {shot.held for shot in shots.values()} - {None}
         targets = tuple(replace(target, held=target.name in held) for target in first.targets)
         progress(sheet, replace(first, targets=targets), f"{len(held)} in hands")

@@ -92,3 +92,9 @@ def test_decisions_of_teams_are_not_judged(tmp_path: Path, capsys: pytest.Captur
 def test_each_robot_of_a_team_may_ask_a_model() -> None:
     assert needs_key("independent:llm:model=a") and needs_key("independent:own.py:Mine") and needs_key("llm")
     assert not needs_key("independent") and not needs_key("independent:planner") and not needs_key("joint")
+
+
+def test_words_that_are_options_are_no_robots(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        tyro.cli(tyro.conf.OmitArgPrefixes[PlayOptions], args=["-r", "fetch", "--help"])
+    assert ended.value.code == 0 and "{fetch,g1} ..." in capsys.readouterr().out

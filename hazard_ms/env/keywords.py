@@ -47,8 +47,6 @@ def check_team(robot: Any, env: Any, cameras: Sequence[str], given: dict[str, An
         raise ValueError(f"robot_uids must be one robot in {task.name}, which is practice for one robot, got {count}")
     if given.get("num_envs", 1) != 1 or given.get("sim_backend", "auto") not in ("auto", "cpu", "physx_cpu"):
         raise ValueError(f"num_envs must be 1 and sim_backend cpu for {count} robots, got {given}")
-    if env.affects_agent:
-        raise ValueError(f"affects_agent must be False for {count} robots: hazards act on one so far, got True")
     off = {"perturb": env.perturbation != Perturbation(), "senses": env.senses}
     for name, asked in {**off, "cameras": cameras}.items():
         if asked:

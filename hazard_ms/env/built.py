@@ -82,8 +82,8 @@ class BuiltEnv(BaseEnv):
 
     @property
     def _default_sensor_configs(self) -> list[CameraConfig]:
-        """The robot's cameras that were asked for beside that of its head, whose picture has as many pixels."""
-        return [mounted(name, self.agent) for name in self.cameras]
+        """The robots' cameras that were asked for beside those of heads, whose pictures have as many pixels."""
+        return mounted(self.cameras, self.robots)
 
     @property
     def _default_human_render_camera_configs(self) -> CameraConfig:
@@ -164,7 +164,8 @@ class BuiltEnv(BaseEnv):
     def _before_control_step(self) -> None:
         self.leaves.move()
         if self.perturbation.control:
-            lead_astray(self.agent, self.world.chance, self.perturbation.control, self.control_freq)
+            for robot in self.members:
+                lead_astray(robot.agent, robot.world, self.perturbation.control, self.control_freq)
         if self.affects_agent:
             self.members.yield_to_hazards()
         if self.contacts is not None:

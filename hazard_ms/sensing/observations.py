@@ -131,7 +131,9 @@ class Observer:
         """What the head camera truly sees; `depth` as ManiSkill gives it, [E, H, W, 1]."""
         ids = seen["segmentation"] if "segmentation" in seen else self._textures(segmentation=True)["segmentation"]
         labels = relabel(ids, self.labels)
-        return Frame(depth[..., 0], labels, params["intrinsic_cv"], params["cam2world_gl"], "head")
+        return Frame(
+            depth[..., 0], labels, params["intrinsic_cv"], params["cam2world_gl"], self.situation.agent.head_camera
+        )
 
     def _add_senses(self, seen: dict[str, Tensor], place: dict[str, Tensor], frame: Frame) -> None:
         """Put the thermal image, float32 [E, H, W, 1] [C], into `place`; degrade the colour and depth in `seen`."""

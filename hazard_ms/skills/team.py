@@ -224,6 +224,12 @@ class TeamSkills:
             if other != name:
                 self.knowledge[other].hear(Message(self.frame, name, text), seen)
 
+    def rest(self, frames: int) -> None:
+        """Let `frames` frames pass in which all robots stand, whatever is under way; fewer if the simulation breaks."""
+        for _ in range(frames):
+            if not bool(self.base.episode.sim_error[0]):
+                self._frame({name: self.knowledge[name].stage.act() for name in self.names})
+
     def close(self) -> None:
         """Close the environment."""
         self.env.close()

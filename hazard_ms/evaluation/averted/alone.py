@@ -51,14 +51,9 @@ def asked(options: SweepOptions) -> bool:
 
     Raises ValueError for another answer than AVERTED offers.
     """
-    one_of(options.averted, AVERTED, "averted")
-    if options.env.team and options.averted == YES:
-        raise ValueError("averted must be task or no for teams, of which it is not told so far, got yes")
-    if options.averted != AS_TASK:
+    if one_of(options.averted, AVERTED, "averted") != AS_TASK:
         return options.averted == YES
     env = options.env
-    if env.team:
-        return False
     return task_of(env.env_id, env.physics, list(env.hazards) or None, env.severity).averted
 
 
@@ -77,7 +72,10 @@ def losses(options: SweepOptions, episodes: Sequence[EpisodeOptions]) -> dict[Ep
     firsts = {path: episode for episode, path in reversed(files.items())}
     found = {path: read(path, episode) for path, episode in firsts.items()}
     missing = {path: firsts[path] for path, loss in found.items() if loss is None}
-    jobs = {path: Job(_alone(e, "random"), SILENCE, ((STOP, None),), averted=True) for path, e in missing.items()}
+    stops = {e: tuple((STOP, None) for _ in e.team or ("",)) for e in missing.values()}
+    jobs = {
+        path: Job(_alone(e, "random"), SILENCE, stops[e], averted=True, robots=e.team) for path, e in missing.items()
+    }
     paths = {id(job): path for path, job in jobs.items()}
     with spread(list(jobs.values()), options.workers, options.backend, options.address) as outcomes:
         for done, (job, outcome) in enumerate(outcomes, 1):

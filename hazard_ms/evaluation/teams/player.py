@@ -13,6 +13,7 @@ from typing import Any
 
 from hazard_ms.agents.base import counters_of, shown_note, staying
 from hazard_ms.agents.team import TeamAgent, team_agent
+from hazard_ms.evaluation.averted.account import Account
 from hazard_ms.evaluation.hashes import EVERY, extended
 from hazard_ms.evaluation.metrics import Tally
 from hazard_ms.evaluation.options import EpisodeOptions
@@ -160,7 +161,8 @@ def play(
 ) -> EpisodeResult:
     """Play one episode of a team in an environment of its own, made with `keywords` besides those of `options`.
 
-    `player` decides in place of the agent of `options`. Raises ValueError for what cannot be played.
+    `player` decides in place of the agent of `options`; an Account among `watchers` adds what is lost. Raises
+    ValueError for what cannot be played.
     """
     start = time.perf_counter()
     options.check(teams=True)
@@ -168,14 +170,14 @@ def play(
     env = TeamSkills.make(options.env_id, **{"reward_mode": "none", **options.settings, **keywords})
     made = time.perf_counter()
     try:
-        if env.base.task.safe_place.at_rest:
-            raise ValueError(
-                f"robot_uids must be one robot in {options.env_id}, where what lies on the ground when time is up is "
-                f"safe, got {len(options.team)}"
-            )
+        if env.base.task.safe_place.at_rest and not any(isinstance(w, Account) for w in watchers):
+            watchers = [*watchers, Account()]
         played = TeamRunner(env, player, watchers).run(options.seed, options.reset_options)
+        result = result_of(options, env, played)
+        for account in (w for w in watchers if isinstance(w, Account)):
+            result = replace(result, **account.closed(lambda: fates(env)))
         played.phase_seconds["build"] += made - start
-        return replace(result_of(options, env, played), wall_seconds=time.perf_counter() - start)
+        return replace(result, wall_seconds=time.perf_counter() - start)
     finally:
         env.close()
 

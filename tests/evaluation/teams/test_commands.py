@@ -46,7 +46,6 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"agents": ("joint:planner",)}, "must be joint alone"),
     ({"clock": "wall"}, "clock of a team must be one of off, got 'wall'"),
     ({"perception": "noisy"}, "perception of a team must be one of truth, got 'noisy'"),
-    ({"averted": "yes"}, "averted must be task or no for teams, of which it is not told so far, got yes"),
     ({"env": EnvOptions(robot_uids=("fetch", "fetsh"))}, "robot_uids must be .* got 'fetsh'"),
     ({"env": EnvOptions(robot_uids=("fetch",) * 5)}, "robot_uids must be at most 4 robots, got 5"),
 ]

@@ -15,7 +15,7 @@ from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.replay import DIFFERENT, EXACT, SAME_SCORE, compare, job_of
 from hazard_ms.evaluation.result import ERROR, DecisionRecord, EpisodeResult, Link
 from hazard_ms.evaluation.workers import Job, Word
-from hazard_ms.skills.decision import EXPLORE, STOP, WALK_ONE_STEP
+from hazard_ms.skills.decision import DROP, EXPLORE, STOP, WALK_ONE_STEP
 from hazard_ms.skills.team import TeamSkills
 
 pytestmark = pytest.mark.render
@@ -27,7 +27,7 @@ from hazard_ms.skills.decision import Action
 NUMBERS = count()
 class Raises(Agent):
     def reset(self, brief):
-        self.left = ["explore"] * (1 + next(NUMBERS) % 2) + ["explore"]
+        self.left = ["explore", "drop"] if next(NUMBERS) % 2 else ["explore"] * 3
     def act(self, decision):
         return Action(self.left.pop()) if self.left else 1 / 0  # where the other one looks around
 """
@@ -94,12 +94,13 @@ def test_a_changed_decision_is_noticed(played: EpisodeResult) -> None:
 
 
 def test_an_episode_that_failed_is_kept_to_its_last_decision_and_played_again(tmp_path: Path) -> None:
-    """One robot raises an error at a decision while the other looks around: this is recorded as it stood then."""
+    """One robot drops nothing, looks around, and raises an error a frame after the other looks around once more."""
     (tmp_path / "own.py").write_text(RAISES)
     record = attempt(Job(options_of("HazardFire-v1", f"independent:{tmp_path}/own.py:Raises"), 60.0), ignore).result
     assert record is not None and record.ended == ERROR and "ZeroDivisionError" in record.error
-    last = {d.robot: d for d in record.decisions}
-    assert any(d.frame + d.frames == record.frames for d in last.values())
+    last = {d.robot: (d.verb, d.reason, d.frame + d.frames) for d in record.decisions}
+    assert sorted(last.values()) == [(EXPLORE, "", record.frames), (EXPLORE, "episode_over", record.frames)]
+    assert [d.frames for d in record.decisions if d.verb == DROP or d.reason == "episode_over"] == [1, 1]
     again = attempt(job_of(record), ignore).result
     assert again is not None and compare(record, again) == (EXACT, "")
 

@@ -149,7 +149,7 @@ class BuiltEnv(BaseEnv):
 
     def _step_action(self, action: Any) -> Any:
         """As ManiSkill's, which looks again at what an action is; one that is checked already needs no second look."""
-        if self.gpu_sim_enabled or not isinstance(action, Tensor):
+        if self.gpu_sim_enabled or not isinstance(action, Tensor if len(self.robots) == 1 else dict):
             return super()._step_action(action)
         self.agent.set_action(action)
         self._before_control_step()

@@ -125,6 +125,9 @@ class Members:
             return
         drops = []
         for member, (place, turn, closed) in zip(self._all, grips, strict=True):
+            if none_set(closed != member.hand.closed):
+                drops.append(torch.full_like(member.hand.held, -1))  # nothing is taken or let go
+                continue
             others = self._episode.world.held & ~member.world.held
             drops.append(grasp.update(member.hand, member.world, place, turn, closed, others))
             self._gather()

@@ -105,7 +105,10 @@ class Members:
             robot.keep_out(episode.forbidden)
 
     def told(self) -> dict[str, Tensor]:
-        """The entries of `info` about each robot, [E] each; in a team their names begin with that of the robot."""
+        """The entries of `info` about each robot, [E] each, in the units that hazards declare [-].
+
+        In a team their names begin with that of the robot.
+        """
         if len(self) == 1:
             return rewards.told(self._all[0].situation)
         return {f"{m.name}-{name}": value for m in self._all for name, value in rewards.told(m.situation).items()}

@@ -104,7 +104,10 @@ def evaluate(goal: Goal, situation: Situation) -> dict[str, Tensor]:
 
 
 def told(situation: Situation) -> dict[str, Tensor]:
-    """The entries of `info` that hazards tell of the agent, [E] each; none where they do not act on it."""
+    """The entries of `info` that hazards tell of the agent, [E] each, in the units that they declare [-].
+
+    There are none where hazards do not act on it.
+    """
     if not situation.affects_agent:
         return {}
     episode, found = situation.episode, {}

@@ -24,7 +24,7 @@ class Crew:
         return len(self.builds)
 
     def own(self, quantity: Tensor) -> Tensor:
-        """The part of a `quantity` of all robots, [E, A], that is of the one whose world it is, [E], in its unit."""
+        """The part, [E], of a `quantity` of all robots, [E, A], that is of the robot of this world, in its unit [-]."""
         return quantity[:, self.number]
 
     def each(self, *quantities: Tensor) -> Iterator[tuple[Any, ...]]:

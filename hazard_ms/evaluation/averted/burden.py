@@ -6,7 +6,6 @@ from typing import Any
 
 import torch
 
-from hazard_ms.episode.members import Member
 from hazard_ms.evaluation.averted.contacts import Collisions
 from hazard_ms.evaluation.averted.loss import Loads
 from hazard_ms.hazards.fire.realistic.tenability import dose_rate
@@ -18,8 +17,8 @@ WET = 0.01  # depth from which the robot wades [m] [ours]
 class Burden:
     """The loads on one robot since the episode began."""
 
-    def __init__(self, base: Any, member: Member) -> None:
-        """Begin with none on the robot `member` of `base`, a HazardEnv."""
+    def __init__(self, base: Any, member: Any) -> None:
+        """Begin with none on the robot `member`, one of the members of `base`, a HazardEnv."""
         self._situation = member.situation
         self._seconds = float(base.control_timestep)
         self._dose: float | None = None

@@ -75,7 +75,7 @@ class StillFire(Fire):
         around = self.room_temperature + over / total
         passive = active[:, : nodes - 1] & ~(state.status == BURNING) & due[:, None]
         state.temperature.copy_(heat.exchange(state.temperature, around[:, :-1], passive, self.decay))
-        state.agent_temperature.copy_(heat.exchange(state.agent_temperature, around[:, -1], due, self.decay))
+        state.agent_temperature.copy_(heat.exchange(state.agent_temperature, around[:, -1:], due[:, None], self.decay))
 
     def _weight(self, here: Tensor, there: Tensor, world: World) -> Tensor:
         """Weights of sources `here` [m], [E, M, 3], at points `there` [m], [E, P, 3]: [E, M, P]."""

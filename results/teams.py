@@ -13,6 +13,7 @@ import os
 import statistics
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import asdict, fields
 from typing import Any
 
@@ -34,19 +35,21 @@ TASKS = {
 SCENES = 4
 NAMES = {setup: f"{len(setup[0])} {setup[1]}" for setup in SETUPS}
 BEST, ALONE, APART = "2 joint", "1 independent:planner", "2 independent"
+BORNE = ("heat", "water")  # columns with a number for each robot, empty where nothing measures it
 COLUMNS = tuple(field.name for field in fields(TeamResult))
 WARM_UP, TURNS, FRAMES = 60, 15, 40  # frames before it is timed; turns of each team, and the frames of one
 HEAD = """# Two robots in the scenes of one
 
-Made by `./run python results/teams.py`. First scenes of the split `test`, Fetch, presets `paper`, hazards do not act on
-the robots. `1 independent` is one greedy robot, `1 independent:planner` one that plans; two robots are on their own
-(`2 independent`), hold auctions, or plan together. Value in percent, with 95 % bootstrap intervals over scenes;
-collisions are contacts between robots at more than 0.1 m/s, of all episodes together. teams.csv has every episode.
+Made by `./run python results/teams.py`. First scenes of the split `test`, Fetch, presets `paper`; hazards act on the
+robots in homes and gales alone. `1 independent` is one greedy robot, `1 independent:planner` one that plans; two robots
+are on their own (`2 independent`), hold auctions, or plan together. Value and what was averted in percent, with 95 %
+bootstrap intervals over scenes, averted only of scenes where it is defined; collisions are contacts between robots at
+more than 0.1 m/s, of all episodes together. teams.csv has every episode.
 Written at
 {machine}.
 
-| task | team | Value | frames | collisions | episodes |
-|---|---|---|---|---|---|
+| task | team | Value | averted | frames | collisions | episodes |
+|---|---|---|---|---|---|---|
 """
 COMPARED = """
 | task | Value of `2 joint` over that of `1 independent:planner` | less `2 independent` | less `2 auction` | episodes |
@@ -65,6 +68,8 @@ def played() -> list[TeamResult]:
 def _read(row: dict[str, str]) -> TeamResult:
     numbers: dict[str, Any] = {name: int(row[name]) for name in ("seed", "rescued", "targets", "frames")}
     numbers |= {"robot_collisions": int(row["robot_collisions"]), "value": float(row["value"])}
+    numbers |= {"averted": float(row["averted"]) if row["averted"] else None}
+    numbers |= {name: tuple(float(one) for one in row[name].split()) for name in BORNE}
     robots = tuple(row["robots"].split())
     return TeamResult(env_id=row["env_id"], scene=row["scene"], robots=robots, agent=row["agent"], **numbers)
 
@@ -76,8 +81,14 @@ def write(every: list[TeamResult]) -> None:
     with FILE.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows({**asdict(r), "robots": " ".join(r.robots)} for r in every)
+        writer.writerows(
+            {**asdict(r), **{name: _listed(getattr(r, name)) for name in ("robots", *BORNE)}} for r in every
+        )
     (HERE / "teams.md").write_text(HEAD.format(machine=machine()) + tables(every), encoding="utf-8")
+
+
+def _listed(values: Sequence[Any]) -> str:
+    return " ".join(str(value) for value in values if value is not None)
 
 
 def tables(every: list[TeamResult]) -> str:
@@ -91,8 +102,10 @@ def tables(every: list[TeamResult]) -> str:
                 continue
             own = values[name] = {(r.seed, r.scene): r.value for r in mine}
             mean = words(difference(own, dict.fromkeys(own, 0.0)))
+            shares = {(r.seed, r.scene): r.averted for r in mine if r.averted is not None}
+            kept = words(difference(shares, dict.fromkeys(shares, 0.0))) if shares else "-"
             frames, hits = statistics.mean(r.frames for r in mine), sum(r.robot_collisions for r in mine)
-            text += f"| {task} | {name} | {mean} | {frames:.0f} | {hits} | {len(mine)} |\n"
+            text += f"| {task} | {name} | {mean} | {kept} | {frames:.0f} | {hits} | {len(mine)} |\n"
         if {BEST, ALONE, APART, "2 auction"} <= values.keys():
             both = values[BEST].keys() & values[ALONE].keys()
             one, two = (sum(values[name][e] for e in both) for name in (ALONE, BEST))

@@ -82,15 +82,19 @@ def note_of(player: Agent) -> str:
 
     Raises ValueError for a note that is neither a str nor None.
     """
-    note = player.note
+    return shown_note(player.note, player)
+
+
+def shown_note(note: Any, player: object) -> str:
+    """A `note` of an agent, or of one of teams, as `note_of` gives it. Raises ValueError as that does."""
     if note is not None and not isinstance(note, str):
         raise ValueError(f"note of {type(player).__name__} must be a str or None, got a {type(note).__name__}")
     shown = "".join(c if c.isprintable() else " " for c in (note or "")[: LONGEST_NOTE + 1])
     return shown if len(shown) <= LONGEST_NOTE else shown[: LONGEST_NOTE - 1] + "…"
 
 
-def counters_of(player: Agent) -> dict[str, float]:
-    """The agent's counters, whose numbers have the units that it gives them.
+def counters_of(player: Any) -> dict[str, float]:
+    """The counters of an agent, or of one of teams, whose numbers have the units that it gives them.
 
     Raises ValueError for names that are not short texts, and for values that are not finite numbers.
     """

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import cast
 
-from hazard_ms.agents.base import Agent, agent
+from hazard_ms.agents.base import Agent, agent, check_name
 from hazard_ms.registry.loading import load
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
@@ -53,7 +53,9 @@ class Independent(TeamAgent):
             self._agents[name].reset(brief)
 
     def act(self, decisions: Mapping[str, Decision]) -> dict[str, Action]:
-        return {name: self._agents[name].act(decision) for name, decision in decisions.items()}
+        made = {name: self._agents[name].act(decision) for name, decision in decisions.items()}
+        self.notes = {name: self._agents[name].note for name in decisions}
+        return made
 
 
 TEAM_AGENTS = {  # the class of each, imported when it is asked for
@@ -76,3 +78,15 @@ def team_agent(name: str) -> TeamAgent:
     if member and kind not in FOLLOWED:
         raise ValueError(f"team agent must be {kind} alone, since its robots' agents are its own, got {name!r}")
     return cast(TeamAgent, made(member) if member else made())
+
+
+def check_team_name(text: str) -> None:
+    """Raises ValueError unless `text` is an agent of teams, as `team_agent` takes it.
+
+    Code of a module or a file that it names is not run: whether there is one is seen where episodes are played.
+    """
+    member = text.removeprefix("independent:")
+    if member != text and "." in member.partition(":")[0]:
+        check_name(member)
+    else:
+        team_agent(text)

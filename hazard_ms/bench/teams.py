@@ -2,7 +2,8 @@
 
     python -m hazard_ms.bench.teams -t HazardFire-v1 HazardWind-v1 -n 2 -o teams.jsonl
 
-All play the same scenes. Every episode adds a line to the file. Results do not depend on the machine.
+All play the same scenes. Every episode adds a line to the file, with what was averted and what each robot bore in tasks
+that tell of it (docs/benchmark.md 4.3). Results do not depend on the machine.
 """
 
 from __future__ import annotations
@@ -13,10 +14,15 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from hazard_ms.agents.team import TeamAgent, team_agent
+from hazard_ms.evaluation.averted.account import Account
+from hazard_ms.evaluation.averted.loss import averted, mean_score
+from hazard_ms.evaluation.metrics import Tally
+from hazard_ms.evaluation.runner import fates
 from hazard_ms.skills.team import TeamSkills
 
 ALONE, PAIR = ("fetch",), ("fetch", "fetch")
@@ -43,43 +49,71 @@ class TeamResult:
     targets: int
     frames: int
     robot_collisions: int
+    averted: float | None = None  # share of what is lost if nobody acts; None: nothing is, or the task does not ask
+    heat: tuple[float | None, ...] = ()  # dose that each robot bore [-]; None: nothing measures it
+    water: tuple[float | None, ...] = ()  # depth of the water in which each stood, over time [m s]
 
 
-def play(env: TeamSkills, player: TeamAgent, seed: int) -> None:
-    """Play the episode of `seed` to its end."""
+def play(env: TeamSkills, player: TeamAgent | None, seed: int) -> Account:
+    """Play the episode of `seed` to its end; without a player nobody acts. Returns the account of it."""
     decisions, _ = env.reset(seed=seed)
-    player.reset({name: env.brief(name) for name in env.names})
-    over = False
-    while not over:
-        decisions, terminated, truncated, _ = env.step(player.act(decisions))
-        over = terminated or truncated
+    account = Account()
+    account.begin(env)
+    if player is not None:
+        player.reset({name: env.brief(name) for name in env.names})
+        env.watch, over = account.frame, False
+        while not over:
+            decisions, terminated, truncated, _ = env.step(player.act(decisions))
+            over = terminated or truncated
+        env.watch = None
+    return account
 
 
 def measure(
     env_id: str, seeds: Sequence[int], robots: tuple[str, ...], name: str, split: str = "test"
 ) -> list[TeamResult]:
     """Play a scene of a `split` of the task for each of `seeds` with `robots` and the team agent called `name`."""
-    env, made = TeamSkills.make(env_id, robots, split=split, effects="off", affects_agent=False), []
-    for seed in seeds:
-        play(env, team_agent(name), seed)
-        info = env.base.get_info()
-        numbers = float(info["value"][0]), int(info["rescued"][0]), int(info["targets"][0]), env.frame, env.collisions
-        made.append(TeamResult(env_id, seed, env.base.specs[0].name, robots, name, *numbers))
+    env = TeamSkills.make(env_id, robots, split=split, effects="off")
+    made = [_measured(env, env_id, seed, robots, name) for seed in seeds]
     env.close()
     return made
 
 
+def _measured(env: Any, env_id: str, seed: int, robots: tuple[str, ...], name: str) -> TeamResult:
+    account, task = play(env, team_agent(name), seed), env.base.task
+    targets, frames, hits, loads = fates(env), env.frame, env.collisions, account.loads().values()
+    share = None
+    if task.averted or task.safe_place.at_rest:
+        ended = account.closed(lambda: fates(env))
+        targets = ended.get("targets", targets)
+        share = averted(ended["lost"], play(env, None, seed).close()) if task.averted else None
+    return TeamResult(
+        env_id=env_id,
+        seed=seed,
+        scene=env.base.specs[0].name,
+        robots=robots,
+        agent=name,
+        value=Tally.of(targets).value,
+        rescued=Tally.of(targets).rescued,
+        targets=len(targets),
+        frames=frames,
+        robot_collisions=hits,
+        averted=share,
+        heat=tuple(load.heat for load in loads),
+        water=tuple(load.water for load in loads),
+    )
+
+
 def table(made: Sequence[TeamResult]) -> str:
     """Means over episodes of the same task, robots and agent, as a table in Markdown."""
-    lines = ["| task | robots | agent | episodes | value | frames | collisions |", "|---|---|---|---|---|---|---|"]
+    lines = ["| task | robots | agent | episodes | value | averted | frames | collisions |", "|---" * 8 + "|"]
     for task, (robots, name) in itertools.product(dict.fromkeys(r.env_id for r in made), SETUPS):
         rows = [r for r in made if (r.env_id, r.robots, r.agent) == (task, robots, name)]
         if rows:
             value, frames = np.mean([(r.value, r.frames) for r in rows], axis=0)
-            hits = sum(r.robot_collisions for r in rows)
-            lines.append(
-                f"| {task} | {', '.join(robots)} | {name} | {len(rows)} | {value:.3f} | {frames:.0f} | {hits} |"
-            )
+            share, hits = mean_score([r.averted for r in rows]).mean, sum(r.robot_collisions for r in rows)
+            told = f"{value:.3f} | {'-' if share is None else format(share, '.3f')} | {frames:.0f} | {hits}"
+            lines.append(f"| {task} | {', '.join(robots)} | {name} | {len(rows)} | {told} |")
     return "\n".join(lines)
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
@@ -14,6 +15,7 @@ from hazard_ms.web.options import ServeOptions
 
 if TYPE_CHECKING:
     from hazard_ms.evaluation.result import EpisodeResult
+    from hazard_ms.evaluation.watchers import Watcher
 
 SUFFIXES = {".mp4": "video", ".json": "result", ".html": "page"}  # of the files of an episode
 
@@ -27,7 +29,6 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
     """
     from hazard_ms.agents.base import user_path
     from hazard_ms.evaluation.result import BROKEN
-    from hazard_ms.evaluation.runner import play as run
     from hazard_ms.evaluation.runner import summary
     from hazard_ms.evaluation.sweep import LONGEST_NAME
     from hazard_ms.evaluation.watchers import Progress
@@ -42,7 +43,7 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
             f"output must have a name of at most {LONGEST_NAME - 1} bytes, got {options.output.name!r:.100}"
         )
     if options.output is None:
-        result = run(options.episode, [Progress(options.episode.agent)])
+        result = _played(options.episode, [Progress(options.episode.agent)])
     else:
         result = _filmed(options.episode, options.output, options.every)
     print(summary(result))
@@ -52,22 +53,30 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
     return int(result.ended == BROKEN)
 
 
+def _played(episode: EpisodeOptions, watchers: Sequence[Watcher], **keywords: Any) -> EpisodeResult:
+    """Play the episode, of one robot or of a team, in an environment made with `keywords` besides."""
+    from hazard_ms.evaluation.runner import play as run
+    from hazard_ms.evaluation.teams.player import play as run_team
+
+    return (run_team if episode.team else run)(episode, watchers, **keywords)
+
+
 def _filmed(episode: EpisodeOptions, path: Path, every: int) -> EpisodeResult:
     """Play and film the episode; its film, result and page appear together at its end."""
     from hazard_ms.evaluation.page import address, page
-    from hazard_ms.evaluation.runner import play as run
     from hazard_ms.evaluation.watchers import Progress
     from hazard_ms.machine.files import drafts, make_folder
     from hazard_ms.pictures.compositor import RENDERED
     from hazard_ms.pictures.film import Film
+    from hazard_ms.pictures.team_film import TeamFilm
 
     camera = {"width": RENDERED[0], "height": RENDERED[1]}
     subtitle = f"agent {episode.agent}, seed {episode.seed}, {' '.join([*episode.strength, episode.physics])} physics"
     make_folder(path.parent)
     with drafts(*(path.with_suffix(suffix) for suffix in SUFFIXES)) as (shot, told, shown):
-        with Film(shot, subtitle, every) as film:
+        with (TeamFilm if episode.team else Film)(shot, subtitle, every) as film:
             watchers = [Progress(episode.agent), film]
-            result = run(episode, watchers, render_mode="rgb_array", human_render_camera_configs=camera)
+            result = _played(episode, watchers, render_mode="rgb_array", human_render_camera_configs=camera)
         told.write(result.to_json())
         shown.write(page(result, address(shot.path, path.name)))
     return result

@@ -124,11 +124,12 @@ def speed(
 
 
 def _results(path: Path) -> Iterator[EpisodeResult]:
-    """The results in a file or in a folder."""
+    """The results of one robot in a file or in a folder."""
     from hazard_ms.evaluation.result import EpisodeResult, result_files
 
     for file in result_files([path]) if path.is_dir() else [path]:
-        yield EpisodeResult.read(file)
+        if (result := EpisodeResult.read(file)).robot_collisions is None:
+            yield result
 
 
 def _score(result: EpisodeResult) -> SceneScore:

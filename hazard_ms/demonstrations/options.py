@@ -67,6 +67,7 @@ class RecordOptions:
         from hazard_ms.registry import ROBOTS, load
         from hazard_ms.spec.checks import one_of
 
+        assert isinstance(self.env.robot_uids, str)  # its check sees to it
         known = (HEAD, *load(ROBOTS[self.env.robot_uids].robot).mounted_cameras)
         for name in self.cameras.split("+"):
             one_of(name, known, "cameras")

@@ -185,15 +185,16 @@ class FireEffects(SceneEffects):
             sources, strength = np.concatenate([centre[e], place[e]]), np.concatenate([on_things[e], on_floor[e]])
             scene.show_smoke(sources, strength, heat[e], time)
             scene.show_light(sources, strength, time)
-        self._fill(fire)
+        self._fill(fire, world)
 
-    def _fill(self, fire: State) -> None:
-        """The layer of smoke under the ceiling, of fires that have one: those of the preset `realistic`."""
+    def _fill(self, fire: State, world: World) -> None:
+        """The layer of smoke under the ceiling of the robot's room, of fires that have one: those of `realistic`."""
         # absent from FireState
         told = [getattr(fire, name, None) for name in ("smoke_height", "smoke_density", "smoke_low_density")]
         if any(of is None for of in told):
             return
-        for scene, low, *thick in zip(self._scenes, *(of.cpu().tolist() for of in told if of is not None), strict=True):
+        here = (world.crew.own(of).cpu().tolist() for of in told if of is not None)
+        for scene, low, *thick in zip(self._scenes, *here, strict=True):
             if scene.around is not None:
                 scene.around.smoke(low, *(scene.thinned(k) if self.spectator else k for k in thick))
 

@@ -1,14 +1,26 @@
-"""Puts together what an environment has for each of its robots: senses, and between several the watch on contacts."""
+"""Puts together what an environment has of each of its robots: build, senses, and of several the watch on contacts."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from hazard_ms.episode.encounters import Contacts
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.labels import labels_of
 from hazard_ms.sensing.observations import Observer
+from hazard_ms.simulation.crew import Crew
 from hazard_ms.simulation.drawing.moved_cameras import MovedCameras
+from hazard_ms.simulation.world import World
+
+
+def enlist(world: World, robots: Iterable[Any]) -> None:
+    """Tell `world` which `robots` take part: one, or those of a team, in order."""
+    builds = tuple(robot.build for robot in robots)
+    world.agent_build = builds[0]
+    if len(builds) > 1:
+        places = world.agent_position[:, None].repeat(1, len(builds), 1)
+        world.team, world.agent_position = Crew(builds, places), places[:, 0]
 
 
 def observers(env: Any) -> tuple[Observer, ...]:

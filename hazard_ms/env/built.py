@@ -22,7 +22,7 @@ from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.grasp import Hand
 from hazard_ms.episode.members import Members
 from hazard_ms.episode.situation import Situation
-from hazard_ms.hazards.base import loosened, none_set
+from hazard_ms.hazards.base import loosened
 from hazard_ms.hazards.presets import FREQUENCIES
 from hazard_ms.registry.mitigations import tools_of
 from hazard_ms.robots import MOST_ROBOTS
@@ -82,8 +82,8 @@ class BuiltEnv(BaseEnv):
 
     @property
     def _default_sensor_configs(self) -> list[CameraConfig]:
-        """The robot's cameras that were asked for beside that of its head, whose picture has as many pixels."""
-        return [mounted(name, self.agent) for name in self.cameras]
+        """The robots' cameras that were asked for beside those of heads, whose pictures have as many pixels."""
+        return mounted(self.cameras, self.robots)
 
     @property
     def _default_human_render_camera_configs(self) -> CameraConfig:
@@ -116,7 +116,7 @@ class BuiltEnv(BaseEnv):
         self.bags = [building.build_bags(self.scene, self.num_envs, n) for n in range(len(self.robots))]
         self.world = building.make_world(self.specs, self.device, loose)
         first = next(iter(self.robots.values()))
-        self.world.agent_build = first.build
+        assembling.enlist(self.world, self.robots.values())
         if self.task.mitigations:
             self.world.equip(tools_of(self.task.mitigations))
         if self.task.doors_by_hand:
@@ -149,7 +149,7 @@ class BuiltEnv(BaseEnv):
 
     def _step_action(self, action: Any) -> Any:
         """As ManiSkill's, which looks again at what an action is; one that is checked already needs no second look."""
-        if self.gpu_sim_enabled or not isinstance(action, Tensor):
+        if self.gpu_sim_enabled or not isinstance(action, Tensor if len(self.robots) == 1 else dict):
             return super()._step_action(action)
         self.agent.set_action(action)
         self._before_control_step()
@@ -164,13 +164,10 @@ class BuiltEnv(BaseEnv):
     def _before_control_step(self) -> None:
         self.leaves.move()
         if self.perturbation.control:
-            lead_astray(self.agent, self.world.chance, self.perturbation.control, self.control_freq)
+            for robot in self.members:
+                lead_astray(robot.agent, robot.world, self.perturbation.control, self.control_freq)
         if self.affects_agent:
-            down = self.episode.lying()
-            if down is not None and not none_set(down):
-                self.agent.lie(down)
-            self.agent.carry(self.episode.slowed)
-            self.agent.keep_out(self.episode.forbidden)
+            self.members.yield_to_hazards()
         if self.contacts is not None:
             self.contacts.begin()
         if self.affects_agent and self.gpu_sim_enabled:
@@ -196,7 +193,7 @@ class BuiltEnv(BaseEnv):
         self.members.use_hands(self.control_timestep)
 
     def evaluate(self) -> dict[str, Tensor]:
-        info = rewards.evaluate(self.task.goal, self.situation)
+        info = {**rewards.evaluate(self.task.goal, self.situation), **self.members.told()}
         return info if self.contacts is None else {**info, "robot_collisions": self.contacts.record.count.clone()}
 
     def compute_dense_reward(self, obs: Any, action: Any, info: dict[str, Any]) -> Tensor:

@@ -13,6 +13,7 @@ import torch
 from torch import Tensor
 
 from hazard_ms.simulation.chance import Chance
+from hazard_ms.simulation.world import World
 from hazard_ms.spec import rounding
 from hazard_ms.spec.perturbation import LEAST_SHARE
 
@@ -30,46 +31,54 @@ def check_mode(level: int, control_mode: str | None) -> None:
         raise ValueError(f"control in perturb must be 0 in the control mode {SPEEDS}, got {level}")
 
 
-def lead_astray(agent: Any, chance: Chance, level: int, fps: int) -> None:
+def lead_astray(agent: Any, world: World, level: int, fps: int) -> None:
     """Let the drives of all arms of `agent`, a robot, aim beside where this frame's action sends them, by `arm_noise`.
 
-    A base that is sent to move turns by `slip` instead of as it is sent, where it slips. `fps`: frames a second. Call
-    it after the action is set and before physics steps.
+    A base that is sent to move turns by `slip` instead of as it is sent, where it slips. `world`: that of the robot,
+    since each of a team has noise of its own; `fps`: frames a second. Call it after the action is set and before
+    physics steps.
     """
-    _turn(agent, *slip(chance, level), fps)
+    chance, robot = world.chance, world.crew.number
+    _turn(agent, *slip(chance, level, robot), fps)
     numbers = agent.arm_joints
     joints = [agent.robot.active_joints[number] for number in numbers]
     targets = torch.stack([joint.drive_target.reshape(-1) for joint in joints], dim=-1)
-    targets = targets + arm_noise(chance, len(numbers), level)
+    targets = targets + arm_noise(chance, len(numbers), level, robot)
     agent.robot.set_joint_drive_targets(targets, joints, torch.tensor(numbers, dtype=torch.int32, device=agent.device))
     if agent.scene.gpu_sim_enabled:
         agent.scene.px.gpu_apply_articulation_target_position()  # ManiSkill has sent those of the action already
 
 
-def arm_noise(chance: Chance, joints: int, level: int) -> Tensor:
+def arm_noise(chance: Chance, joints: int, level: int, robot: int = 0) -> Tensor:
     """Angle by which each joint is off in this frame [rad], [E, joints], under a perturbation of `level`.
 
-    Normal, as strong in all frames of an episode, and a function of its seed and of the frame alone.
+    Normal, as strong in all frames of an episode, and a function of its seed, of the frame and the number of the
+    `robot` alone.
     """
     knot, share = chance.frame // KNOT, (chance.frame % KNOT).float()[:, None] / KNOT
-    one, two = (_at(chance, frame).normal("perturbed control", joints) for frame in (knot, knot + 1))
+    one, two = (_at(chance, frame).normal(_own("perturbed control", robot), joints) for frame in (knot, knot + 1))
     noise = ((1.0 - share) * one + share * two) / rounding.sqrt((1.0 - share) ** 2 + share**2)
-    drawn = _at(chance, torch.zeros_like(knot)).uniform("perturbed control amount", 1)
+    drawn = _at(chance, torch.zeros_like(knot)).uniform(_own("perturbed control amount", robot), 1)
     return MOST[level] * (LEAST_SHARE + (1.0 - LEAST_SHARE) * drawn) * noise
 
 
-def slip(chance: Chance, level: int) -> tuple[Tensor, Tensor]:
+def slip(chance: Chance, level: int, robot: int = 0) -> tuple[Tensor, Tensor]:
     """Whether the base slips in this frame if it drives, [E], bool, and by how much it then turns in it [rad], [E].
 
-    A function of the seed and of the frame alone: half of all stretches of APART frames have a slip of SLIP frames, to
-    either side, under a perturbation of `level`.
+    A function of the seed, the frame and the number of the `robot` alone: half of all stretches of APART frames have a
+    slip of SLIP frames, to either side, under a perturbation of `level`.
     """
-    drawn = _at(chance, chance.frame // APART).uniform("perturbed drive", 4)
+    drawn = _at(chance, chance.frame // APART).uniform(_own("perturbed drive", robot), 4)
     begin = (drawn[:, 1] * (APART - SLIP + 1)).floor()
     since = chance.frame % APART - begin
     slips = (drawn[:, 0] < SHARE) & (since >= 0) & (since < SLIP)
     amount = TURNED[level] * (LEAST_SHARE + (1.0 - LEAST_SHARE) * drawn[:, 2])
     return slips, torch.where(drawn[:, 3] < 0.5, -amount, amount) / SLIP
+
+
+def _own(name: str, robot: int) -> str:
+    """What the numbers called `name` are drawn by for a robot: the first, or the only one, has the plain name."""
+    return f"{name} {robot}" if robot else name
 
 
 def _turn(agent: Any, slips: Tensor, angle: Tensor, fps: int) -> None:

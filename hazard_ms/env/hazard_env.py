@@ -94,7 +94,7 @@ class HazardEnv(BuiltEnv):
             lighting: day, evening, night, failing (lamps go out during the episode), random (by the seed).
             perturb: What differs from training, by kind and level (docs/benchmark.md 4.4): "lighting:2,camera:1".
             senses: Of the head camera, beyond ManiSkill's: thermal, degraded (colour and depth through smoke and rain).
-            cameras: Beside that of the head: wrist, shoulder; G1 has wrist_left, too.
+            cameras: Beside that of the head of each robot: wrist, shoulder; G1 has wrist_left, too.
             **maniskill_keywords: As in ManiSkill, but for these. num_envs: more than one needs a GPU. obs_mode: state
                 modes need no renderer. render_backend: auto (the default) picks a GPU, else the CPU, else none.
                 reconfiguration_freq: by default as `deterministic` and `scene_every` say, which it replaces.
@@ -118,8 +118,8 @@ class HazardEnv(BuiltEnv):
         self.effects_mode = checks.one_of(effects, EFFECTS, "effects")
         self.lighting = checks.one_of(lighting, LIGHTINGS, "lighting")
         self.senses = check_senses(senses, maniskill_keywords.get("obs_mode"))
-        keywords.check_team(robot_uids, self, cameras, maniskill_keywords)
-        self.cameras = check_cameras(cameras, robot_names(robot_uids)[0])
+        keywords.check_team(robot_uids, self.task, maniskill_keywords)
+        self.cameras = check_cameras(cameras, robot_names(robot_uids))
         often = checks.whole(scene_every, 0, 2**31, "scene_every")
         chosen = self.deterministic or maniskill_keywords.get("reconfiguration_freq") is not None
         self.scene_turns = SceneTurns(0 if chosen else often)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import torch
@@ -15,8 +15,7 @@ from hazard_ms.effects.shaders.pack import shader_config
 from hazard_ms.machine.render_backend import backend
 from hazard_ms.robots import robot_names, robot_uid
 from hazard_ms.sensing.modes import check_obs_mode, check_renderer
-from hazard_ms.spec import checks
-from hazard_ms.spec.perturbation import Perturbation
+from hazard_ms.spec import Task, checks
 
 KNOWN = (*inspect.signature(BaseEnv.__init__).parameters,)[1:]
 RENDER_MODES = ("human", "rgb_array", "sensors", "all")
@@ -34,25 +33,18 @@ def check_names(given: Iterable[str], ours: Callable[..., None]) -> None:
         checks.one_of(name, sorted(known), "a keyword of gym.make", shown=len(known))
 
 
-def check_team(robot: Any, env: Any, cameras: Sequence[str], given: dict[str, Any]) -> None:
-    """Check that a team is asked for nothing that it cannot do yet, where `robot` names several.
+def check_team(robot: Any, task: Task, given: dict[str, Any]) -> None:
+    """Check that a team is asked for nothing in `task` that it cannot do yet, where `robot` names several.
 
-    `env` has its task and its other settings; `given`: keywords for ManiSkill. Raises ValueError for the rest.
+    `given`: keywords for ManiSkill. Raises ValueError for the rest.
     """
     count = len(robot_names(robot))
     if count == 1:
         return
-    task = env.task
     if task.arrange is not None or task.doors_by_hand:
         raise ValueError(f"robot_uids must be one robot in {task.name}, which is practice for one robot, got {count}")
     if given.get("num_envs", 1) != 1 or given.get("sim_backend", "auto") not in ("auto", "cpu", "physx_cpu"):
         raise ValueError(f"num_envs must be 1 and sim_backend cpu for {count} robots, got {given}")
-    if env.affects_agent:
-        raise ValueError(f"affects_agent must be False for {count} robots: hazards act on one so far, got True")
-    off = {"perturb": env.perturbation != Perturbation(), "senses": env.senses}
-    for name, asked in {**off, "cameras": cameras}.items():
-        if asked:
-            raise ValueError(f"{name} must not be set for {count} robots: only one robot can have it so far")
 
 
 def modes_offered(draws: bool) -> list[str]:

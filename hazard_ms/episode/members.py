@@ -13,11 +13,12 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.episode import grasp
+from hazard_ms.episode import grasp, rewards
 from hazard_ms.episode.episode import Episode
 from hazard_ms.episode.grasp import Hand
 from hazard_ms.episode.safe_places import Drop
 from hazard_ms.episode.situation import Situation
+from hazard_ms.hazards.base import none_set
 from hazard_ms.robots.robot import Robot
 from hazard_ms.simulation.mitigation.equipment import NozzleState
 from hazard_ms.simulation.world import World
@@ -25,7 +26,7 @@ from hazard_ms.simulation.world import World
 
 @dataclass(frozen=True)
 class Member:
-    """One of the robots. In its world `agent_position`, `agent_heading` and `held` are its own."""
+    """One of the robots. In its world `agent_position`, `agent_heading`, `agent_build` and `held` are its own."""
 
     name: str
     situation: Situation
@@ -61,8 +62,9 @@ class Members:
         for number in range(1, len(robots)):
             hands.append(Hand.allocate(sizes, world.device))
             episode.others[f"hand_{number}"] = hands[-1]
-        parts = zip(self._all, robots.values(), hands, strict=True)
-        self._all = [replace(m, situation=replace(first, episode=_own(episode, h), agent=r)) for m, r, h in parts]
+        episodes = [_own(episode, hand, number) for number, hand in enumerate(hands)]
+        parts = zip(self._all, robots.values(), episodes, strict=True)
+        self._all = [replace(m, situation=replace(first, episode=e, agent=r)) for m, r, e in parts]
         if world.equipment is not None:
             for number in range(1, len(robots)):
                 nozzle = NozzleState.allocate(sizes, world.device)
@@ -88,8 +90,28 @@ class Members:
         """Copy the places and headings of all robots into their worlds; the episode has those of the first."""
         for member in self._all:
             member.situation.episode.see(member.agent)
-        if len(self) > 1:
-            self._episode.see(self._all[0].agent)
+
+    def yield_to_hazards(self) -> None:
+        """Let hazards slow all robots and keep them out of fire; call it after actions are set, before physics steps.
+
+        Those that lie on the ground do not drive.
+        """
+        for member in self._all:
+            episode, robot = member.situation.episode, member.agent
+            down = episode.lying()
+            if down is not None and not none_set(down):
+                robot.lie(down)
+            robot.carry(episode.slowed)
+            robot.keep_out(episode.forbidden)
+
+    def told(self) -> dict[str, Tensor]:
+        """The entries of `info` about each robot, [E] each, in the units that hazards declare [-].
+
+        In a team their names begin with that of the robot.
+        """
+        if len(self) == 1:
+            return rewards.told(self._all[0].situation)
+        return {f"{m.name}-{name}": value for m in self._all for name, value in rewards.told(m.situation).items()}
 
     def joints(self) -> Tensor:
         """Positions of all joints of all robots [rad] or [m], [E, J]."""
@@ -106,6 +128,9 @@ class Members:
             return
         drops = []
         for member, (place, turn, closed) in zip(self._all, grips, strict=True):
+            if none_set(closed != member.hand.closed):
+                drops.append(torch.full_like(member.hand.held, -1))  # nothing is taken or let go
+                continue
             others = self._episode.world.held & ~member.world.held
             drops.append(grasp.update(member.hand, member.world, place, turn, closed, others))
             self._gather()
@@ -146,10 +171,12 @@ class Members:
         return frozen, base, turn
 
 
-def _own(episode: Episode, hand: Hand) -> Episode:
-    """The same `episode` with a place, a heading and a `hand` of its own; all else is shared."""
-    made, world = copy.copy(episode), copy.copy(episode.world)
-    for name in ("agent_position", "agent_heading", "held"):
-        setattr(world, name, getattr(world, name).clone())
+def _own(episode: Episode, hand: Hand, number: int) -> Episode:
+    """The same `episode` with place, heading, build and `hand` of the robot `number`; all else is shared."""
+    made, world, crew = copy.copy(episode), copy.copy(episode.world), episode.world.crew
+    world.team, world.agent_build = replace(crew, number=number), crew.builds[number]
+    world.agent_position, world.held = crew.places[:, number], world.held.clone()
+    if number:  # the episode has that of the first robot
+        world.agent_heading = world.agent_heading.clone()
     made.world, made.hand = world, hand
     return made

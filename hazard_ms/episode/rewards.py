@@ -94,19 +94,26 @@ def dense(situation: Situation) -> Tensor:
 
 
 def evaluate(goal: Goal, situation: Situation) -> dict[str, Tensor]:
-    """The entries of `info` after every frame, [E] each: success, fail, the goal's own numbers, and sim_error.
-
-    If hazards act on the agent, their own entries about it follow.
-    """
-    world, episode = situation.world, situation.episode
+    """The entries of `info` after every frame, [E] each: success, fail, the goal's own numbers, and sim_error."""
     situation = replace(situation, known={})
     info = {"success": goal.success(situation)}
     info["fail"] = torch.zeros_like(info["success"]) if goal.fail is None else goal.fail(situation)
     info.update({term.name: term.of(situation) for term in goal.info})
-    info["sim_error"] = episode.sim_error.clone()
-    for hazard in episode.hazards if situation.affects_agent else ():
-        info.update(hazard.agent_info(episode.states[hazard.name], world))
-    lies = episode.lying()
-    if "agent_fallen" in info and lies is not None:
-        info["agent_fallen"] = lies.clone()  # water or wind may have thrown it over
+    info["sim_error"] = situation.episode.sim_error.clone()
     return info
+
+
+def told(situation: Situation) -> dict[str, Tensor]:
+    """The entries of `info` that hazards tell of the agent, [E] each, in the units that they declare [-].
+
+    There are none where hazards do not act on it.
+    """
+    if not situation.affects_agent:
+        return {}
+    episode, found = situation.episode, {}
+    for hazard in episode.hazards:
+        found.update(hazard.agent_info(episode.states[hazard.name], situation.world))
+    lies = episode.lying()
+    if "agent_fallen" in found and lies is not None:
+        found["agent_fallen"] = lies.clone()  # water or wind may have thrown it over
+    return found

@@ -13,6 +13,8 @@ from hazard_ms.evaluation.averted.account import Account
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import ERROR, EpisodeResult, Played
 from hazard_ms.evaluation.runner import play, result_of
+from hazard_ms.evaluation.teams.player import RecordedTeam
+from hazard_ms.evaluation.teams.player import play as play_team
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.evaluation.workers import Job, Outcome, Say, Word
 from hazard_ms.registry import AGENTS, load
@@ -20,6 +22,7 @@ from hazard_ms.skills.actions import wait
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import STOP, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.team import TeamSkills
 
 LONGEST_ERROR = 300  # characters of an agent's error that are shown [ours]
 
@@ -29,8 +32,7 @@ def attempt(job: Job, say: Say) -> Outcome:
     torch.set_num_threads(1)
     teller = Teller(job.options, say)
     try:
-        player = None if job.actions is None else Recorded(job.actions, job.options.agent, job.waits)
-        result = play(job.options, [teller, *([Account()] if job.averted else [])], player)
+        result = _played(job, [teller, *([Account()] if job.averted else [])])
         result.to_json()  # what cannot be written is this agent's fault, not that of who gathers results
         return Outcome(result)
     except KeyboardInterrupt:
@@ -40,6 +42,16 @@ def attempt(job: Job, say: Say) -> Outcome:
         return Outcome(so_far and replace(so_far, ended=ERROR, error=shown), shown)
 
 
+def _played(job: Job, watchers: list[Watcher]) -> EpisodeResult:
+    """The episode of a job, of one robot or of a team."""
+    if job.options.team:
+        team = None if job.actions is None else RecordedTeam(job.actions, job.robots)
+        return play_team(job.options, watchers, team)
+    return play(
+        job.options, watchers, None if job.actions is None else Recorded(job.actions, job.options.agent, job.waits)
+    )
+
+
 class Teller(Watcher):
     """Says before each decision what the episode has come to, and after it that the agent has answered."""
 
@@ -47,7 +59,7 @@ class Teller(Watcher):
         self._options, self._say = options, say
         self.so_far: EpisodeResult | None = None
 
-    def begin(self, env: SkillEnv, decision: Decision) -> None:
+    def begin(self, env: SkillEnv | TeamSkills, decision: Decision) -> None:
         """Remember the environment."""
         self._env = env
 

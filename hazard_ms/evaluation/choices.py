@@ -31,10 +31,10 @@ HUMAN = "human"  # the agent of episodes that people played: no choice, nobody c
 
 
 class Offered(tuple[str, ...]):
-    """Names that are offered but not enforced: any text counts as one of them."""
+    """Names that are offered but not enforced: any text that is not an option counts as one of them."""
 
-    def __contains__(self, _: object) -> bool:
-        return True
+    def __contains__(self, text: object) -> bool:
+        return not str(text).startswith("-")
 
 
 def offer(names: Iterable[str], other: str = "") -> PrimitiveConstructorSpec[str]:
@@ -50,6 +50,19 @@ def offer(names: Iterable[str], other: str = "") -> PrimitiveConstructorSpec[str
     )
 
 
+def offer_several(names: Iterable[str]) -> PrimitiveConstructorSpec[str | tuple[str, ...]]:
+    """A rule for tyro as `offer`, for one text, or a tuple of several."""
+    offered = Offered(names)
+    return PrimitiveConstructorSpec(
+        nargs="*",
+        metavar="{" + ",".join(offered) + "} ...",
+        instance_from_str=lambda words: words[0] if len(words) == 1 else tuple(words),
+        is_instance=lambda value: isinstance(value, (str, tuple)),
+        str_from_instance=lambda value: [value] if isinstance(value, str) else list(value),
+        choices=offered,
+    )
+
+
 def flag(*spellings: str, old: str | None = None) -> Any:
     """Further spellings of an option: a short one, and one of `old`.
 
@@ -57,6 +70,12 @@ def flag(*spellings: str, old: str | None = None) -> Any:
     option's own.
     """
     return tyro.conf.arg(name=old, aliases=list(spellings))
+
+
+def team_names(robot_uids: Any) -> tuple[str, ...]:
+    """The names that an environment gives to the robots `robot_uids`; none for a single robot, which is no team."""
+    several = robot_uids if isinstance(robot_uids, (tuple, list)) else ()
+    return tuple(f"{robot}-{number}" for number, robot in enumerate(several))
 
 
 @dataclass(frozen=True)
@@ -73,8 +92,10 @@ class EnvOptions:
     """How strong the hazards of the preset realistic are."""
     hazards: tuple[Annotated[str, offer(registry.HAZARDS)], ...] = ()
     """Hazards of HazardCompound-v1, its usual ones if not given, or of tasks for practice."""
-    robot_uids: Annotated[str, offer(registry.ROBOTS), flag("-r", "--robot-uids", old="robot")] = "fetch"
-    """Robot that rescues."""
+    robot_uids: Annotated[
+        str | tuple[str, ...], offer_several(registry.ROBOTS), flag("-r", "--robot-uids", old="robot")
+    ] = "fetch"
+    """Robot that rescues; two to four are a team, for `play` and `evaluate`, whose agents are then those of teams."""
     affects_agent: bool = False
     """Let the hazards act on the robot, as they always do in homes."""
     lighting: Annotated[str, offer(LIGHTINGS), flag("--lighting", old="light")] = "day"
@@ -87,18 +108,31 @@ class EnvOptions:
     """Modules, or files NAME.py, that register tasks, hazards, robots and agents of your own."""
 
     def __post_init__(self) -> None:
-        """Write the perturbation in its one way. Raises ValueError for one that cannot be."""
+        """Write perturbation and robots in their one way. Raises ValueError where that cannot be."""
         object.__setattr__(self, "perturb", canonical(self.perturb))
+        robots = self.robot_uids if isinstance(self.robot_uids, str) else tuple(self.robot_uids)
+        if not robots:
+            raise ValueError(f"robot_uids must be one robot or more, got {self.robot_uids!r}")
+        object.__setattr__(self, "robot_uids", robots[0] if len(robots) == 1 and isinstance(robots, tuple) else robots)
 
-    def check(self) -> None:
-        """Load the modules of `load`, and check every name. Raises ValueError for what cannot be played."""
+    def check(self, teams: bool = False) -> None:
+        """Load the modules of `load`, and check every name; `teams`: whether several robots can be played here.
+
+        Raises ValueError for what cannot be played.
+        """
         from hazard_ms.spec.checks import one_of  # loads torch
         from hazard_ms.spec.severity import chosen
         from hazard_ms.tasks.perturbing import check_perturbation
 
         for module in self.load:
             registry.load_plugin(module)
-        known = {"env_id": registry.TASKS, "robot_uids": registry.ROBOTS, "physics": PRESETS}
+        robots = (self.robot_uids,) if isinstance(self.robot_uids, str) else self.robot_uids
+        for robot in robots:
+            one_of(robot, registry.ROBOTS, "robot_uids")
+        if len(robots) > (most := registry.MOST_ROBOTS if teams else 1):
+            many = f"{most} robots" if teams else "one robot here: `play`, `evaluate` and `replay` alone know teams"
+            raise ValueError(f"robot_uids must be at most {many}, got {len(robots)}")
+        known = {"env_id": registry.TASKS, "physics": PRESETS}
         for what, names in {**known, "lighting": LIGHTINGS, "effects": EFFECTS}.items():
             one_of(getattr(self, what), names, what)
         chosen(self.severity, self.physics)
@@ -106,6 +140,11 @@ class EnvOptions:
             one_of(name, registry.HAZARDS, "hazards")
         if self.perturb:
             check_perturbation(self.perturb, self.env_id, self.physics, self.hazards, self.severity)
+
+    @property
+    def team(self) -> tuple[str, ...]:
+        """Names of the robots of a team; none for a single robot."""
+        return team_names(self.robot_uids)
 
     @property
     def max_frames(self) -> int:
@@ -134,7 +173,8 @@ class EnvOptions:
         """Command-line words that give the same environment again."""
         made = ["-e", self.env_id, "--split", self.split, "--physics", self.physics]
         for name in self.unusual("severity", "robot_uids", *LOOKS):
-            made += ["--" + name.replace("_", "-"), getattr(self, name)]
+            value = getattr(self, name)
+            made += ["--" + name.replace("_", "-"), *([value] if isinstance(value, str) else value)]
         made += ["--affects-agent"] * self.affects_agent
         for name in ("hazards", "load"):
             made += ["--" + name.replace("_", "-"), *getattr(self, name)] if getattr(self, name) else []

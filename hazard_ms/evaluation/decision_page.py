@@ -11,7 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from hazard_ms.evaluation.page import COLOURS, rendered, rescue_curve
+from hazard_ms.evaluation.page import COLOURS, rendered, rescue_curve, robots_of
 from hazard_ms.evaluation.regret.causes import EpisodeRegret
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.skills.failures import UNFINISHED
@@ -77,6 +77,7 @@ def decision_page(
         unfinished=UNFINISHED,
         free=FREE,
         colours=COLOURS,
+        robots=("",) if result is None else robots_of(result),
         steps=rescue_curve(result) if result is not None else "",
     )
 

@@ -39,14 +39,19 @@ class EpisodeOptions(EnvOptions):
     perception: Annotated[str, offer((TRUTH, *DETECTORS))] = TRUTH
     """What tells the agent of things: truth, or a detector; its file and parameters follow, NAME:FILE,key=value."""
 
-    def check(self) -> None:
-        """Check the environment, clock and perception. Raises ValueError for what cannot be played."""
+    def check(self, teams: bool = False) -> None:
+        """Check the environment, clock and perception; `teams`: whether several robots can be played here.
+
+        Raises ValueError for what cannot be played.
+        """
         from hazard_ms.sensing.detection.perception import parts
         from hazard_ms.spec.checks import one_of
 
-        super().check()
-        one_of(self.clock, CLOCKS, "clock")
+        super().check(teams)
+        one_of(self.clock, (OFF,) if self.team else CLOCKS, "clock of a team" if self.team else "clock")
         parts(self.perception)
+        if self.team:
+            one_of(self.perception, (TRUTH,), "perception of a team")
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -86,7 +91,7 @@ class PlayOptions:
         """Check all options. Raises ValueError for what cannot be played."""
         from hazard_ms.spec.checks import whole
 
-        self.episode.check()
+        self.episode.check(teams=True)
         whole(self.every, 1, MOST, "every")
         if self.output is not None and self.output.suffix != ".mp4":
             raise ValueError(f"output must be a name that ends in .mp4, got {self.output.name!r}")
@@ -147,7 +152,7 @@ class SweepOptions:
         if not 0.0 < self.timeout <= LONGEST_DECISION:
             raise ValueError(f"timeout must be more than 0 and at most {LONGEST_DECISION:g} s, got {self.timeout}")
         first = EpisodeOptions(**vars(self.env), clock=self.clock, perception=self.perception)
-        first.check()
+        first.check(teams=True)
         files = self._files()
         seeds = range(self.seed, self.seed + self.count)
         scenes = [files[s % len(files)] if files else None for s in seeds]
@@ -172,7 +177,8 @@ class SweepOptions:
         """The file of an episode's result."""
         e = episode
         scenes = e.split if e.scene is None else re.sub(r"[^\w.-]+", ".", Path(e.scene).stem)
-        setting = [e.env_id, *e.hazards, scenes, e.physics, *e.strength, e.robot_uids] + ["affected"] * e.affects_agent
+        robots = [e.robot_uids] if isinstance(e.robot_uids, str) else e.robot_uids
+        setting = [e.env_id, *e.hazards, scenes, e.physics, *e.strength, *robots] + ["affected"] * e.affects_agent
         setting += [getattr(e, name) for name in e.unusual(*LOOKS)]
         setting += [f"clock.{e.clock}"] * (e.clock != OFF) + [e.perception] * (e.perception != TRUTH)
         return self.output / (re.sub(r"[^\w.-]+", ".", "-".join([*setting, e.agent])) + f"-{e.seed:04d}.json")

@@ -10,6 +10,7 @@ from urllib.parse import quote
 
 import jinja2
 
+from hazard_ms.evaluation.choices import team_names
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.skills.failures import UNFINISHED
 
@@ -47,8 +48,14 @@ def page(result: EpisodeResult, video: str | None = None) -> str:
         video=video,
         colours=COLOURS,
         unfinished=UNFINISHED,
+        robots=robots_of(result),
         steps=rescue_curve(result),
     )
+
+
+def robots_of(result: EpisodeResult) -> tuple[str, ...]:
+    """The robots to which timeline.html gives a row: those of a team by name, or "" for a single one."""
+    return team_names(result.settings.get("robot_uids")) or ("",)
 
 
 def rendered(template: Path, **values: Any) -> str:

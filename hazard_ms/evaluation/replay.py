@@ -62,10 +62,14 @@ def episode_of(record: EpisodeResult, load: tuple[str, ...] = ()) -> EpisodeOpti
 def compare(record: EpisodeResult, played: EpisodeResult | None, error: str = "") -> tuple[str, str]:
     """Compare a record with its replay: EXACT, SAME_SCORE or DIFFERENT, and a text that says where they differ.
 
-    exact: all links are equal, and so are the fates of all targets; same score: only the fates are.
+    exact: all links are equal, and so are the fates of all targets and the collisions of robots; same score: only the
+    latter two are.
     """
     if played is None or (error and played.error != record.error):
         return DIFFERENT, f", it could not be played: {error}"
+    if record.robot_collisions != played.robot_collisions:
+        hits = f"{record.robot_collisions} collisions of robots in the file, {played.robot_collisions} now"
+        return DIFFERENT, f"{_since(record, played)}; {hits}"
     if record.targets != played.targets:
         before, now = (100 * result.tally.value for result in (record, played))
         return DIFFERENT, f"{_since(record, played)}; {before:.1f} % of the value in the file, {now:.1f} % now"
@@ -98,4 +102,5 @@ def _since(record: EpisodeResult, played: EpisodeResult) -> str:
 def job_of(record: EpisodeResult, load: tuple[str, ...] = ()) -> Job:
     """The job that plays the decisions of a result again; `load` as for `episode_of`, which says what it refuses."""
     actions = tuple((d.verb, d.target) for d in record.decisions)
-    return Job(episode_of(record, load), SILENCE, actions, tuple(d.waited for d in record.decisions))
+    waits, robots = (tuple(getattr(d, name) for d in record.decisions) for name in ("waited", "robot"))
+    return Job(episode_of(record, load), SILENCE, actions, waits, robots=robots)

@@ -26,7 +26,12 @@ def report(options: SweepOptions, results: Sequence[EpisodeResult], failed: Sequ
     own = {agent: [r for r in results if r.agent == agent] for agent in options.agents}
     lines = [title(options), HEADINGS, *(score_line(agent, made) for agent, made in own.items())]
     lines += [failure_line(agent, made, list(failed).count(agent)) for agent, made in own.items()]
-    lines += [line for tell in (averted_line, model_line) for agent, made in own.items() if (line := tell(agent, made))]
+    lines += [
+        line
+        for tell in (team_line, averted_line, model_line)
+        for agent, made in own.items()
+        if (line := tell(agent, made))
+    ]
     return "\n".join([*lines, machine_line()])
 
 
@@ -34,7 +39,8 @@ def title(options: SweepOptions) -> str:
     """The line that says what was played."""
     env = options.env
     physics = " ".join([env.physics, *env.strength])
-    settings = [f"split {env.split}", f"physics {physics}", f"robot {env.robot_uids}"]
+    robots = f"robots {' and '.join(env.robot_uids)}" if env.team else f"robot {env.robot_uids}"
+    settings = [f"split {env.split}", f"physics {physics}", robots]
     settings += ["agent affected"] * env.affects_agent
     settings += [f"{name} {env.settings[name]}" for name in LOOKS if name in env.settings]
     settings += [] if options.clock == OFF else [f"clock {options.clock}"]
@@ -67,6 +73,12 @@ def failure_line(agent: str, results: Sequence[EpisodeResult], failed: int = 0) 
     failures = Counter(f"{d.verb} {d.reason}" for d in left if d.reason not in UNFINISHED)
     under_way = f"unfinished: {_counted(unfinished)}; " if unfinished else ""
     return f"{agent}: ended by {_counted(ends)}; {under_way}failures: {_counted(failures) or 'none'}"
+
+
+def team_line(agent: str, results: Sequence[EpisodeResult]) -> str:
+    """The line that counts how often the robots of a team collided; empty for a single robot."""
+    told = [r.robot_collisions for r in results if r.robot_collisions is not None]
+    return f"{agent}: {sum(told)} collisions of robots with one another in {len(told)} episodes" if told else ""
 
 
 def averted_line(agent: str, results: Sequence[EpisodeResult]) -> str:

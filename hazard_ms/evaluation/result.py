@@ -19,6 +19,7 @@ from typing import Annotated, Any
 from hazard_ms.agents.thinking import OFF
 from hazard_ms.evaluation.averted.loss import Loads, Loss, averted, averted_of_all
 from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
+from hazard_ms.evaluation.teams.fields import TEAM_FORMAT, check, told
 from hazard_ms.machine.files import write
 from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.registry.version import __version__
@@ -27,8 +28,8 @@ from hazard_ms.spec.foreign import plain
 from hazard_ms.spec.foreign.files import printable, read_foreign, sha256_of
 from hazard_ms.spec.foreign.plain import Within
 
-FORMAT = 3  # goes up when a field changes its meaning, or is new
-READABLE = (2, FORMAT)  # formats that are read: files of format 2 tell nothing of what was lost
+FORMAT = 3  # of results of one robot; goes up when a field changes its meaning, or is new
+READABLE = (2, FORMAT, TEAM_FORMAT)  # formats that are read: files of format 2 tell nothing of what was lost
 BROKEN = "simulation error"  # how an episode ends if its simulation breaks
 STUCK = "too many decisions"  # how it ends after 100 in a row that took no time
 ERROR, TOO_SLOW, DIED = "error", "too slow", "worker died"
@@ -64,6 +65,7 @@ class DecisionRecord:
     waited: Frame = 0  # frames that passed while the agent chose
     fallback: bool = False  # whether it stands in for an answer that could not be read
     thought: Seconds = 0.0  # time that the agent took to choose, by the clock of the episode [s]; 0 without one
+    robot: Name = ""  # of a team, which did it; empty for a single robot
 
 
 REGRET = ".regret.json"  # end of the names of the files that `hazard-ms regret` writes beside results
@@ -114,7 +116,7 @@ class EpisodeResult:
     max_frames: Annotated[int, Within(1, 10_000_000)]
     ended: Name  # why
     targets: Annotated[tuple[Fate, ...], Within(1, 1_000)]
-    decisions: Annotated[tuple[DecisionRecord, ...], Within(0, 20_000)]
+    decisions: Annotated[tuple[DecisionRecord, ...], Within(0, 20_000)]  # of all robots, as they were taken
     command: str  # that plays it again
     links: tuple[Link, ...] = ()  # by which a replay is known to be the same episode
     error: str = ""  # the agent's, or why there was no answer
@@ -128,6 +130,7 @@ class EpisodeResult:
     lost: Loss | None = None  # when the task's time was up; None where nobody asked
     lost_alone: Loss | None = None  # the same if nobody acts
     loads: Loads | None = None  # on the robot; None where nobody asked
+    robot_collisions: Frame | None = None  # of robots of a team with one another; None for a single robot
     versions: dict[str, str] = field(default_factory=lambda: versions())
     machine: dict[str, Any] = field(default_factory=lambda: machine())
     format: int = FORMAT
@@ -161,7 +164,7 @@ class EpisodeResult:
             score |= {"latency": self.latency, "latency_share": self.latency_share}
         if self.lost is not None:
             score |= {"averted": self.averted, "averted_of_all": averted_of_all(self.lost, self.lost_alone)}
-        return {"score": score, **dataclasses.asdict(self)}
+        return {"score": score, **told(dataclasses.asdict(self))}
 
     def to_json(self) -> str:
         """The result as JSON, with the scores of this episode."""
@@ -191,7 +194,7 @@ class EpisodeResult:
         except ValueError as error:
             raise DamagedResultError(f"{shown} must hold the result of an episode: {error}") from None
         raise ValueError(
-            f"the format of {shown} must be {READABLE[0]} or {FORMAT}, got {number!r:.100}; "
+            f"the format of {shown} must be one of {', '.join(map(str, READABLE))}, got {number!r:.100}; "
             "play its episode again, in another folder"
         )
 
@@ -200,13 +203,13 @@ class EpisodeResult:
         """The result that `to_dict` gave. Raises ValueError that names the first value that no episode has."""
         if not isinstance(row, dict):
             raise ValueError(f"a result must be an object, got {type(row).__name__}")
-        found: EpisodeResult = plain.made(
-            cls, {name: entry for name, entry in row.items() if name != "score"}, "result", LIMITS
-        )
+        own = {name: entry for name, entry in row.items() if name != "score"}
+        found: EpisodeResult = plain.made(cls, own, "result", LIMITS)
         if len(repr(found.settings)) > LONGEST_SETTINGS:
             raise ValueError(f"settings must have at most {LONGEST_SETTINGS} characters, got more")
         if found.frames > found.max_frames:
             raise ValueError(f"frames must be at most max_frames, {found.max_frames}, got {found.frames}")
+        check(found.settings, found.format, (d.robot for d in found.decisions), found.robot_collisions)
         return found
 
 

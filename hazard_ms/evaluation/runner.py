@@ -15,6 +15,7 @@ from hazard_ms.evaluation.hashes import EVERY, extended
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import BROKEN, STUCK, DecisionRecord, EpisodeResult, Link, Played, file_hashes
+from hazard_ms.evaluation.teams.fields import TEAM_FORMAT
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.sensing.detection.perception import eyes_of
@@ -22,6 +23,7 @@ from hazard_ms.skills.actions import wait
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import STOP, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.team import TeamSkills
 
 FRAME_REACHED = "frame reached"  # how a run ends if it was asked to end at a frame
 RUNNING = "running"  # of an episode that has not ended
@@ -144,7 +146,7 @@ class Runner:
         return "time" if self.env.frame >= self.env.max_frames else FRAME_REACHED
 
 
-def fates(env: SkillEnv) -> tuple[Fate, ...]:
+def fates(env: SkillEnv | TeamSkills) -> tuple[Fate, ...]:
     """The fates of the targets of `env`, so far."""
     world, episode, made = env.base.world, env.base.episode, []
     for row in env.base.observer.table.rows(world):
@@ -202,9 +204,9 @@ def agent_of(options: EpisodeOptions) -> Agent:
     return made
 
 
-def result_of(options: EpisodeOptions, env: SkillEnv, played: Played) -> EpisodeResult:
+def result_of(options: EpisodeOptions, env: SkillEnv | TeamSkills, played: Played) -> EpisodeResult:
     """The result of the episode of `options` as it stands in `env`, after `played`."""
-    return EpisodeResult(
+    made = EpisodeResult(
         env_id=options.env_id,
         agent=options.agent,
         seed=options.seed,
@@ -224,6 +226,7 @@ def result_of(options: EpisodeOptions, env: SkillEnv, played: Played) -> Episode
         counters=played.counters,
         files=file_hashes(options.agent, options.perception),
     )
+    return replace(made, robot_collisions=env.collisions, format=TEAM_FORMAT) if isinstance(env, TeamSkills) else made
 
 
 def played_to(options: EpisodeOptions, frame: int, **keywords: Any) -> SkillEnv:

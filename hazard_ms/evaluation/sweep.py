@@ -35,12 +35,13 @@ def evaluate(options: SweepOptions) -> int:
     results of another version, and where a result cannot be written.
     """
     from hazard_ms.agents.base import check_name  # loads torch
+    from hazard_ms.agents.team import check_team_name
 
     part, parts = shard(options.shard)
     every = options.episode_options()
     episodes = [e for e in every if in_shard(options.place(e).name, part, parts)]
     for agent in options.agents:
-        check_name(agent)
+        (check_team_name if options.env.team else check_name)(agent)
     _check_names(options, every)
     make_folder(options.output)
     found = {e: result for e in episodes if (result := kept(options, e)) is not None}

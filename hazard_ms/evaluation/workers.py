@@ -32,7 +32,8 @@ GOODBYE = 10.0  # time that a process has to end by itself [s] [ours]
 class Job:
     """An episode to play: by its agent, or again with the `actions` (verb, target) of an earlier run.
 
-    `waits`: the frames that passed before each of these; `averted`: whether to tell what is lost, and the loads.
+    `waits`: the frames that passed before each of these; `averted`: whether to tell what is lost, and the loads;
+    `robots`: of a team, which took each of the actions.
     """
 
     options: EpisodeOptions
@@ -40,6 +41,7 @@ class Job:
     actions: tuple[tuple[str, str | None], ...] | None = None
     waits: tuple[int, ...] = ()
     averted: bool = False
+    robots: tuple[str, ...] = ()
 
 
 class Outcome(NamedTuple):

@@ -21,7 +21,7 @@ def environment(variables: Mapping[str, str] | None = None) -> dict[str, str]:
 
 def needs_key(agent: str, load: Sequence[str] = ()) -> bool:
     """Whether an agent may ask a model: `llm`, one of a module or a file, and any that `load` may have registered."""
-    name = agent.partition(":")[0]
+    name = agent.removeprefix("independent:").partition(":")[0]  # of a team, that of each robot
     return name == "llm" or "." in name or bool(load)
 
 

@@ -14,8 +14,10 @@ from hazard_ms.machine.files import Draft
 from hazard_ms.machine.video import Video
 from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import Pixels
+from hazard_ms.pictures.news import News
 from hazard_ms.pictures.spectator import Spectator
 from hazard_ms.pictures.told import told
+from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import EXPLORE, Action, Decision, Result
@@ -24,7 +26,6 @@ from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.skills.mitigations.offers import tools
 
 RATE = 24.0  # pictures of a film per second
-NEWS_SHOTS = 45  # pictures for which news stay: nearly 2 s
 LOOK_EVERY = 4  # pictures of the film for one of the head camera: it is small, and rendering is what takes the time
 LAST_SHOTS = 45  # pictures for which the end stays
 PATH_STEP = 0.05  # shortest piece of the drawn path [m]
@@ -39,9 +40,7 @@ class Film(Watcher):
         self._files = ExitStack()
         self._action, self._note = Action(EXPLORE), ""
         self._way: list[tuple[float, float]] = []
-        self._news, self._good, self._news_left = "", True, 0
-        self._saved: frozenset[str] = frozenset()
-        self._shots = 0
+        self._news, self._shots = News(), 0
 
     def begin(self, env: SkillEnv, decision: Decision) -> None:
         """Start the encoder."""
@@ -60,7 +59,7 @@ class Film(Watcher):
     def ended(self, result: Result) -> None:
         """Show a failure for a while; what ran out of frames has not failed and goes on."""
         if not result.ok and result.reason not in UNFINISHED:
-            self._tell(f"{str(self._action).replace('_', ' ', 1)}: {result.reason.replace('_', ' ')}", good=False)
+            self._news.tell(f"{str(self._action).replace('_', ' ', 1)}: {result.reason.replace('_', ' ')}", good=False)
 
     def frame(self, action: LowLevel) -> None:
         """Take a picture where one is due; `action`, [A], in the units of the robot's controllers, is not looked at."""
@@ -95,9 +94,7 @@ class Film(Watcher):
         with self._spectator.looking():
             room = base.render()[0].cpu().numpy()
         now = fates(env)
-        self._tell_rescues(now)
-        shown = self._news if self._news_left > 0 else ""
-        self._news_left -= 1
+        self._news.rescues(now)
         picture = self._compositor.compose(
             Shot(
                 third_person=room,
@@ -108,7 +105,7 @@ class Film(Watcher):
                 openings=env.stage.doors.rows(),
                 tools=tuple(env.labeller.index(tool.name) for tool in tools(env.stage) if not tool.held),
                 names=env.labeller.names,
-                targets=self._targets(now),
+                targets=known_targets(env.labeller, now),
                 frame=env.frame,
                 max_frames=env.max_frames,
                 agent=env.stage.robot.base(),
@@ -118,8 +115,8 @@ class Film(Watcher):
                 note=self._note,
                 held=env.labeller.held,
                 value=Tally.of(now).value,
-                news=shown,
-                good_news=self._good,
+                news=self._news.shown(),
+                good_news=self._news.good,
             )
         )
         self._video.add(picture)
@@ -130,21 +127,11 @@ class Film(Watcher):
         self._head = self._env.base.observer.look()
         self._told = told(self._env.base, self._head[1])
 
-    def _targets(self, now: tuple[Fate, ...]) -> tuple[Target, ...]:
-        """The target table as it is at this frame.
 
-        The audience is told of all damage, the agent only of what it sees.
-        """
-        labeller = self._env.labeller
-        damaged = (labeller.names.index(f.name) for f in now if f.damaged and f.name in labeller.names)
-        return labeller.targets(frozenset(damaged))
+def known_targets(labeller: Labeller, now: tuple[Fate, ...]) -> tuple[Target, ...]:
+    """The target table at a frame with the fates `now`.
 
-    def _tell(self, news: str, good: bool) -> None:
-        self._news, self._good, self._news_left = news, good, NEWS_SHOTS
-
-    def _tell_rescues(self, now: tuple[Fate, ...]) -> None:
-        saved = frozenset(f.name for f in now if f.rescued)
-        for fate in now:
-            if fate.rescued and fate.name not in self._saved:
-                self._tell(f"{fate.name} is safe" + (", but damaged" if fate.damaged else ""), good=True)
-        self._saved = saved
+    The audience is told of all damage, the agent only of what it sees.
+    """
+    damaged = (labeller.names.index(f.name) for f in now if f.damaged and f.name in labeller.names)
+    return labeller.targets(frozenset(damaged))

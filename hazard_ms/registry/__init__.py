@@ -19,6 +19,7 @@ from typing import Any, TypeVar
 from hazard_ms.registry.loading import load as load
 from hazard_ms.registry.loading import load_plugin as load_plugin
 
+MOST_ROBOTS = 4  # of one environment [ours]
 FRAMES = 1500  # of an episode [docs/benchmark.md 1]
 HARD = MappingProxyType({"hard": 900})  # frames of an episode in the split `hard` [ours]
 TASK_NAME = re.compile(r"[A-Za-z]\w*-v\d+")

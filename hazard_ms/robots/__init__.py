@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from hazard_ms.registry import MOST_ROBOTS as MOST_ROBOTS
 from hazard_ms.registry import ROBOTS, load
 from hazard_ms.spec.checks import one_of
-
-MOST_ROBOTS = 4  # of one environment [ours]
 
 
 def robot_name(value: Any) -> str:

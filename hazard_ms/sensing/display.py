@@ -12,6 +12,7 @@ from hazard_ms.episode.situation import Situation
 from hazard_ms.simulation.building import extent_of_bag, pose_of
 from hazard_ms.simulation.drawing.lighting import Lighting
 from hazard_ms.simulation.drawing.moved_cameras import MovedCameras
+from hazard_ms.simulation.world import World
 
 
 class Display:
@@ -47,14 +48,13 @@ class Display:
         if self.effects is not None:
             self.effects.veiled = False
 
-    def show(self, effects: bool = True, spectator: bool = False) -> None:
-        """Show everything as it is now; call it before a picture is taken. Without `effects`, only what has labels.
+    def show(self, world: World, effects: bool = True, spectator: bool = False) -> None:
+        """Show everything as it is now in `world`; call it before a picture is taken by the robot whose world it is.
 
-        For a `spectator` smoke is thinner than the robot sees it.
+        Without `effects`, only what has labels. For a `spectator` smoke is thinner than the robot sees it.
         """
         if self.renders and effects:
             tell_of_first_picture(on_cpu=not self.scene.sub_scenes[0].render_system.device.is_cuda())
-        world = self._situation.world
         self._moved.show(world.chance.seed)
         depth = extent_of_bag()[2]
         for robot, bags in self._bags:

@@ -75,7 +75,7 @@ class Observer:
 
     def show(self, spectator: bool = False) -> None:
         """Show everything as it is now; call it before a picture is taken, with `spectator` in third person."""
-        self.display.show(spectator=spectator)
+        self.display.show(self.situation.world, spectator=spectator)
 
     def extra(self, hidden: bool) -> dict[str, Tensor]:
         """The task's own entries of the observation, float32 [E, N] each in its term's unit [SI]; all if `hidden`."""
@@ -131,7 +131,9 @@ class Observer:
         """What the head camera truly sees; `depth` as ManiSkill gives it, [E, H, W, 1]."""
         ids = seen["segmentation"] if "segmentation" in seen else self._textures(segmentation=True)["segmentation"]
         labels = relabel(ids, self.labels)
-        return Frame(depth[..., 0], labels, params["intrinsic_cv"], params["cam2world_gl"], "head")
+        return Frame(
+            depth[..., 0], labels, params["intrinsic_cv"], params["cam2world_gl"], self.situation.agent.head_camera
+        )
 
     def _add_senses(self, seen: dict[str, Tensor], place: dict[str, Tensor], frame: Frame) -> None:
         """Put the thermal image, float32 [E, H, W, 1] [C], into `place`; degrade the colour and depth in `seen`."""
@@ -158,7 +160,7 @@ class Observer:
     def look(self) -> tuple[Tensor, View]:
         """One look of the first environment's head camera: its image [H, W, 3], uint8, and the view for the map."""
         labels = self._label_camera  # made before the scene is prepared, or its first picture would be empty
-        self.display.show()
+        self.display.show(self.situation.world)
         self._refresh()
         self.camera.capture()
         seen = self._textures(rgb=True, depth=labels is None, segmentation=labels is None)
@@ -174,7 +176,7 @@ class Observer:
         """The view of a look without its image, in a third of the time."""
         if self._label_camera is None:
             return self.look()[1]
-        self.display.show(effects=False)
+        self.display.show(self.situation.world, effects=False)
         self._refresh()
         return self._view(self._label_camera.take())[1]
 

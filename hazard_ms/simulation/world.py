@@ -10,19 +10,21 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
+from typing import Any
 
 import torch
 from torch import Tensor
 
 from hazard_ms.kernels.launch import Launches
 from hazard_ms.simulation.chance import Chance
+from hazard_ms.simulation.crew import Crew
 from hazard_ms.simulation.handles import Handles
 from hazard_ms.simulation.jet import Jet
 from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.mitigation.equipment import Equipment
 from hazard_ms.simulation.openings import Openings
 from hazard_ms.simulation.walls import Walls
-from hazard_ms.spec import Body, Build, SceneSpec
+from hazard_ms.spec import Body, Build, SceneSpec, checks
 from hazard_ms.spec.catalogue import CATEGORIES, value_of
 
 
@@ -79,6 +81,7 @@ class World:
     equipment: Equipment | None = None  # what the agent can pick up and use, in tasks with mitigations
     door_grip: DoorGrip | None = None  # the hand at the handles of doors, in tasks in which leaves follow it
     agent_build: Build | None = None  # mass, width, drag area and friction of the agent's robot
+    team: Crew | None = None  # the robots of a team, for each of which there is a world; None: there is one robot
     fields: dict[str, Callable[[Tensor], Tensor]] = field(default_factory=dict, repr=False)
     launches: Launches = field(default_factory=Launches, repr=False)  # prepared launches of its hazards' kernels
 
@@ -97,6 +100,8 @@ class World:
         def zeros(*more: int, dtype: torch.dtype = torch.float32) -> Tensor:
             return torch.zeros(*shape, *more, dtype=dtype, device=device)
 
+        marks = ("exists", "movable", "floats", "target", "safe", "away", "held")
+        none: Any = {name: zeros(dtype=torch.bool) for name in marks}
         world = cls(
             specs=specs,
             names=tuple(tuple(t.name for t in row) for row in things),
@@ -107,21 +112,14 @@ class World:
             angular_velocity=zeros(3),
             extent=zeros(3),
             mass=zeros(),
-            exists=zeros(dtype=torch.bool),
-            movable=zeros(dtype=torch.bool),
-            floats=zeros(dtype=torch.bool),
             category=zeros(dtype=torch.int64) - 1,
-            target=zeros(dtype=torch.bool),
             value=zeros(),
-            safe=zeros(dtype=torch.bool),
-            away=zeros(dtype=torch.bool),
-            held=zeros(dtype=torch.bool),
+            **none,
             room=torch.tensor([s.room.size for s in specs], device=device),
             agent_position=torch.tensor([[*s.agent_start.position, 0.0] for s in specs], device=device),
             agent_heading=torch.tensor([s.agent_start.heading for s in specs], device=device),
         )
-        for e, (spec, row) in enumerate(zip(specs, things, strict=True)):
-            n = len(row)
+        for e, (spec, row, n) in enumerate(zip(specs, things, map(len, things), strict=True)):
             world.extent[e, :n] = torch.tensor(extents[e], device=device)
             world.mass[e, :n], world.exists[e, :n] = torch.tensor(masses[e], device=device), True
             world.rotation[e, :n] = torch.tensor([t.rotation for t in row], device=device)
@@ -168,6 +166,11 @@ class World:
         return self.agent_build
 
     @property
+    def crew(self) -> Crew:
+        """All robots on which hazards act: those of the team, or the one robot."""
+        return Crew((self.agent_build,), self.agent_position[:, None]) if self.team is None else self.team
+
+    @property
     def frame(self) -> Tensor:
         """Frames since the start of each episode, [E], int64."""
         return self.chance.frame
@@ -205,10 +208,7 @@ class World:
 
     def index(self, env: int, name: str) -> int:
         """Index along B of the thing called `name` in scene `env`. Raises ValueError if no thing has that name."""
-        if name not in self.names[env]:
-            known = ", ".join(self.names[env])
-            raise ValueError(f"a thing in {self.specs[env].name} must be one of {known}, got {name!r}")
-        return self.names[env].index(name)
+        return self.names[env].index(checks.one_of(name, self.names[env], f"a thing in {self.specs[env].name}"))
 
     def read(self) -> None:
         """Refresh positions, rotations and velocities from the simulator."""

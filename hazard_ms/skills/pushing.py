@@ -1,7 +1,7 @@
 """The skill `push`: the robot grips a cart and takes it near to a place. It pushes it, or draws it, driving backwards.
 
-It uses at most 196 N (hazard_ms.simulation.hitch), what a cart of 22 kg with 18 kg in it takes to slide at a friction
-of 0.5, and stops where the cart lags behind. On a GPU furniture stands fast, and no cart moves.
+It uses at most 196 N (hazard_ms.simulation.mitigation.hitch), what a cart of 22 kg with 18 kg in it takes to slide at
+a friction of 0.5, and stops where the cart lags behind. On a GPU furniture stands fast, and no cart moves.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.sensing.semantic_map import SemanticMap
-from hazard_ms.simulation.hitch import GIVE, Hitch
+from hazard_ms.simulation.mitigation.hitch import GIVE, Hitch
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result

@@ -8,9 +8,8 @@ they must tell one another.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import replace
-from typing import Any, cast
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import gymnasium as gym
 
@@ -21,7 +20,7 @@ from hazard_ms.robots import robot_names, skill_control_mode
 from hazard_ms.sensing.detection.perception import TRUTH, perception
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.context import LowLevel, Skill
+from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import (
     DROP,
     PICK_UP,
@@ -33,7 +32,7 @@ from hazard_ms.skills.decision import (
     Message,
     Result,
 )
-from hazard_ms.skills.failures import EPISODE_OVER
+from hazard_ms.skills.doing import Doing
 from hazard_ms.skills.knowledge import Knowledge, OneRobot
 from hazard_ms.skills.mitigations.offers import check
 from hazard_ms.skills.telling import named_in
@@ -60,8 +59,9 @@ class TeamSkills:
                 "render_backend must be a renderer, got none: skills look through a camera (see `hazard-ms doctor`)"
             )
         self.env, self.base, self.names = env, base, tuple(base.robots)
+        self.watch: Callable[[dict[str, LowLevel]], None] | None = None  # called after each frame, with its moves
         self._limit = None if env.spec is None else env.spec.max_episode_steps
-        self._running: dict[str, _Doing] = {}  # what each robot does
+        self._running: dict[str, Doing] = {}  # what each robot does
         self._stopped: set[str] = set()
         self._over = True
 
@@ -104,6 +104,11 @@ class TeamSkills:
         """Names of the robots that have stopped for good."""
         return frozenset(self._stopped)
 
+    @property
+    def doing(self) -> dict[str, Action]:
+        """The actions that are under way, by robot."""
+        return {name: doing.action for name, doing in self._running.items()}
+
     def brief(self, name: str) -> Brief:
         """Everything that the agent of the robot `name` is told before the episode."""
         return self.knowledge[name].brief(self.names.index(name))
@@ -140,12 +145,12 @@ class TeamSkills:
         Raises ValueError for robots that are not free or left out, and for actions that are none or name nothing that
         is there; the episode is left unchanged.
         """
-        self._check(actions)
+        self.check(actions)
         for name, action in actions.items():
             if action.verb == STOP:
                 self._stopped.add(name)
             else:
-                self._running[name] = _Doing(action, skill(self.knowledge[name].stage, action), self.frame)
+                self._running[name] = Doing(action, skill(self.knowledge[name].stage, action), self.frame)
         results: dict[str, Result] = {}
         info = self.base.get_info()
         while self._running and not results and not self._over:
@@ -180,7 +185,8 @@ class TeamSkills:
         doing.waited += waits
         return waits
 
-    def _check(self, actions: Mapping[str, Action]) -> None:
+    def check(self, actions: Mapping[str, Action]) -> None:
+        """Check `actions` as `step` does. Raises ValueError for what it refuses."""
         if self._over:
             raise ValueError("the episode must be running, but it is over: call reset first")
         if set(actions) != set(self.free):
@@ -196,6 +202,8 @@ class TeamSkills:
         info = self.base.advance(given) if is_bare(self.env) else self.env.step(given)[4]
         over = bool(info["success"][0] or info["fail"][0] or info["sim_error"][0])
         self._over = over or self.frame >= self.max_frames
+        if self.watch is not None:
+            self.watch(moves)
         return info
 
     def _finish(self, name: str, result: Result) -> Result:
@@ -217,34 +225,12 @@ class TeamSkills:
             if other != name:
                 self.knowledge[other].hear(Message(self.frame, name, text), seen)
 
+    def rest(self, frames: int) -> None:
+        """Let `frames` frames pass in which all robots stand, whatever is under way; fewer if the simulation breaks."""
+        for _ in range(frames):
+            if not bool(self.base.episode.sim_error[0]):
+                self._frame({name: self.knowledge[name].stage.act() for name in self.names})
+
     def close(self) -> None:
         """Close the environment."""
         self.env.close()
-
-
-class _Doing:
-    """An action under way: its skill has decided on the move of the coming frame. None: it stands in that frame."""
-
-    def __init__(self, action: Action, doing: Skill, frame: int) -> None:
-        self.action, self._doing, self._since = action, doing, frame
-        self._result: Result | None = None
-        self.waited = 0  # frames in which it let others pass
-        self.move = self._next()
-
-    def _next(self) -> LowLevel | None:
-        try:
-            return next(self._doing)
-        except StopIteration as ended:
-            self._result = cast(Result, ended.value)
-            return None
-
-    def go_on(self, frame: int) -> Result | None:
-        """Decide on the next move at `frame`; the outcome of an action that is over, or None."""
-        if self._result is None:
-            self.move = self._next()
-        return None if self._result is None else replace(self._result, frames=frame - self._since)
-
-    def break_off(self, frame: int) -> Result:
-        """End the action at `frame`, where the episode is over."""
-        self._doing.close()
-        return Result(False, EPISODE_OVER, frame - self._since)

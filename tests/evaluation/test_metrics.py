@@ -121,5 +121,5 @@ def test_a_result_survives_its_file(tmp_path: Path) -> None:
     assert made.to_dict()["score"] == {"value": pytest.approx(5 / 6), "step": 100.0, "damage": 0.0}
     assert made.versions["numpy"] == np.__version__ and made.versions["hazard-ms"]
     path.write_text(path.read_text().replace('"format": 3', '"format": 99'))
-    with pytest.raises(ValueError, match="must be 2 or 3, got 99"):
+    with pytest.raises(ValueError, match="must be one of 2, 3, 4, got 99"):
         EpisodeResult.read(path)

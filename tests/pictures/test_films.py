@@ -166,5 +166,5 @@ def test_a_walk_that_goes_on_is_not_shown_as_a_failure(reason: str, shown: str, 
         made = Film(draft, "", 4)
         made._action = Action(WALK_TO, "cup")
         made.ended(Result(False, reason, 100))
-        assert made._news == shown
+        assert made._news.shown() == shown
         Path(draft.path).write_bytes(b"film")

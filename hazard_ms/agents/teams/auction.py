@@ -33,19 +33,21 @@ class Auction(TeamAgent):
             self._aims.pop(name, None)
             if decision.held is not None:
                 self._aims[name] = decision.held
-        made = {}
+        made, notes = {}, dict[str, str | None]()
         for name, decision in decisions.items():
             others = frozenset(target for target, who in self._allocated(decision).items() if who != name)
             self._agents[name].left_to_others = others
             action = self._agents[name].act(decision)
-            if action.verb == STOP and others:  # it may be needed again when another fails
-                action = Action(EXPLORE)
+            notes[name] = self._agents[name].note
+            if action.verb == STOP and others:
+                action, notes[name] = Action(EXPLORE), "it may be needed when another fails"
             target = action.target
             if action.verb == STOP:
                 self._last.pop(name)  # it bids no more
             elif action.verb in APPROACH and target is not None and target in {t.name for t in decision.targets}:
                 self._aims[name] = target
             made[name] = action
+        self.notes = notes
         return made
 
     def _allocated(self, now: Decision) -> dict[str, str]:

@@ -64,15 +64,16 @@ class Joint(TeamAgent):
             self._rescued = {target.name for target in decision.targets if target.rescued}
             if decision.held is not None:
                 self._aims[name] = decision.held
-        made = {}
+        made, notes = {}, dict[str, str | None]()
         for name, decision in decisions.items():
             news = self._news(decision) if self._tells and len(self._partners) > 1 else ""
             if news:
-                made[name] = Action(TELL, news)
+                made[name], notes[name] = Action(TELL, news), "the others may not have seen it"
                 continue
             action = self._partners[name].act(decision)
-            if action.verb == STOP and self.fetched(name):  # it may be needed when another fails
-                action = Action(EXPLORE)
+            notes[name] = self._partners[name].note
+            if action.verb == STOP and self.fetched(name):
+                action, notes[name] = Action(EXPLORE), "it may be needed when another fails"
             if action.verb == STOP:
                 self._ahead.pop(name, None)
             elif action.verb in APPROACH and action.target is not None:
@@ -83,6 +84,7 @@ class Joint(TeamAgent):
             if self._work[name] or action.verb == STOP:  # what a robot that has stopped is near to is not lost
                 self._stands.pop(name)
             made[name] = action
+        self.notes = notes
         return made
 
     def _news(self, decision: Decision) -> str:

@@ -72,7 +72,10 @@ def losses(options: SweepOptions, episodes: Sequence[EpisodeOptions]) -> dict[Ep
     firsts = {path: episode for episode, path in reversed(files.items())}
     found = {path: read(path, episode) for path, episode in firsts.items()}
     missing = {path: firsts[path] for path, loss in found.items() if loss is None}
-    jobs = {path: Job(_alone(e, "random"), SILENCE, ((STOP, None),), averted=True) for path, e in missing.items()}
+    stops = {e: tuple((STOP, None) for _ in e.team or ("",)) for e in missing.values()}
+    jobs = {
+        path: Job(_alone(e, "random"), SILENCE, stops[e], averted=True, robots=e.team) for path, e in missing.items()
+    }
     paths = {id(job): path for path, job in jobs.items()}
     with spread(list(jobs.values()), options.workers, options.backend, options.address) as outcomes:
         for done, (job, outcome) in enumerate(outcomes, 1):

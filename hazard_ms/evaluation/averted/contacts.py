@@ -2,7 +2,7 @@
 
 A collision begins with a frame at whose end something that stands pushes a link of the robot with at least FORCE, and
 did not in the GAP before. Contacts between two frames, of less than 33 ms, are not seen. What the robot carries or
-could carry does not count, nor does the floor.
+could carry does not count, nor do the floor and other robots.
 """
 
 from __future__ import annotations
@@ -19,15 +19,16 @@ UPRIGHT = 0.7  # share of a contact's normal along the vertical from which it is
 
 
 class Collisions:
-    """The collisions of the robot of one environment since it was made."""
+    """The collisions of one robot since it was made."""
 
-    def __init__(self, env: Any) -> None:
-        """Begin with none, in the one scene of `env`, a HazardEnv on the CPU."""
+    def __init__(self, env: Any, robot: Any) -> None:
+        """Begin with none of this `robot` in the one scene of `env`, a HazardEnv on the CPU."""
         self.number = 0
         self._px: Any = env.scene.sub_scenes[0].physx_system
         self._seconds = 1.0 / float(env.sim_freq)  # in which an impulse was given [s]
         self._gap = round(GAP * float(env.control_freq))
-        self._links = {link._objs[0].entity.per_scene_id for link in env.agent.robot.links}
+        self._links = _links(robot)
+        self._others = {link for other in env.robots.values() if other is not robot for link in _links(other)}
         self._loose = {body.name for body in env.specs[0].bodies}
         self._frame = 0
         self._last: dict[int, int] = {}  # frame of the last contact with each thing
@@ -52,10 +53,15 @@ class Collisions:
             if mine[0] == mine[1]:
                 continue
             other = second if mine[0] else first
-            if plain_name(other.name) in self._loose:
+            if other.per_scene_id in self._others or plain_name(other.name) in self._loose:
                 continue
             for point in contact.points:
                 if abs(float(point.normal[2])) < UPRIGHT:
                     force = float(np.linalg.norm(point.impulse)) / self._seconds
                     found[other.per_scene_id] = found.get(other.per_scene_id, 0.0) + force
         return found
+
+
+def _links(robot: Any) -> set[int]:
+    """Numbers of the entities of a robot's links."""
+    return {link._objs[0].entity.per_scene_id for link in robot.robot.links}

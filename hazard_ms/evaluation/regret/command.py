@@ -120,13 +120,18 @@ def _job(path: Path, result: EpisodeResult, load: tuple[str, ...]) -> RegretJob:
 
 
 def _records(folders: Sequence[Path]) -> dict[Path, EpisodeResult]:
-    """The results in `folders` by their files; a file that holds none is left out."""
+    """The results of one robot in `folders` by their files; a file that holds none is left out."""
     found = {}
     for path in result_files(folders):
         try:
-            found[path] = EpisodeResult.read(path)
+            result = EpisodeResult.read(path)
         except DamagedResultError as damaged:
             print(f"left out: {damaged}")
+            continue
+        if result.robot_collisions is None:
+            found[path] = result
+        else:
+            print(f"left out: {path} is of a team, whose decisions cannot be judged so far")
     return found
 
 

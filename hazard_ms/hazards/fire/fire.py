@@ -66,6 +66,7 @@ class Fire(Burning):
             "S": lattices,
             "K": 2 * spread.lattice_reach(self.max_frames) + 1,
             "F": spread.roster_length(self.max_frames, lattices),
+            "A": len(world.crew),
         }
 
     def reset(self, state: FireState, world: World, rows: Tensor) -> None:
@@ -90,27 +91,26 @@ class Fire(Burning):
     def _warm(self, state: FireState, world: World, due: Tensor) -> None:
         """Update all temperatures once in the environments that are `due`, [E]."""
         sources = self._sources(state, world)
-        nodes = state.temperature.shape[1] + 1  # things and the agent; after them come the flames
+        things = state.temperature.shape[1]  # after them come the robots, then flames
         mean = heat.Mean(self.room_temperature, 1.0, self.reach, self.nearest)
-        around = mean.at(sources.place[:, :nodes], sources, world.walls)
+        around = mean.at(sources.place[:, : things + len(world.crew)], sources, world.walls)
         # what went out under water has none
         embers = (state.status == BURNT) & state.threshold.isfinite() & self.embers
         fixed = (state.status == BURNING) | embers
-        passive = sources.active[:, : nodes - 1] & ~fixed & due[:, None]
-        state.temperature.copy_(heat.exchange(state.temperature, around[:, :-1], passive, self.decay))
-        state.agent_temperature.copy_(heat.exchange(state.agent_temperature, around[:, -1], due, self.decay))
+        passive = sources.active[:, :things] & ~fixed & due[:, None]
+        state.temperature.copy_(heat.exchange(state.temperature, around[:, :things], passive, self.decay))
+        bodies = heat.exchange(state.agent_temperature, around[:, things:], due[:, None], self.decay)
+        state.agent_temperature.copy_(bodies)
 
     def _sources(self, state: FireState, world: World) -> heat.Sources:
-        """The sources of heat: B things, the agent and the first flames of the roster, M = B + 1 + F or fewer."""
+        """The sources of heat: B things, A robots and the first flames of the roster, M = B + A + F or fewer."""
         base = world.base_of(world.position, world.rotation, world.extent)
-        flames = state.flame_place[:, : some_flames(state)]
-        shape, like = flames.shape[:2], state.temperature
+        count = some_flames(state)
+        flames, like, robots = state.flame_place[:, :count], state.temperature, state.agent_temperature
         return heat.Sources(
-            torch.cat([base, world.agent_position[:, None], flames], 1),
-            torch.cat([like, state.agent_temperature[:, None], like.new_full(shape, self.flame_temperature)], 1),
-            torch.cat(
-                [world.exists & ~world.safe, like.new_ones(shape[0], 1).bool(), lit(state, world.frame, shape[1])], 1
-            ),
+            torch.cat([base, world.crew.places, flames], 1),
+            torch.cat([like, robots, like.new_full(flames.shape[:2], self.flame_temperature)], 1),
+            torch.cat([world.exists & ~world.safe, torch.ones_like(robots).bool(), lit(state, world.frame, count)], 1),
         )
 
     def _burn(self, state: FireState, world: World, due: Tensor) -> None:
@@ -158,7 +158,7 @@ class Fire(Burning):
         sources = ((Heat, state), (Bodies, world), (Partitions, world.walls))
         structs = (world.launches.struct(kind, of) for kind, of in sources)
         world.launches.run(
-            temperature_at, tuple(found.shape), points, world.frame, world.agent_position, *room, *structs, found
+            temperature_at, tuple(found.shape), points, world.frame, world.crew.places, *room, *structs, found
         )
         return found.clone()
 
@@ -175,9 +175,10 @@ class Fire(Burning):
         return inside | (self.image(state, world, points) > self.agent_bound)
 
     def agent_info(self, state: FireState, world: World) -> dict[str, Tensor]:
+        own = world.crew.own(state.agent_temperature)
         return {
-            "agent_temperature": state.agent_temperature.clone(),
-            "agent_overheated": state.agent_temperature > self.endurance,
+            "agent_temperature": own.clone(),
+            "agent_overheated": own > self.endurance,
             "agent_in_fire": self.forbids(state, world, world.agent_position[:, None])[:, 0],
         }
 

@@ -16,13 +16,13 @@ STRIDE = 4  # sources that torch adds up side by side
 
 @dataclass
 class FireState(State):
-    """State of a fire with S lattices of K x K floor cells and F flames on the floor, in the order of ignition."""
+    """State of a fire with A robots, S lattices of K x K floor cells, F flames on the floor in order of ignition."""
 
     temperature: Tensor = quantity("E B", "C", "temperature of every thing", fill=20.0)
     status: Tensor = quantity("E B", "", "0 normal, 1 burning, 2 burnt", dtype="int", low=NORMAL, high=BURNT)
     burn_updates: Tensor = quantity("E B", "", "heat updates since ignition", dtype="int", low=0)
     threshold: Tensor = quantity("E B", "C", "ignition temperature; infinite for what cannot burn", fill=torch.inf)
-    agent_temperature: Tensor = quantity("E", "C", "temperature of the agent", fill=20.0)
+    agent_temperature: Tensor = quantity("E A", "C", "temperature of every robot", fill=20.0)
     anchor: Tensor = quantity("E S 2", "m", "where the first flame of each lattice is")
     free: Tensor = quantity("E S K K", "", "floor cells that can burn", dtype="bool")
     flame_cell: Tensor = quantity(

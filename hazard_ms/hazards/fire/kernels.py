@@ -14,10 +14,10 @@ wp.set_module_options(OPTIONS)
 
 @wp.struct
 class Heat:
-    """The fields of hazard_ms.hazards.fire.fire_state.FireState with the same names, of B things and F flames."""
+    """The fields of hazard_ms.hazards.fire.fire_state.FireState with these names, of B things, A robots, F flames."""
 
     temperature: wp.array2d(dtype=float)
-    agent_temperature: wp.array(dtype=float)
+    agent_temperature: wp.array2d(dtype=float)
     flame_cell: wp.array2d(dtype=wp.int64)
     flame_place: wp.array2d(dtype=wp.vec3)
     flame_birth: wp.array2d(dtype=wp.int64)
@@ -33,7 +33,7 @@ def weight_of(offset: wp.vec3, nearest: float) -> float:
 def temperature_at(
     points: wp.array2d(dtype=wp.vec3),
     frame: wp.array(dtype=wp.int64),
-    agent: wp.array(dtype=wp.vec3),
+    robots: wp.array2d(dtype=wp.vec3),
     room: float,
     room_weight: float,
     nearest: float,
@@ -45,15 +45,18 @@ def temperature_at(
 ):
     """Set `found` to the mean temperature [C] around each of the `points` [m] of each environment.
 
-    Sources are things that are not safe, the `agent` [m], and flames, at the temperature `flame` [C], as far as no wall
-    stands between; `room_weight` [1/m^2] is that of the room, at the temperature `room` [C].
+    Sources are the `robots` [m], things that are not safe, and flames, at the temperature `flame` [C], as far as no
+    wall stands between; `room_weight` [1/m^2] is that of the room, at the temperature `room` [C].
     """
     e, p = wp.tid()
     point = points[e, p]
     total = float(0.0)
-    if clear(e, agent[e], point, walls):
-        total = weight_of(agent[e] - point, nearest)
-    excess = total * (heat.agent_temperature[e] - room)
+    excess = float(0.0)
+    for a in range(robots.shape[1]):
+        if clear(e, robots[e, a], point, walls):
+            w = weight_of(robots[e, a] - point, nearest)
+            total += w
+            excess += w * (heat.agent_temperature[e, a] - room)
     total += room_weight
     for b in range(heat.temperature.shape[1]):
         if bodies.exists[e, b] and not bodies.safe[e, b]:

@@ -164,7 +164,7 @@ class Gale(Wind):
         kept = (1.0 - (speed / swept).square()).clamp(min=0.0)
         drift = (1.0 - kept) * speed
         if self.topples:
-            kept, drift = torch.where(state.lies[:, None], 0.0, kept), (speed - swept).clamp(min=0.0)
+            kept, drift = torch.where(world.crew.own(state.lies)[:, None], 0.0, kept), (speed - swept).clamp(min=0.0)
         return torch.cat([kept, drift * flow / speed.clamp(min=1e-9)], 1)
 
     def carried_off(self, state: GaleState, world: World) -> Tensor:

@@ -116,7 +116,7 @@ class Wind(Hazard):
 
     def sizes(self, world: World) -> dict[str, int]:
         deep, wide = shelter.map_size(world) if self.sheltered else (1, 1)
-        return {"C": container_index(world).shape[1], "Y": deep, "X": wide}
+        return {"C": container_index(world).shape[1], "Y": deep, "X": wide, "A": len(world.crew)}
 
     def reset(self, state: WindState, world: World, rows: Tensor) -> None:
         wind = torch.tensor([world.specs[row].wind for row in rows.tolist()], device=world.device).reshape(-1, 2)
@@ -173,7 +173,7 @@ class Wind(Hazard):
         if self.breaks:
             blown = world.launches.struct(Bodies, world), state.before, state.struck
             world.launches.run(blows.strike, tuple(world.exists.shape), dt, *self._air(state, world), *blown)
-        if self.topples and world.agent_build is not None:
+        if self.topples:
             self._topple(state, world, dt)
         if not self.turbulence and not self.torque:
             return
@@ -191,10 +191,10 @@ class Wind(Hazard):
         )
 
     def _topple(self, state: WindState, world: World, dt: float) -> None:
-        """Let agents fall, lie and stand up during `dt` [s]."""
-        speeds = toppling_speed(world.robot), world.robot.rising
-        agent = *self._air(state, world), world.agent_position, state.lies, state.lain
-        world.launches.run(kernels.topple, (world.num_envs,), dt, *speeds, CHEST, *agent)
+        """Let robots fall, lie and stand up during `dt` [s]."""
+        for robot, *own in world.crew.each(state.lies, state.lain):
+            speeds = toppling_speed(robot), robot.rising
+            world.launches.run(kernels.topple, (world.num_envs,), dt, *speeds, CHEST, *self._air(state, world), *own)
 
     def _air(self, state: WindState, world: World) -> tuple[Argument, Argument]:
         """The rules and the air as kernels take them."""
@@ -231,16 +231,16 @@ class Wind(Hazard):
         kept = (1.0 - (speed / swept).square()).clamp(min=0.0)
         drift = (1.0 - kept) * speed
         if self.topples:
-            kept, drift = torch.where(state.lies[:, None], 0.0, kept), (speed - swept).clamp(min=0.0)
+            kept, drift = torch.where(world.crew.own(state.lies)[:, None], 0.0, kept), (speed - swept).clamp(min=0.0)
         return torch.cat([kept, drift * state.heading], 1)
 
     def fallen(self, state: WindState, world: World) -> Tensor | None:
-        return state.lies if self.topples else None
+        return world.crew.own(state.lies) if self.topples else None
 
     def agent_info(self, state: WindState, world: World) -> dict[str, Tensor]:
         told = {"agent_wind": self.image(state, world, self._chest(world))[:, 0]}
         if self.topples:
-            told["agent_fallen"] = state.lies.clone()
+            told["agent_fallen"] = world.crew.own(state.lies).clone()
         if self.breaks:
             told["agent_struck"] = torch.where(breaking.at_the_agent(world, NEAR), state.struck, 0.0).amax(1)
         return told

@@ -24,12 +24,16 @@ HOUSE_ANGLE, HOUSE_PITCH = 0.6, 1.1  # of the camera above a home: vertical angl
 HOUSE_HIGH, HOUSE_MARGIN = 2.1, 0.03  # height that it must see [m], and what stays free at each edge of it [-] [ours]
 ROUND = (3.4, 2.4)  # half sizes of the part of a home around the robot that is followed, along x and y [m] [ours]
 BEHIND, ABOVE = 4.5, 3.2  # of a camera that follows the robot: how far from it, and how high [m] [ours]
+NEAR = 3.0  # distance from what it looks at up to which such a camera sees to all sides [m] [ours]
 
 
-def following_view(whole: sapien.Pose, place: tuple[float, float]) -> sapien.Pose:
-    """Pose of a camera that looks at `place` [m] from the side from which the camera at `whole` overlooks the scene."""
-    ahead = whole.to_transformation_matrix()[:2, 0]
-    eye = np.append(np.asarray(place) - BEHIND * ahead / np.linalg.norm(ahead), ABOVE)
+def following_view(whole: sapien.Pose, place: tuple[float, float], reach: float = 0.0) -> sapien.Pose:
+    """Pose of a camera that looks at `place` [m] from the side from which the camera at `whole` overlooks the scene.
+
+    It is so far away that it sees up to `reach` [m] around that place.
+    """
+    ahead, farther = whole.to_transformation_matrix()[:2, 0], max(1.0, reach / NEAR)
+    eye = np.append(np.asarray(place) - farther * BEHIND * ahead / np.linalg.norm(ahead), farther * ABOVE)
     return look_at(eye, [*place, 0.6]).sp
 
 

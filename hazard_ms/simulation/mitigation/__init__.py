@@ -1,1 +1,1 @@
-"""The things that mitigation acts on: tools and their charge, and doors that turn."""
+"""The things that mitigation acts on: tools and their charge, doors that turn; and grips on doors and carts."""

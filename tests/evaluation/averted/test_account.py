@@ -68,7 +68,7 @@ def drive(env: Any, forward: float, frames: int) -> Iterator[None]:
 def test_collisions_are_counted_when_they_begin() -> None:
     """Into the table and on against it: 1; away and again: 2. The free floor and the air are none."""
     env = environment()
-    counter, seen = Collisions(env.unwrapped), []
+    counter, seen = Collisions(env.unwrapped, env.unwrapped.agent), []
     for forward, frames in ((1 / 62, 40), (1 / 62, 80), (-1 / 62, 40), (1 / 62, 80)):
         for _ in drive(env, forward, frames):
             counter.count()
@@ -94,7 +94,7 @@ def test_heat_is_the_dose_of_the_agent_s_temperature() -> None:
         stage.frame += 1
         account.frame(np.zeros(1, np.float32))
         dose += float(env.unwrapped.get_info()["agent_temperature"][0]) ** 3.61 / 4.1e8 / 60.0 / 30.0
-    loads = account.loads()
+    (loads,) = account.loads().values()
     env.close()
     assert dose > 0.0 and loads.heat == pytest.approx(dose, rel=0.02)
     assert loads.wading is None and loads.water is None
@@ -108,7 +108,7 @@ def test_water_is_its_depth_over_time() -> None:
         stage.frame += 1
         account.frame(np.zeros(1, np.float32))
         depths.append(float(env.unwrapped.get_info()["water_depth"][0]))
-    loads = account.loads()
+    (loads,) = account.loads().values()
     env.close()
     assert loads.water == pytest.approx(sum(depths) / 30.0, rel=0.02) and loads.water > 0.1
     assert loads.wading == pytest.approx(sum(d > 0.01 for d in depths) / 30.0, abs=0.4) and loads.heat is None
@@ -120,8 +120,8 @@ def test_without_effects_on_the_robot_only_collisions_are_told() -> None:
     for _ in drive(env, 0.0, 10):
         stage.frame += 1
         account.frame(np.zeros(1, np.float32))
-    assert account.loads().collisions == 0
-    assert account.loads().heat is None and account.loads().wading is None
+    (loads,) = account.loads().values()
+    assert loads.collisions == 0 and loads.heat is None and loads.wading is None
     env.close()
 
 

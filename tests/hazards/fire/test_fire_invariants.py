@@ -53,7 +53,7 @@ def test_no_temperature_leaves_the_range_of_those_around(
     for _ in range(40):
         updates(preset, state, world, 1)
         high = 600.0 if high < 600.0 and bool((state.status == BURNING).any()) else high
-        every = torch.cat([state.temperature[0], state.agent_temperature])
+        every = torch.cat([state.temperature[0], state.agent_temperature[0]])
         assert low <= every.min().item() and every.max().item() <= high
 
 

@@ -99,6 +99,7 @@ class Blaze(Burning):
             "F": lattices * flames,
             "O": world.openings.count,
             "R": max(len(rooms.parts(s.room)) for s in world.specs),
+            "A": len(world.crew),
         }
 
     def _pace(self, floor: str) -> float:
@@ -151,9 +152,9 @@ class Blaze(Burning):
         state.vents.copy_(leaves.vents(world, leaves.fallen(state, world)))
         burns = smoke.advance(state, world, fires, state.yields, self.room_temperature, step)
         state.heat_release.copy_(burns.sum(1))
-        here = smoke.zone_of(state, world.agent_position[:, None])
+        here = smoke.zone_of(state, world.crew.places)
         for name in ("height", "temperature", "density", "low_density"):
-            getattr(state, f"smoke_{name}").copy_(getattr(state, f"zone_{name}").gather(1, here)[:, 0])
+            getattr(state, f"smoke_{name}").copy_(getattr(state, f"zone_{name}").gather(1, here))
         return fires._replace(power=burns)
 
     def _exposure(
@@ -171,9 +172,9 @@ class Blaze(Burning):
         return flux, torch.maximum(gas, torch.maximum(gas + rise, jet).clamp(max=self.flame_temperature))
 
     def _warm(self, state: BlazeState, world: World, fires: radiation.Fires, step: float) -> None:
-        """Heat things, and the agent, for `step` seconds of fire."""
-        things = state.status.shape[1]
-        points = torch.cat([world.position, tenability.chest(world)], 1)
+        """Heat things, and all robots, for `step` seconds of fire."""
+        things, chests = state.status.shape[1], tenability.chests(world)
+        points = torch.cat([world.position, chests], 1)
         flux, gas = self._exposure(state, world, fires, points)
         reached = torch.where(touching.touched(fires, world, state.ceiling), touching.TOUCH_FLUX, 0.0)
         taken = torch.maximum(flux[:, :things], reached) + radiation.CONVECTION * (
@@ -185,12 +186,10 @@ class Blaze(Burning):
         )
         state.temperature.copy_(torch.where(passive, warmed, state.temperature))
         wetting.dry(state, taken, step)
-        state.agent_temperature.copy_(gas[:, -1])
-        seconds = step / self.time_scale  # the agent's: it does not age as fast as the fire
-        state.agent_dose.add_(tenability.dose_rate(gas[:, -1], flux[:, -1]) * seconds)
-        state.agent_toxic_dose.add_(
-            tenability.toxic_rate(smoke.breathed(state, tenability.chest(world))[:, 0]) * seconds
-        )
+        state.agent_temperature.copy_(gas[:, things:])
+        seconds = step / self.time_scale  # the robots': they do not age as fast as the fire
+        state.agent_dose.add_(tenability.dose_rate(gas[:, things:], flux[:, things:]) * seconds)
+        state.agent_toxic_dose.add_(tenability.toxic_rate(smoke.breathed(state, chests)) * seconds)
 
     def _burn(self, state: BlazeState, world: World, step: float) -> None:
         """Let things catch fire and burn out."""
@@ -236,15 +235,16 @@ class Blaze(Burning):
         return ((apart <= spread.STEP / 2) & lit(state, world.frame)[:, None]).any(-1) | (flux > self.agent_bound)
 
     def agent_info(self, state: BlazeState, world: World) -> dict[str, Tensor]:
-        flux, gas = (v[:, 0] for v in self._exposure(state, world, self._fires(state, world), tenability.chest(world)))
+        chest, own = tenability.chest(world), world.crew.own
+        flux, gas = (v[:, 0] for v in self._exposure(state, world, self._fires(state, world), chest))
         return {
             "agent_temperature": gas,
             "agent_flux": flux,
-            "agent_dose": state.agent_dose.clone(),
+            "agent_dose": own(state.agent_dose).clone(),
             "agent_thermal_class": tenability.thermal_class(gas, flux),
-            "agent_overheated": state.agent_dose >= tenability.UNBEARABLE,
+            "agent_overheated": own(state.agent_dose) >= tenability.UNBEARABLE,
             "agent_in_fire": self._forbids(state, world, world.agent_position[:, None], flux[:, None])[:, 0],
-            "agent_in_smoke": state.smoke_height < tenability.CHEST,
-            "agent_toxic_dose": state.agent_toxic_dose.clone(),
-            "agent_visibility": smoke.visibility(state, tenability.chest(world))[:, 0],
+            "agent_in_smoke": own(state.smoke_height) < tenability.CHEST,
+            "agent_toxic_dose": own(state.agent_toxic_dose).clone(),
+            "agent_visibility": smoke.visibility(state, chest)[:, 0],
         }

@@ -35,7 +35,7 @@ HEATED = (  # names of the quantities that an update of heat changes
 
 @dataclass
 class BlazeState(FireState):
-    """State of a realistic fire: that of FireState, and more, with O openings and R rooms.
+    """State of a realistic fire: that of FireState, and more, with O openings, R rooms and A robots.
 
     `burn_updates` counts intervals of blaze.UPDATE.
     """
@@ -98,12 +98,12 @@ class BlazeState(FireState):
     zone_share: Tensor = quantity("E R", "", "share of the fires that has oxygen", fill=1.0, low=0.0, high=1.0)
     zone_draught: Tensor = quantity("E R", "m/s", "speed of the air that openings let in, over the room's width")
     heat_release: Tensor = quantity("E", "kW", "heat release of all that burns")
-    smoke_height: Tensor = quantity("E", "m", "lower face of the layer in the agent's room", fill=2.6, low=0.0)
-    smoke_temperature: Tensor = quantity("E", "C", "temperature of that layer", fill=20.0)
-    smoke_density: Tensor = quantity("E", "1/m", "extinction of light in it: one sees about 3 / it", low=0.0)
-    smoke_low_density: Tensor = quantity("E", "1/m", "extinction of light in the air below it", low=0.0)
-    agent_dose: Tensor = quantity("E", "", "heat that the agent has borne; 1 is too much for people")
-    agent_toxic_dose: Tensor = quantity("E", "", "poison that it has breathed; 1 makes people helpless", low=0.0)
+    smoke_height: Tensor = quantity("E A", "m", "lower face of the layer in a robot's room", fill=2.6, low=0.0)
+    smoke_temperature: Tensor = quantity("E A", "C", "temperature of that layer", fill=20.0)
+    smoke_density: Tensor = quantity("E A", "1/m", "extinction of light in it: one sees about 3 / it", low=0.0)
+    smoke_low_density: Tensor = quantity("E A", "1/m", "extinction of light in the air below it", low=0.0)
+    agent_dose: Tensor = quantity("E A", "", "heat that a robot has borne; 1 is too much for people")
+    agent_toxic_dose: Tensor = quantity("E A", "", "poison that it has breathed; 1 makes people helpless", low=0.0)
 
     @property
     def ceiling(self) -> Tensor:

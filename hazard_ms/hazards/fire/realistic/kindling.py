@@ -26,7 +26,7 @@ def describe_rooms(state: BlazeState, world: World, rows: Tensor, room: float) -
     for name in ("ignition", "critical", "inertia"):
         getattr(state, f"floor_{name}")[rows] = torch.tensor([getattr(f, name) for f in floors], device=world.device)
     state.height[rows] = torch.tensor([s.room.height for s in specs], device=world.device)
-    state.smoke_height[rows] = state.height[rows]
+    state.smoke_height[rows] = state.height[rows, None]
     state.zone_height[rows] = state.height[rows, None]
     state.roofed[rows] = torch.tensor([float(not s.room.open_air) for s in specs], device=world.device)
     state.zone_columns[rows] = torch.tensor([len(rooms.ends(s.room, 0)) for s in specs], device=world.device)

@@ -32,9 +32,18 @@ BREATHLESS = 13.0  # oxygen below which its lack counts [% by volume] [docs/phys
 
 def chest(world: World) -> Tensor:
     """Place where the agent feels heat [m], [E, 1, 3], world frame."""
-    place = world.agent_position.clone()
-    place[:, 2] += CHEST
-    return place[:, None]
+    return _raised(world.agent_position[:, None])
+
+
+def chests(world: World) -> Tensor:
+    """Places where all A robots feel heat [m], [E, A, 3], world frame."""
+    return _raised(world.crew.places)
+
+
+def _raised(places: Tensor) -> Tensor:
+    high = places.clone()
+    high[..., 2] += CHEST
+    return high
 
 
 def toxic_rate(gas: Tensor) -> Tensor:

@@ -85,7 +85,7 @@ class Inundation(Flood):
             max(1, most(world.specs)) for most in (floor_plan.most_inlets, floor_plan.most_doors, floor_plan.most_sides)
         )
         sizes = super().sizes(world)
-        return sizes | {"N": (rows + 2) * (columns + 2), "I": inlets, "DOORS": doors, "L": sides}
+        return sizes | {"N": (rows + 2) * (columns + 2), "I": inlets, "DOORS": doors, "L": sides, "A": len(world.crew)}
 
     def reset(self, state: InundationState, world: World, rows: Tensor) -> None:  # type: ignore[override]
         size = _cells(world)
@@ -122,8 +122,7 @@ class Inundation(Flood):
         launches.run(currents.immerse, size, dt, self.damage_fraction, rows, columns, flooded, basin, bodies)
         if not none_set(world.floats):
             self._float(state, world)
-        if world.agent_build is not None:
-            self._topple(state, world, dt)
+        self._topple(state, world, dt)
 
     def _float(self, state: InundationState, world: World) -> None:
         """Let furniture leave the floor, and dam the openings that it lies in."""
@@ -132,11 +131,11 @@ class Inundation(Flood):
         launches.run(dams.drift, (world.num_envs,), self.outside, rows, columns, *structs)
 
     def _topple(self, state: InundationState, world: World, dt: float) -> None:
-        """Let agents fall, lie and stand up during `dt` [s]."""
-        launches, water = world.launches, self.water
-        build = footing.footing(world.robot, water.density, water.gravity)
-        agent = world.agent_position, state.lies, state.lain
-        launches.run(footing.stand, (world.num_envs,), dt, *_cells(world), build, launches.struct(Basin, state), *agent)
+        """Let robots fall, lie and stand up during `dt` [s]."""
+        launches, water, size = world.launches, self.water, (world.num_envs,)
+        for robot, *own in world.crew.each(state.lies, state.lain):
+            build = footing.footing(robot, water.density, water.gravity)
+            launches.run(footing.stand, size, dt, *_cells(world), build, launches.struct(Basin, state), *own)
 
     @torch.inference_mode()
     def force(self, state: InundationState, world: World, dt: float) -> Push | None:  # type: ignore[override]
@@ -188,14 +187,14 @@ class Inundation(Flood):
         Wheels or soles hold up to the speed of the water at which they slide, then carry the robot off at what the
         water is faster than that; its own motion counts less the faster it is carried. One that lies only slides.
         """
-        left = super().slow(state, world)
-        return torch.where(state.lies[:, None] & left.new_tensor([True, False, False]).bool(), 0.0, left)
+        left, lies = super().slow(state, world), world.crew.own(state.lies)
+        return torch.where(lies[:, None] & left.new_tensor([True, False, False]).bool(), 0.0, left)
 
     def fallen(self, state: InundationState, world: World) -> Tensor | None:
-        return state.lies
+        return world.crew.own(state.lies)
 
     def agent_info(self, state: InundationState, world: World) -> dict[str, Tensor]:  # type: ignore[override]
-        return super().agent_info(state, world) | {"agent_fallen": state.lies.clone()}
+        return super().agent_info(state, world) | {"agent_fallen": world.crew.own(state.lies).clone()}
 
 
 def _cells(world: World) -> tuple[int, int]:

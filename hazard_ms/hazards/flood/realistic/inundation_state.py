@@ -70,5 +70,5 @@ class InundationState(FloodState):
     )
     afloat: Tensor = quantity("E B", "", "furniture that has left the floor", dtype="bool")
     displaced: Tensor = quantity("E", "m^3", "water in the place of furniture that has left the floor", low=0.0)
-    lies: Tensor = quantity("E", "", "the agent lies in the water", dtype="bool")
-    lain: Tensor = quantity("E", "s", "time since the agent fell, 0 where it stands", low=0.0)
+    lies: Tensor = quantity("E A", "", "a robot lies in the water", dtype="bool")
+    lain: Tensor = quantity("E A", "s", "time since a robot fell, 0 where it stands", low=0.0)

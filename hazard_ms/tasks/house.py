@@ -19,7 +19,7 @@ DOORS = ("open", "shut")
 # Water of `paper` in homes: it comes in at the outer doors, rises by a step in EVERY frames, and its surface slopes by
 # SLOPE [degrees]. In rooms it takes 10 frames and 3 degrees, but homes have four times the floor (72 to 120 m2), and at
 # 3 degrees it would have to stand 0.5 m deep at a door to get 10 m into a home. At 60 frames a step, rescues alone save
-# four fifths of what is at risk, at 40 seven tenths [ours; results/scenes.md]
+# three quarters of what is at risk, at 40 three fifths [ours; results/scenes.md]
 EVERY, SLOPE = 40, 1.0
 
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.scenes.walls import WALLS
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.view import View
 from hazard_ms.simulation.mitigation.hinges import angle, spots, under_leaf
@@ -71,7 +70,7 @@ class DoorMemory:
         before = self.known.get(number)
         self.known[number] = KnownOpening(
             *(self.names[number], number, o.kind, (x, y, z), o.width, share, broken, frame),
-            outer=o.wall in WALLS,
+            outer=bool(openings.plan.outside[0, number]),
             boarded=self._boarded(number, frame, before),
         )
         if before is not None and (before.open, before.broken) != (share, broken):

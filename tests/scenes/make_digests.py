@@ -23,13 +23,13 @@ def digest(name: str) -> str:
 
 
 def pinned() -> list[str]:
-    """Names of the scenes with a checksum: all, but of the thousand homes for training only five."""
+    """Names of the scenes with a checksum: all, but of each thousand homes for training only five."""
     made = []
     for family in families():
         for split in split_names(family):
             names = scene_names(split, family)
             made += [*names[3 :: 10 * SCENES], names[-1]] if len(names) > MOST else names
-    return list(dict.fromkeys(made))  # fires and floods share the homes to train in
+    return made
 
 
 def main() -> None:

@@ -12,6 +12,7 @@ from hazard_ms.demonstrations.options import RecordOptions
 from hazard_ms.evaluation import sweep
 from hazard_ms.evaluation.options import EnvOptions, EpisodeOptions, PlayOptions, SweepOptions
 from hazard_ms.evaluation.regret.command import regret
+from hazard_ms.evaluation.spread import Where
 from hazard_ms.machine.processes import needs_key
 from hazard_ms.perception.options import CaptureOptions
 from hazard_ms.pictures.options import RenderOptions
@@ -84,7 +85,7 @@ def test_other_commands_have_one_robot(options: RenderOptions | RecordOptions | 
 def test_decisions_of_teams_are_not_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     TEAM.write(tmp_path / "team.json")
     with pytest.raises(ValueError, match="got none in"):
-        regret([tmp_path], 1, ())
+        regret([tmp_path], Where(1), ())
     assert f"left out: {tmp_path}/team.json is of a team, whose decisions" in capsys.readouterr().out
 
 

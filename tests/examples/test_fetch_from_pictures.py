@@ -101,6 +101,8 @@ def test_taking_begins_where_the_walk_ends(example: Any, dataset: Path) -> None:
     assert rows.body[0, -1] == 0.0 and rows.body[:, -1].max() == 1.0
 
 
+@pytest.mark.long
+@pytest.mark.timeout(3600)
 def test_one_walks_until_it_has_arrived_and_again_where_nothing_is_taken(
     example: Any, dataset: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

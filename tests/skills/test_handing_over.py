@@ -28,7 +28,7 @@ def done(env: TeamSkills, name: str, action: Action) -> Result:
     return results[name]
 
 
-@pytest.mark.parametrize("left", [Action("drop"), Action("put_on", "table_0")])
+@pytest.mark.parametrize("left", [pytest.param(Action("drop"), marks=pytest.mark.long), Action("put_on", "table_0")])
 def test_what_one_robot_puts_down_another_one_takes(left: Action) -> None:
     thing = "powder_0" if left.verb == "drop" else "mug_0"
     scene = room("handing", (11.5, 7.5), (6.0, 3.5), [(1.0, 1.0)])

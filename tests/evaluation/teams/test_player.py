@@ -41,7 +41,7 @@ def options_of(task: str, agent: str = "auction") -> EpisodeOptions:
     return EpisodeOptions(task, split="test", seed=2, robot_uids=PAIR, agent=agent, effects="off")
 
 
-@pytest.fixture(scope="module", params=["HazardFire-v1", "HazardWind-v1"])
+@pytest.fixture(scope="module", params=["HazardFire-v1", pytest.param("HazardWind-v1", marks=pytest.mark.long)])
 def played(request: pytest.FixtureRequest) -> EpisodeResult:
     """An episode in which robot 0 looks around and stops, and robot 1 looks around, walks a step, and stops."""
     options = options_of(request.param)

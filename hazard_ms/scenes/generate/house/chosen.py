@@ -57,6 +57,7 @@ CHOSEN: dict[str, int] = {
     "house_flood_test_1/12": 10,
     "house_flood_test_1/13": 3,
     "house_flood_test_1/14": 10,
+    "house_flood_test_1/15": 8,
     "house_flood_test_1/16": 4,
     "house_flood_test_1/17": 1,
     "house_flood_test_1/18": 8,

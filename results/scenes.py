@@ -135,7 +135,7 @@ def best(split: str, rows: list[dict[str, str]]) -> int:
 
 
 def sound(spec: SceneSpec) -> bool:
-    """Whether a home has LARGEST m2 at most, and a robot gets to some of the floor of every room, doors as they begin."""
+    """Whether a home has LARGEST m2 at most, and a robot gets into every room with doors as they begin."""
     if spec.room.size[0] * spec.room.size[1] > LARGEST:
         return False
     reached = connected(free_floor(spec, RADIUS), spec.agent_start.position)

@@ -73,7 +73,7 @@ def flag(*spellings: str, old: str | None = None) -> Any:
 
 
 def team_names(robot_uids: Any) -> tuple[str, ...]:
-    """The names that an environment gives to the robots `robot_uids`; none for a single robot, which is no team."""
+    """The names that an environment gives to the robots `robot_uids`; empty for a single robot."""
     several = robot_uids if isinstance(robot_uids, (tuple, list)) else ()
     return tuple(f"{robot}-{number}" for number, robot in enumerate(several))
 

@@ -51,7 +51,7 @@ LOOKED = 0.3  # of this share where it has looked around in there [ours]
 AWASH = 0.05  # level at a door from which the room behind it is counted as wet [m] [ours]
 BEHIND = 0.6  # distance from a door at which it is told whether it stays dry behind it [m] [ours]
 HALF = 0.5  # of what water spoils that boards come in time for [ours]
-WET_BY = (800.0, 1300.0, 1800.0, 2300.0)  # frames by which a quarter each of it does [ours: twelve homes of `train`]
+WET_BY = (800.0, 1300.0, 1800.0, 2300.0)  # frames by which a quarter each of it does [ours: a guess]
 MOST_DOORS = 6  # that are weighed at a time: those that close off most [ours]
 
 Array = NDArray[np.float64]

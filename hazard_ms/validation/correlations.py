@@ -1,24 +1,12 @@
 """Published correlations that the realistic fire does not use, to compare it with other authors' answers.
 
-Sources: NIST FDS Correlation Guide (Target Heat Flux, Plume Temperature, HGL Depth, HGL Temperature chapters). Plain
+Sources: NIST FDS Correlation Guide (Target Heat Flux and HGL Temperature chapters). Plain
 numbers, SI, kW, C.
 """
 
 from __future__ import annotations
 
 import math
-
-GRAVITY = 9.81  # [m/s^2]; nothing here comes from the package that it checks
-KELVIN = 273.15  # [K]
-MCCAFFREY = ((0.08, 0.5, 6.8), (0.2, 0.0, 1.9), (math.inf, -1 / 3, 1.1))  # limit of z / Q^0.4, eta, kappa
-
-
-def mccaffrey(power: float, height: float, ambient: float) -> float:
-    """Temperature on a plume's axis [C] at `height` [m] above a fire of `power` [kW] in air of `ambient` [C]."""
-    scaled = height / power**0.4
-    eta, kappa = next((e, k) for limit, e, k in MCCAFFREY if scaled < limit)
-    rise = (kappa / (0.9 * math.sqrt(2 * GRAVITY))) ** 2 * scaled ** (2 * eta - 1)
-    return ambient + rise * (ambient + KELVIN)
 
 
 def solid_flame(length: float, diameter: float, apart: float) -> float:
@@ -50,19 +38,6 @@ def beyler(power: float, size: tuple[float, float, float], lining: float, second
     first, second = 2 * 0.4 * math.sqrt(lining) * surface / mass, power / mass
     root = math.sqrt(seconds)
     return 2 * second / first**2 * (first * root - 1 + math.exp(-first * root))
-
-
-def yamana_tanaka(
-    power: float, size: tuple[float, float, float], lining: float, ambient: float, seconds: float
-) -> float:
-    """Height of the smoke layer [m] in a closed room, with Beyler's temperature.
-
-    `ambient` is the temperature outside [C]; the other arguments are those of `beyler`.
-    """
-    length, width, high = size
-    hot = ambient + KELVIN + beyler(power, size, lining, seconds)
-    k = 0.076 * hot / 353
-    return float((2 * k * power ** (1 / 3) * seconds / (3 * length * width) + high ** (-2 / 3)) ** -1.5)
 
 
 def mqh(

@@ -21,7 +21,7 @@ from hazard_ms.spec.foreign.pictures import LARGEST_FILE, size_of
 NEEDS = Needs(("file_name",), ("segmentation",))
 SPLIT = re.compile(r"\w+")  # that a name of a folder, a key of YAML and a split of Hugging Face's can be
 NAME = re.compile(r"[\w .()/&'+-]{1,100}")  # of a category, as it may stand between quotes in YAML
-PNG, JPEG = b"\x89PNG", b"\xff\xd8"
+PNG = b"\x89PNG"  # how such files begin
 MOMENT = ("scene", "room", "seed", "frame", "lighting", "effects", "hazard_visible", "degraded", "transmission")
 
 

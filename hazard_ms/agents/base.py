@@ -192,3 +192,12 @@ def asked(decision: Decision, verb: str) -> Action:
 def open_targets(decision: Decision) -> tuple[str, ...]:
     """Names of the targets that are neither rescued nor in the hand."""
     return tuple(t.name for t in decision.targets if not t.rescued and t.name != decision.held)
+
+
+def ends_belief(decision: Decision, name: str) -> bool:
+    """Whether `decision`, which follows the refusal of `name` by a hand, no longer takes that thing for the target.
+
+    Without beliefs, as of detectors whose errors nobody counted, it is still on the map and as sure as before.
+    """
+    sure = any(target.name == name and target.belief >= 1.0 for target in decision.targets)
+    return not (sure and decision.index(name) in decision.map.objects)

@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.agents.attempts import Repeats
-from hazard_ms.agents.base import Agent, asked, distance, known, open_targets
+from hazard_ms.agents.base import Agent, asked, distance, ends_belief, known, open_targets
 from hazard_ms.agents.search.lookouts import lookouts
 from hazard_ms.agents.search.stands import stands
 from hazard_ms.sensing.detection.eyes import FAR
@@ -88,7 +88,10 @@ class Greedy(Agent):
         if self._before is None or decision.last_result is None or decision.last_result.ok:
             return
         action, start = self._before
-        if action.target is None or (self._belief and decision.last_result.reason == NOT_A_TARGET):
+        if action.target is None:
+            return
+        refused = decision.last_result.reason == NOT_A_TARGET
+        if self._belief and refused and ends_belief(decision, action.target):
             return
         way = float(np.hypot(*(np.asarray(decision.agent_position) - start)))
         if action.verb in (WALK_TO, WALK_ONE_STEP) and way > PROGRESS:

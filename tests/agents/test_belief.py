@@ -69,11 +69,37 @@ def test_what_was_no_target_is_no_failure_of_whatever_gets_its_name() -> None:
     ground = Playground({"a": (2.0, 0.0)}, {"a": 1.0})
     ground.look()
     pick = Action(PICK_UP, "a")
-    for belief, count in ((True, {}), (False, {"a": 1})):
+    for belief, chance, count in ((True, 0.9, {}), (True, 1.0, {"a": 1}), (False, 0.9, {"a": 1})):
         memory = Memory(0, belief)
         memory.chose(ground.decision(), pick)
-        memory.note(replace(ground.decision(), last_action=pick, last_result=Result(False, NOT_A_TARGET, 0)))
+        told = replace(ground.decision(), last_action=pick, last_result=Result(False, NOT_A_TARGET, 0))
+        memory.note(doubted(told, a=chance))
         assert memory.failures == count
+    ground.map.forget(0)  # as where the belief has ended, and nothing else is taken for it
+    memory = Memory(0)
+    memory.chose(ground.decision(), pick)
+    memory.note(replace(ground.decision(), last_action=pick, last_result=Result(False, NOT_A_TARGET, 0)))
+    assert memory.failures == {}
+
+
+@pytest.mark.parametrize("name", AGENTS)
+def test_what_is_refused_but_stays_as_sure_as_before_is_given_up(name: str) -> None:
+    """As with detectors whose errors nobody counted: else it would be reached for until the episode ends."""
+    ground = Playground({"stone": (0.5, 0.0), "far": (-2.5, 0.0)}, {"stone": 5.0, "far": 1.0})
+    player = agent(name)
+    player.reset(brief())
+    ground.do(player.act(ground.decision()))
+    reached = 0
+    for _ in range(12):
+        action = player.act(ground.decision())
+        if action.target == "far":
+            break
+        if action == Action(PICK_UP, "stone"):
+            reached += 1
+            ground.last = (action, Result(False, NOT_A_TARGET, 0))
+        else:
+            ground.do(action)
+    assert action.target == "far" and 1 <= reached <= 6
 
 
 def test_a_name_that_is_seen_far_from_where_it_was_is_that_of_another_thing() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.agents.base import ends_belief
 from hazard_ms.agents.search.fire_watch import FireWatch
 from hazard_ms.agents.search.house_fire import HouseFire
 from hazard_ms.registry.mitigations import MITIGATIONS
@@ -64,14 +65,14 @@ class Memory:
 
     def _judge(self, action: Action, start: Place, decision: Decision) -> None:
         """Count the last action's failure, unless it was a walk that came further."""
-        name = action.target
-        if name is None or (
-            self._belief and decision.last_result is not None and decision.last_result.reason == NOT_A_TARGET
-        ):
+        name, result = action.target, decision.last_result
+        if name is None or result is None:
+            return
+        if self._belief and result.reason == NOT_A_TARGET and ends_belief(decision, name):
             return
         came = float(np.hypot(*np.subtract(decision.agent_position, start))) > PROGRESS
         if action.verb in MITIGATIONS:
-            unfinished = decision.last_result is not None and decision.last_result.reason in UNFINISHED
+            unfinished = result.reason in UNFINISHED
             self.failures[str(action)] = self.failures.get(str(action), 0) + (not (unfinished and came))
             return
         if action.verb in (WALK_TO, WALK_ONE_STEP) and came:
@@ -79,7 +80,7 @@ class Memory:
             if self._legs[name] % LEGS:
                 return
         self.failures[name] = self.failures.get(name, 0) + 1
-        if action.verb == PICK_UP and decision.last_result is not None and decision.last_result.reason != TOO_FAR:
+        if action.verb == PICK_UP and result.reason != TOO_FAR:
             stood = decision.agent_position
             self.missed.setdefault(name, []).append((stood, self._lay or stood))
 

@@ -3,8 +3,7 @@
 Every agent plays the first scenes, 25 by default, of each task's split `test` and sees through our small detector.
 Writes perceived.md and perceived.csv beside this file, with the same agents' scores of scores.csv and the paper's.
 Episodes in perceived.csv are not played again: those of an earlier track are to be deleted there.
-With `tables` alone it plays nothing. `parts [TASK-AGENT...] [SCENES]` plays the first scenes, 5 by default, with each
-part of the track alone, with all and with none, and writes perceived_parts.md.
+With `tables` alone it plays nothing.
 """
 
 from __future__ import annotations
@@ -17,11 +16,11 @@ from dataclasses import asdict
 from hazard_ms.evaluation.comparison.pairing import Episode, difference
 from hazard_ms.evaluation.metrics import Tally, scores
 from hazard_ms.spec.checks import one_of
-from results.tables import HERE, TASKS, evaluate, machine, results_in, value_of, words
+from results.tables import HERE, TASKS, evaluate, machine, results_in, words
 
 RAW, FILE = HERE.parent / "build" / "perceived", HERE / "perceived.csv"
 AGENTS = ("random", "rule", "greedy", "mcts", "planner")
-DETECTOR, SCENES, SCENES_OF_PARTS = "small", 25, 5
+DETECTOR, SCENES = "small", 25
 KEYS = ("task", "agent", "seed", "scene")
 COLUMNS = (*KEYS, "value_rescued", "value_total", "rescued", "rescued_damaged", "last_rescue", "wall_seconds")
 Row = dict[str, str]
@@ -36,29 +35,6 @@ PAPER = {
     "GPT-3.5": (63.5, 38.5, 16.2),
     "GPT-4": (67.7, 38.2, 33.9),
 }
-SMALLER, LARGER = "256/120", "512/120"
-PLAIN, LARGE = f"small:fusion=false,eyes={SMALLER}", f"small:fusion=false,eyes={LARGER}"
-# what is played by name: the perception, and whether agents count beliefs
-PARTS = {
-    "none": (PLAIN, False),
-    f"eyes {LARGER}": (LARGE, False),
-    "fusion": (f"small:eyes={SMALLER}", False),
-    "belief": (PLAIN, True),
-    "fusion and belief": (f"small:eyes={SMALLER}", True),
-    f"all, eyes {LARGER}": (f"small:eyes={LARGER}", True),
-}
-DOUBTING = {"greedy": "greedy:belief=false", "planner": "planner:belief=0.0", "mcts": "mcts:belief=0.0"}  # without
-PARTS_HEAD = """# The parts of the track with perception
-
-Made by `./run python results/perceived.py parts`. The first {scenes} scenes of `test`, Fetch, presets `paper`. Value in
-percent, with 95 % bootstrap intervals over scenes, and the difference from none of the parts, paired by episode.
-`eyes`: other pictures than 256/120; `fusion`: tracks keep what all looks tell; `belief`: agents weigh values by it.
-Written at
-{machine}.
-
-| task | agent | parts | Value | more than none | s an episode |
-|---|---|---|---|---|---|
-"""
 HEAD = """# With perception
 
 Made by `./run python results/perceived.py`. Agents see through `--perception small`: segmentation is withheld, things
@@ -141,37 +117,11 @@ def lines(every: list[Row]) -> str:
     return "".join(line(*names, mine) for names, mine in groups.items() if mine)
 
 
-def parts(names: list[str], scenes: int) -> None:
-    """Play the first `scenes` of the agents of tasks called `names` with the parts of the track; write their table."""
-    text = PARTS_HEAD.format(scenes=scenes, machine=machine())
-    for task, _, agent in (name.partition("-") for name in names):
-        none: dict[Episode, float] = {}
-        for number, (name, (perception, doubts)) in enumerate(PARTS.items()):
-            folder = RAW.parent / "perceived_parts" / str(number) / agent / task
-            who = agent if doubts else DOUBTING[agent]
-            told = ("--split", "test", "--episodes", str(scenes), "--perception", perception, "--agents", who)
-            evaluate(task, folder, *told)
-            played = results_in(folder)
-            own = {(r.seed, r.scene): r.tally.value for r in played}
-            none = none or own
-            seconds = sum(r.wall_seconds for r in played) / len(played)
-            more = "-" if own == none and number == 0 else words(difference(own, none))
-            text += f"| {task} | {agent} | {name} | {words(value_of(played))} | {more} | {seconds:.0f} |\n"
-            (HERE / "perceived_parts.md").write_text(text, encoding="utf-8")
-    print(text)
-
-
 def main(wanted: list[str]) -> None:
     """Play the agents called `wanted`, or all, and write the table. Raises ValueError for unknown names."""
-    alone = wanted[:1] == ["parts"]
-    wanted = wanted[1:] if alone else wanted
-    agents = tuple(DOUBTING) if alone else AGENTS
-    names = [f"{task}-{agent}" for task in TASKS for agent in agents]
-    scenes = int(wanted.pop()) if wanted and wanted[-1].isdecimal() else SCENES_OF_PARTS if alone else SCENES
+    names = [f"{task}-{agent}" for task in TASKS for agent in AGENTS]
+    scenes = int(wanted.pop()) if wanted and wanted[-1].isdecimal() else SCENES
     chosen = [] if wanted == ["tables"] else [one_of(each, names, "an agent of a task") for each in wanted] or names
-    if alone:
-        parts(chosen, scenes)
-        return
     for name in chosen:
         task, _, agent = name.partition("-")
         play(task, agent, scenes)

@@ -209,9 +209,9 @@ def _nearest_opening(decision: Decision, verb: str) -> Action:
 
 
 def _nearest_target(decision: Decision, verb: str) -> Action | None:
-    """The way to the nearest whole target that it knows, and the pick-up of it unless `verb` is to walk.
+    """The walk to the nearest whole target that it knows, then the pick-up, which turns to it; at hand that at once.
 
-    None where it knows none, holds something, has failed just now, or has walked there in vain.
+    None where it knows none, holds something, or has failed just now. `verb`: of the goal.
     """
     result = decision.last_result
     failed = result is not None and not result.ok and result.reason not in UNFINISHED
@@ -219,8 +219,5 @@ def _nearest_target(decision: Decision, verb: str) -> Action | None:
     name = next(iter(known(decision, whole)), None)
     if failed or decision.held is not None or name is None:
         return None
-    arrived = decision.walked_up_to == name
-    if verb == WALK_TO:
-        return None if arrived else Action(WALK_TO, name)
-    near = distance(decision, decision.map.objects[decision.index(name)]) < AT_HAND
-    return Action(PICK_UP if arrived or near else WALK_TO, name)
+    near = verb != WALK_TO and distance(decision, decision.map.objects[decision.index(name)]) < AT_HAND
+    return Action(PICK_UP if near or decision.walked_up_to == name else WALK_TO, name)

@@ -114,8 +114,8 @@ def _finish(link: Link, rescue: Rescue, folder: Path, path: Path, result: Episod
     from hazard_ms.evaluation.report import summary
     from hazard_ms.web.playing import keeping
 
-    told = summary(result, rescue.episode.goal)
-    link.say("over", ended=result.ended, summary=told, files=_links(path, (".html", ".json")))
+    went = summary(result, rescue.episode.goal)
+    link.say("over", ended=result.ended, summary=went, files=_links(path, (".html", ".json")))
     os.nice(POLITE)
     if result.lost is not None and result.lost_alone is None:
         result = replace(result, lost_alone=keeping.lost_alone(rescue.episode))

@@ -24,7 +24,8 @@ from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.context import Skill, Stage
-from hazard_ms.skills.decision import EXPLORE, Action, Decision
+from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_TO, Action, Decision
+from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.parameters import parameters
 
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from hazard_ms.skills.executor import SkillEnv
 
 LONGEST_NOTE = 2000  # characters of a note that are kept [ours]
+AT_HAND = 0.7  # distance from which a thing is picked up without a walk, as for `greedy` [m]
 PARAMETERS = re.compile(r":(?=\w+=)")  # what stands between an agent and its parameters; values may hold colons
 
 
@@ -58,6 +60,18 @@ class Agent(abc.ABC):
     @abc.abstractmethod
     def act(self, decision: Decision) -> Action:
         """The next action; called again when that has ended."""
+
+    def asked(self, decision: Decision, verb: str) -> Action | None:
+        """The action that a goal asks for which `verb` of the brief achieves; None where the agent has to choose.
+
+        It is done to what is nearest. Agents have to choose where targets are to be rescued (`verb` is ""), where they
+        know no target yet, hold one, or have failed just now.
+        """
+        if not verb:
+            return None
+        action = (_nearest_target if verb in (WALK_TO, PICK_UP, DROP) else _nearest_opening)(decision, verb)
+        self.note = self.note if action is None else "what the task asks for"
+        return action
 
     def skill(self, stage: Stage, action: Action) -> Skill:
         """Make the skill that does `action`: the benchmark's, unless an agent moves the robot by itself.
@@ -175,10 +189,15 @@ def known(decision: Decision, names: tuple[str, ...]) -> dict[str, Sighting]:
     return dict(sorted(seen.items(), key=lambda item: distance(decision, item[1])))
 
 
-def asked(decision: Decision, verb: str) -> Action:
-    """The action for a goal that the mitigation `verb` achieves: on the nearest thing that it makes sense on now.
+def open_targets(decision: Decision) -> tuple[str, ...]:
+    """Names of the targets that are neither rescued nor in the hand."""
+    return tuple(t.name for t in decision.targets if not t.rescued and t.name != decision.held)
 
-    Where there is none, and after a failure, it is to look around.
+
+def _nearest_opening(decision: Decision, verb: str) -> Action:
+    """The mitigation `verb` on the nearest opening that it makes sense on; a look around where there is none.
+
+    A look is also what follows a failure.
     """
     last, here = decision.last_result, decision.agent_position
     failed = decision.last_action is not None and last is not None and decision.last_action.verb == verb and not last.ok
@@ -189,11 +208,6 @@ def asked(decision: Decision, verb: str) -> Action:
     return min(on, key=lambda action: float(np.hypot(*np.subtract(places[str(action.target)][:2], here))))
 
 
-def open_targets(decision: Decision) -> tuple[str, ...]:
-    """Names of the targets that are neither rescued nor in the hand."""
-    return tuple(t.name for t in decision.targets if not t.rescued and t.name != decision.held)
-
-
 def ends_belief(decision: Decision, name: str) -> bool:
     """Whether `decision`, which follows the refusal of `name` by a hand, no longer takes that thing for the target.
 
@@ -201,3 +215,18 @@ def ends_belief(decision: Decision, name: str) -> bool:
     """
     sure = any(target.name == name and target.belief >= 1.0 for target in decision.targets)
     return not (sure and decision.index(name) in decision.map.objects)
+
+
+def _nearest_target(decision: Decision, verb: str) -> Action | None:
+    """The walk to the nearest whole target that it knows, then the pick-up, which turns to it; at hand that at once.
+
+    None where it knows none, holds something, or has failed just now. `verb`: of the goal.
+    """
+    result = decision.last_result
+    failed = result is not None and not result.ok and result.reason not in UNFINISHED
+    whole = tuple(name for name in open_targets(decision) if not decision.target(name).damaged)
+    name = next(iter(known(decision, whole)), None)
+    if failed or decision.held is not None or name is None:
+        return None
+    near = verb != WALK_TO and distance(decision, decision.map.objects[decision.index(name)]) < AT_HAND
+    return Action(PICK_UP if near or decision.walked_up_to == name else WALK_TO, name)

@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.agents.attempts import Repeats
-from hazard_ms.agents.base import Agent, asked, distance, ends_belief, known, open_targets
+from hazard_ms.agents.base import Agent, distance, ends_belief, known, open_targets
 from hazard_ms.agents.search.lookouts import lookouts
 from hazard_ms.agents.search.stands import stands
 from hazard_ms.sensing.detection.eyes import FAR
@@ -70,7 +70,7 @@ class Greedy(Agent):
     def act(self, decision: Decision) -> Action:
         """The next action: put away what it holds, else fetch the cheapest target, else search."""
         self._judge(decision)
-        action = asked(decision, self._verb) if self._verb else self._choose(decision)
+        action = self.asked(decision, self._verb) or self._choose(decision)
         if (other := self._repeats.instead(decision, action)) is not None:
             action, self.note = other, self._repeats.note
         self._before = (action, decision.agent_position)

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.agents.attempts import Attempts, Enclosure, Repeats
-from hazard_ms.agents.base import PrivilegedAgent, asked
+from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.agents.gale.carts import PUSH
 from hazard_ms.agents.gale.truth import GaleTruth, hazard_of
 from hazard_ms.agents.mitigating.doing import Mitigator
@@ -73,15 +73,15 @@ class Oracle(PrivilegedAgent):
         self._truth.furniture = gale is not None
         self._loyalty = LOYALTY_ADRIFT if brief.several_rooms and pushes(base.task.hazards) else LOYALTY
         self._mitigator = Mitigator(self._truth, brief) if self._mitigates and brief.mitigations and not gale else None
-        self._verb, self._enclosure, self._repeats = brief.verb, Enclosure(), Repeats(bool(brief.mitigations))
+        self._verb, self._enclosure, self._repeats = brief.mitigation, Enclosure(), Repeats(bool(brief.mitigations))
 
     def act(self, decision: Decision) -> Action:
         """The next action: the first step of the best plan from here on."""
         assert self._truth is not None
         if self._before is None:  # not earlier: who records the episode begins with the map of an honest agent
             decision = self._truth.furnish(decision)
-        if self._verb:
-            return self._say(f"the task is to {self._verb}", asked(decision, self._verb))
+        if (mitigation := self.asked(decision, self._verb)) is not None:
+            return mitigation
         if self._mitigator is not None:
             self._scene = self._mitigator.scene(self._scene, decision.agent_position)
         if self._mitigator is None or not self._mitigator.took(decision):

@@ -21,7 +21,7 @@ class Random(Agent):
     def reset(self, brief: Brief) -> None:
         """Begin a sequence of random numbers, fixed by `brief.random_seed`."""
         # "RAND": not the stream of another agent with the same seed
-        self._verb = brief.verb
+        self._verb = brief.mitigation
         self._chance = np.random.default_rng([brief.random_seed, 0x52414E44])
 
     def act(self, decision: Decision) -> Action:

@@ -35,11 +35,11 @@ class Rule(Agent):
         self._chance = np.random.default_rng([brief.random_seed, 0x52554C45])
         self._failures: dict[str, float] = {}
         self._goal: str | None = None  # the thing that it goes to
-        self._repeats = Repeats(bool(brief.mitigations))
+        self._verb, self._repeats = brief.verb, Repeats(bool(brief.mitigations))
 
     def act(self, decision: Decision) -> Action:
         """The next step: put away what it holds, else fetch what it has drawn, else search."""
-        action = self._choose(decision)
+        action = self.asked(decision, self._verb) or self._choose(decision)
         other = self._repeats.instead(decision, action)
         return action if other is None else self._say(self._repeats.note, other)
 

@@ -28,8 +28,8 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
     Ends with 1 if the simulation broke. Raises ValueError for an output whose name is too long.
     """
     from hazard_ms.agents.base import user_path
+    from hazard_ms.evaluation.report import summary
     from hazard_ms.evaluation.result import BROKEN
-    from hazard_ms.evaluation.runner import summary
     from hazard_ms.evaluation.sweep import LONGEST_NAME
     from hazard_ms.evaluation.watchers import Progress
 
@@ -46,7 +46,7 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
         result = _played(options.episode, [Progress(options.episode.agent)])
     else:
         result = _filmed(options.episode, options.output, options.every)
-    print(summary(result))
+    print(summary(result, options.episode.goal))
     if options.output is not None:
         for suffix, what in SUFFIXES.items():
             print(f"{what}: {options.output.with_suffix(suffix).resolve()}")

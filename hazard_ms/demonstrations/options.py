@@ -59,7 +59,7 @@ class RecordOptions:
             raise ValueError(f"keep must be a share from 0 to 1, got {self.keep}")
         for part in self.obs.split("+"):
             one_of(part, (STATE, *PICTURES) if "+" in self.obs else (NONE, STATE, *PICTURES), "obs")
-        self.env.check()
+        self.episode_options()[0].check()
         self._check_cameras()
 
     def _check_cameras(self) -> None:

@@ -17,7 +17,7 @@ from hazard_ms.demonstrations import claims, store
 from hazard_ms.demonstrations.card import write_card
 from hazard_ms.demonstrations.layout import DECISIONS, FAILURES, FRAMES, MANIFEST, PRIVILEGED, TRUTH, Entry, shelves
 from hazard_ms.demonstrations.options import RecordOptions
-from hazard_ms.demonstrations.reading import entries
+from hazard_ms.demonstrations.reading import described, entries
 from hazard_ms.demonstrations.repair import repair
 from hazard_ms.demonstrations.watching.foresight import Foresight
 from hazard_ms.demonstrations.watching.recorder import Recorder
@@ -32,6 +32,7 @@ from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.evaluation.workers import SILENCE, Job, Outcome, Say
 from hazard_ms.machine.files import make_folder
 from hazard_ms.skills.failures import BLOCKED
+from hazard_ms.spec import Goal
 
 MOST_BLOCKED = 3  # skills of one episode that may have been blocked, for it to be kept [ours]
 REWARD = "normalized_dense"  # that recorded frames hold: what gym.make gives if no other is asked for
@@ -70,7 +71,8 @@ def record(options: RecordOptions) -> int:
             bar.update()
             new = [entry for entry in recorded(dataset, options.recipe) if entry.seed == job.options.seed]
             failed += not new
-            bar.write(line(new[0]) if new else f"seed {job.options.seed}: not recorded: {outcome.error}")
+            told = [line(dataset, entry, options.env.goal) for entry in new[:1]]
+            bar.write(told[0] if told else f"seed {job.options.seed}: not recorded: {outcome.error}")
     write_card(dataset)
     every = recorded(dataset, options.recipe)
     lost = sum(bool(entry.reason) for entry in every)
@@ -101,13 +103,14 @@ def recorded(dataset: Path, recipe: dict[str, Any]) -> list[Entry]:
     return found
 
 
-def line(entry: Entry) -> str:
-    """A line of text about how a recorded episode went."""
+def line(dataset: Path, entry: Entry, goal: Goal) -> str:
+    """A line of text about how a recorded episode of a task with this `goal` went."""
     fate = f"in {FAILURES}/: {entry.reason}" if entry.reason else "kept"
-    return (
-        f"{entry.name}: {100 * entry.value:.1f} % of the value, {entry.frames} frames, "
-        f"{sum(entry.seconds.values()):.0f} s, {fate}"
-    )
+    how = f"{100 * entry.value:.1f} % of the value"
+    if goal.verb:
+        ended = described((dataset / FAILURES if entry.reason else dataset) / entry.name)[0].ended
+        how = f"{'succeeded' if ended == goal.done else 'failed'} ({ended})"
+    return f"{entry.name}: {how}, {entry.frames} frames, {sum(entry.seconds.values()):.0f} s, {fate}"
 
 
 def attempt(job: Job, say: Say) -> Outcome:
@@ -139,7 +142,7 @@ def _recorded(job: RecordJob, say: Say) -> EpisodeResult:
         keywords |= {"cameras": options.mounted} if options.mounted else {}
         result = play(job.options, watchers, teacher, reward_mode=REWARD, **keywords)
     succeeded = bool(recorder.frames()["success"][-1:].any())
-    reason, verified = why_not(result, foresight.bests[0], options.keep, succeeded), False
+    reason, verified = why_not(result, foresight.bests[0], options.keep, succeeded, options.env.goal.verb), False
     seconds = {**result.phase_seconds, "labels": foresight.seconds}
     if options.verify:
         start = time.perf_counter()
@@ -191,14 +194,16 @@ def _camera(part: Path, options: RecordOptions) -> Iterator[list[Watcher]]:
         yield [cameras]
 
 
-def why_not(result: EpisodeResult, reach: float, keep: float, succeeded: bool) -> str:
+def why_not(result: EpisodeResult, reach: float, keep: float, succeeded: bool, verb: str = "") -> str:
     """The reason for which an episode is not kept; empty if it is.
 
-    `reach`: value of the best plan from its start; `succeeded`: whether it reached its task's goal.
+    `reach`: value of the best plan from its start; `succeeded`: whether it reached its task's goal; `verb`: of that.
     """
     blocked = sum(decision.reason == BLOCKED for decision in result.decisions)
     if result.ended == BROKEN:
         return result.ended
+    if verb and keep > 0.0 and not succeeded:
+        return "the goal was not reached"
     if result.tally.value < keep * reach and not succeeded:
         return f"{100 * result.tally.value:.1f} % of the value, of {100 * reach:.1f} % that can be reached"
     if blocked > MOST_BLOCKED and keep > 0.0:

@@ -8,13 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 from tyro.constructors import PrimitiveConstructorSpec
 
 from hazard_ms import registry
 from hazard_ms.spec.perturbation import canonical
+
+if TYPE_CHECKING:
+    from hazard_ms.spec import Goal
 
 # As hazards.presets, spec.severity, simulation.lighting, env and scenes.splits name them; tests/cli compares them.
 PRESETS = ("paper", "shipped", "realistic")
@@ -140,6 +143,13 @@ class EnvOptions:
             one_of(name, registry.HAZARDS, "hazards")
         if self.perturb:
             check_perturbation(self.perturb, self.env_id, self.physics, self.hazards, self.severity)
+
+    @property
+    def goal(self) -> Goal:
+        """The goal of the task, which must be registered."""
+        from hazard_ms.tasks import task_of  # loads torch
+
+        return task_of(self.env_id, self.physics).goal
 
     @property
     def team(self) -> tuple[str, ...]:

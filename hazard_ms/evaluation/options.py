@@ -40,7 +40,7 @@ class EpisodeOptions(EnvOptions):
     """What tells the agent of things: truth, or a detector; its file and parameters follow, NAME:FILE,key=value."""
 
     def check(self, teams: bool = False) -> None:
-        """Check the environment, clock and perception; `teams`: whether several robots can be played here.
+        """Check environment, agent, clock and perception; `teams`: whether several robots can be played here.
 
         Raises ValueError for what cannot be played.
         """
@@ -52,6 +52,20 @@ class EpisodeOptions(EnvOptions):
         parts(self.perception)
         if self.team:
             one_of(self.perception, (TRUTH,), "perception of a team")
+        else:
+            self.check_goal()
+
+    def check_goal(self) -> None:
+        """Raises ValueError for a registered agent that cannot pursue the goal of the task."""
+        name = self.agent.partition(":")[0]
+        goals = registry.AGENTS[name].goals if name in registry.AGENTS else None
+        if goals is None or (verb := self.goal.verb) in ("", *goals):
+            return
+        able = [entry.name for entry in registry.AGENTS.values() if entry.goals is None or verb in entry.goals]
+        raise ValueError(
+            f"agent must be one of {', '.join(able)}, or your own, in {self.env_id}, whose goal is to "
+            f"{verb.replace('_', ' ')}, got {self.agent!r}"
+        )
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -152,7 +166,8 @@ class SweepOptions:
         if not 0.0 < self.timeout <= LONGEST_DECISION:
             raise ValueError(f"timeout must be more than 0 and at most {LONGEST_DECISION:g} s, got {self.timeout}")
         first = EpisodeOptions(**vars(self.env), clock=self.clock, perception=self.perception)
-        first.check(teams=True)
+        for agent in self.agents or (first.agent,):
+            replace(first, agent=agent).check(teams=True)
         files = self._files()
         seeds = range(self.seed, self.seed + self.count)
         scenes = [files[s % len(files)] if files else None for s in seeds]

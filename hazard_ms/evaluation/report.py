@@ -13,9 +13,20 @@ from hazard_ms.evaluation.options import SweepOptions
 from hazard_ms.evaluation.result import EpisodeResult, machine, versions
 from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.skills.failures import UNFINISHED
+from hazard_ms.spec import Goal
 
 MOST_FALLBACKS = 0.05  # share of a model's decisions taken in its place, beyond which its scores are marked [ours]
 HEADINGS = f"{'agent':16s} {'Value':>22s} {'Step':>26s} {'Damage':>22s} {'rescued':>8s} {'s/episode':>10s}"
+
+
+def summary(result: EpisodeResult, goal: Goal) -> str:
+    """The line that says how an episode of a task with this `goal` went."""
+    saved = sum(fate.rescued for fate in result.targets)
+    how, value = f"rescued {saved} of {len(result.targets)} targets", f"{100 * result.tally.value:.1f} % of the value, "
+    if goal.verb:
+        how, value = "succeeded" if result.ended == goal.done else "failed", ""
+    when = f"{value}in {result.frames} frames ({result.ended})"
+    return f"{result.agent} {how} in {result.scene}, {when}; {result.wall_seconds:.1f} s"
 
 
 def report(options: SweepOptions, results: Sequence[EpisodeResult], failed: Sequence[str] = ()) -> str:
@@ -25,6 +36,7 @@ def report(options: SweepOptions, results: Sequence[EpisodeResult], failed: Sequ
     """
     own = {agent: [r for r in results if r.agent == agent] for agent in options.agents}
     lines = [title(options), HEADINGS, *(score_line(agent, made) for agent, made in own.items())]
+    lines += [success_line(agent, made, options.env.goal) for agent, made in own.items() if options.env.goal.verb]
     lines += [failure_line(agent, made, list(failed).count(agent)) for agent, made in own.items()]
     lines += [
         line
@@ -59,6 +71,11 @@ def score_line(agent: str, results: Sequence[EpisodeResult]) -> str:
     seconds = sum(r.wall_seconds for r in results) / len(results)
     value, step, damage = (_shown(found[name], 1 if name == "step" else 100) for name in ("value", "step", "damage"))
     return f"{agent:16s} {value:>22s} {step:>26s} {damage:>22s} {saved:4d}/{targets:<4d} {seconds:9.1f}"
+
+
+def success_line(agent: str, results: Sequence[EpisodeResult], goal: Goal) -> str:
+    """The line that counts how often an agent reached a `goal` of which one action is enough."""
+    return f"{agent}: succeeded in {sum(r.ended == goal.done for r in results)} of {len(results)} episodes"
 
 
 def failure_line(agent: str, results: Sequence[EpisodeResult], failed: int = 0) -> str:

@@ -238,13 +238,3 @@ def played_to(options: EpisodeOptions, frame: int, **keywords: Any) -> SkillEnv:
     env = environment(options, **keywords)
     Runner(env, player, clock=options.clock).run(options.seed, options.reset_options, until_frame=frame)
     return env
-
-
-def summary(result: EpisodeResult) -> str:
-    """The line that says how an episode went."""
-    saved = sum(f.rescued for f in result.targets)
-    return (
-        f"{result.agent} rescued {saved} of {len(result.targets)} targets in {result.scene}, "
-        f"{100 * result.tally.value:.1f} % of the value, in {result.frames} frames ({result.ended}); "
-        f"{result.wall_seconds:.1f} s"
-    )

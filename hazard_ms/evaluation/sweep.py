@@ -16,7 +16,7 @@ from pathlib import Path
 from hazard_ms.evaluation.averted.alone import asked, losses
 from hazard_ms.evaluation.averted.loss import Loss
 from hazard_ms.evaluation.options import EpisodeOptions, SweepOptions
-from hazard_ms.evaluation.report import report
+from hazard_ms.evaluation.report import report, summary
 from hazard_ms.evaluation.result import BROKEN, FAILED, DamagedResultError, EpisodeResult, file_hashes
 from hazard_ms.evaluation.spread import in_shard, shard, spread
 from hazard_ms.evaluation.workers import Job
@@ -121,8 +121,6 @@ def _play_all(
 
     `alone`: what is lost in each if nobody acts, where that is asked for.
     """
-    from hazard_ms.evaluation.runner import summary
-
     jobs = [Job(e, options.timeout, averted=e in alone) for e in episodes]
     failed: dict[EpisodeOptions, str] = {}
     done: Counter[str] = Counter()
@@ -133,7 +131,7 @@ def _play_all(
                 line = failed[job.options] = f"{job.options.agent}, seed {job.options.seed}: {outcome.error}"
             else:
                 replace(outcome.result, lost_alone=alone.get(job.options)).write(options.place(job.options))
-                line = summary(outcome.result)
+                line = summary(outcome.result, job.options.goal)
             if outcome.attempts > 1:
                 done["again"] += 1
                 line += "; it was played twice, since a worker died"

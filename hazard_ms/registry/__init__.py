@@ -72,10 +72,14 @@ class RobotEntry:
 
 @dataclass(frozen=True)
 class AgentEntry:
-    """An agent: a subclass of `hazard_ms.agents.base.Agent`."""
+    """An agent: a subclass of `hazard_ms.agents.base.Agent`.
+
+    `goals`: verbs of the goals that it can pursue where not all targets are to be rescued; None: any.
+    """
 
     name: str
     agent: Any
+    goals: tuple[str, ...] | None = None
 
 
 Entry = TaskEntry | HazardEntry | RobotEntry | AgentEntry
@@ -130,9 +134,12 @@ def register_robot(name: str, robot: Any, uid: str | None = None) -> None:
     _add(_robots, RobotEntry(name, robot, uid or getattr(robot, "uid", None) or f"hazard_{name}"))
 
 
-def register_agent(name: str, agent: Any) -> None:
-    """Add an agent. Its name may have two parts, "paper/greedy". Raises ValueError for a name that is taken."""
-    _add(_agents, AgentEntry(name, agent), AGENT_NAME, "'name' or 'group/name'")
+def register_agent(name: str, agent: Any, goals: tuple[str, ...] | None = None) -> None:
+    """Add an agent. Its name may have two parts, "paper/greedy"; `goals`: see AgentEntry.
+
+    Raises ValueError for a name that is taken.
+    """
+    _add(_agents, AgentEntry(name, agent, goals), AGENT_NAME, "'name' or 'group/name'")
 
 
 def unregister(entry: Entry) -> None:
@@ -210,10 +217,8 @@ register_agent("greedy", "hazard_ms.agents.greedy:Greedy")
 register_agent("fighter", "hazard_ms.agents.fighter:Fighter")
 for _name in ("rule", "oracle", "planner", "mcts"):
     register_agent(_name, f"hazard_ms.agents.{_name}:{_name.capitalize()}")
-for _name, _class in (("bc", "Bc"), ("rl", "Rl"), ("rl_paper", "RlPaper")):
-    register_agent(_name, f"hazard_ms.agents.learned.players:{_class}")
+for _name, _class in (("bc", "Bc"), ("rl", "Rl"), ("rl_paper", "RlPaper")):  # which learned to rescue
+    register_agent(_name, f"hazard_ms.agents.learned.players:{_class}", goals=())
 register_agent("llm", "hazard_ms.agents.llm.agent:Llm")
-register_agent("paper/greedy", "hazard_ms.agents.paper.greedy:Greedy")
-register_agent("paper/rule", "hazard_ms.agents.paper.rule:Rule")
-register_agent("paper/mcts", "hazard_ms.agents.paper.mcts:Mcts")
-register_agent("paper/mcts_diff", "hazard_ms.agents.paper.mcts_diff:MctsDiff")
+for _name, _class in (("greedy", "Greedy"), ("rule", "Rule"), ("mcts", "Mcts"), ("mcts_diff", "MctsDiff")):
+    register_agent(f"paper/{_name}", f"hazard_ms.agents.paper.{_name}:{_class}", goals=("walk_to", "pick_up", "drop"))

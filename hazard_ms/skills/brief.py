@@ -11,7 +11,9 @@ from hazard_ms.robots import robot_name
 from hazard_ms.sensing.detection.eyes import FAR
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.target_table import Target
+from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
+from hazard_ms.spec.checks import one_of
 
 RANDOM_BYTES = 8  # size of an agent's random seed [bytes]
 
@@ -49,16 +51,24 @@ class Brief:
     several_rooms: bool = False  # whether doors or doorways divide the place
     averted: bool = False  # whether it counts what is averted: what would be lost if nobody acted, and is not
     sight: float = FAR  # distance up to which a look tells most of what is there [m]
-    verb: str = ""  # of the mitigation that achieves the task's goal; "": targets are to be rescued
+    # of the action that achieves the task's goal: walk_to, pick_up or drop for any one target, or one of `mitigations`;
+    # "": all targets are to be rescued
+    verb: str = ""
     looks: bool = False  # whether it can `look_at` things: a detector tells what there is
+
+    @property
+    def mitigation(self) -> str:
+        """The verb that achieves the task's goal if that is a mitigation, else "": then targets count."""
+        return self.verb if self.verb in self.mitigations else ""
 
 
 def brief_of(base: Any, robot: Any, labeller: Labeller, max_frames: int, sight: float = FAR, number: int = 0) -> Brief:
     """The brief of the episode of `max_frames` that has begun in the HazardEnv `base`, in the words of `labeller`.
 
     `robot`: the agent's, which has this `number` in its team; `sight`: distance up to which a look tells most of what
-    is there [m].
+    is there [m]. Raises ValueError for a goal of the task that no action of its agents achieves.
     """
+    one_of(base.task.goal.verb, ("", WALK_TO, PICK_UP, DROP, *base.task.mitigations), "verb of the goal")
     return Brief(
         task=base.task.name,
         text=base.task_description,

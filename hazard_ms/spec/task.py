@@ -59,7 +59,9 @@ class Goal:
     fail: Callable[[Any], Any] | None = None  # bool: the episode ends, it can no longer be achieved; None: never
     info: tuple[Term, ...] = ()  # further entries of `info`
     done: str = "done"  # why an episode ended that succeeded, in words: "all rescued"
-    verb: str = ""  # of the mitigation that achieves it, which agents do then; "": they rescue targets
+    # of the action that achieves it: walk_to, pick_up or drop for any one target, or a mitigation of the task; "": all
+    # targets are to be rescued
+    verb: str = ""
 
 
 @dataclass(frozen=True)

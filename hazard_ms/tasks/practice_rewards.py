@@ -162,6 +162,7 @@ WALK_TO = Goal(
     fail=lost,
     info=(DISTANCE,),
     done="arrived",
+    verb="walk_to",
 )
 PICK_UP = Goal(
     success=holding,
@@ -171,6 +172,7 @@ PICK_UP = Goal(
     fail=lost,
     info=(GAP,),
     done="in the hand",
+    verb="pick_up",
 )
 STOW = Goal(
     success=stowed,
@@ -180,6 +182,7 @@ STOW = Goal(
     fail=lost,
     info=(GAP,),
     done="in the bag",
+    verb="drop",
 )
 FETCH = Goal(
     success=stowed,
@@ -190,4 +193,5 @@ FETCH = Goal(
     fail=lost,
     info=(DISTANCE, GAP),
     done="in the bag",
+    verb="drop",
 )

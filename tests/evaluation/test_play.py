@@ -18,8 +18,9 @@ import pytest
 from hazard_ms.agents.base import Agent, known, open_targets
 from hazard_ms.cli.__main__ import main
 from hazard_ms.evaluation.options import EpisodeOptions, PlayOptions
+from hazard_ms.evaluation.report import summary
 from hazard_ms.evaluation.result import EpisodeResult
-from hazard_ms.evaluation.runner import play, summary
+from hazard_ms.evaluation.runner import play
 from hazard_ms.skills.brief import Brief, random_seed
 from hazard_ms.skills.decision import EXPLORE, STOP, WALK_ONE_STEP, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
@@ -94,7 +95,8 @@ def test_it_played_what_was_ordered(result: EpisodeResult) -> None:
     assert [d.frame for d in result.decisions] == [0, explored.frames, result.frames]
     assert result.decisions[0].note == f"explore, seed {random_seed(SEED)}"
     assert result.tally.value == 0.0 and result.tally.rescued == 0 and len(result.targets) >= 5
-    assert "rescued 0 of" in summary(result) and f"{result.frames} frames (stopped)" in summary(result)
+    told = summary(result, EPISODE.goal)
+    assert "rescued 0 of" in told and f"% of the value, in {result.frames} frames (stopped)" in told
 
 
 def test_the_video_opens_and_shows_every_sixth_frame_and_the_end(result: EpisodeResult, folder: Path) -> None:

@@ -14,7 +14,8 @@ import pytest
 from hazard_ms.agents.base import PrivilegedAgent, agent
 from hazard_ms.cli.__main__ import main
 from hazard_ms.demonstrations.options import RecordOptions
-from hazard_ms.demonstrations.recording import RecordJob, attempt
+from hazard_ms.demonstrations.reading import entries
+from hazard_ms.demonstrations.recording import RecordJob, attempt, line
 from hazard_ms.evaluation.options import EnvOptions, EpisodeOptions
 from hazard_ms.lerobot import ENV_ID
 from hazard_ms.skills.executor import SkillEnv
@@ -54,6 +55,9 @@ def test_agents_open_doors_in_calm_and_beside_a_fire() -> None:
     assert successes("train", "oracle", range(2)) == 2
     assert successes("test", "greedy", range(2), hazards=["fire"]) == 2
     assert successes("test", "random", range(3)) >= 1
+    assert successes("test", "planner", range(2)) == 2
+    assert successes("test", "rule", range(1)) == 1
+    assert successes("test", "llm:base_url=scripted,model=mitigates", range(1)) == 1
 
 
 @pytest.mark.long
@@ -73,6 +77,8 @@ def test_the_oracle_demonstrates_it_and_is_scored(tmp_path: Path, capsys: pytest
     (folder,) = [path for path in options.dataset.iterdir() if path.is_dir()]
     made = json.loads((folder / "episode.json").read_text())
     frames = np.load(folder / "frames.npz")
+    (entry,) = entries(options.dataset)
+    assert line(options.dataset, entry, options.env.goal).startswith(f"{folder.name}: succeeded (door open), ")
     assert made["reason"] == "" and made["subtasks"][-1] == "open door_0" and bool(frames["success"][-1])
 
     env = gym.make(ENV_ID, task=f"{MODULE}:{TASK}", side=64, every=1, split="train")
@@ -88,4 +94,5 @@ def test_the_oracle_demonstrates_it_and_is_scored(tmp_path: Path, capsys: pytest
     assert main([*asked, "-o", str(tmp_path / "scores")]) == 0
     (path,) = [p for p in (tmp_path / "scores").rglob("*.json") if "door open" in p.read_text()]
     assert json.loads(path.read_text())["decisions"][0]["verb"] == "open"
-    capsys.readouterr()
+    printed = capsys.readouterr().out
+    assert "1/1 oracle succeeded in practice/100" in printed and "oracle: succeeded in 1 of 1 episodes" in printed

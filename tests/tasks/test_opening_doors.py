@@ -189,13 +189,14 @@ def test_joint_actions_open_a_door_again_from_the_start_and_from_a_state_on_the_
     env.reset(seed=5)
     actions, angles, state, number = [], [], None, 0
     for action in opened_by_hand(base):
-        terminated = env.step(action)[2]
+        _, reward, terminated, _, info = env.step(action)
         actions.append(action.copy())
         angles.append(float(base.get_info()["angle"]))
         if state is None and angles[-1] > 0.5:
             state, number = base.get_state_dict(), len(actions)
         if terminated.any():
             break
+    assert bool(terminated) and bool(info["success"]) and not info["fail"] and float(reward) > 0.99
     assert bool(base.get_info()["success"]) and angles[-1] > 1.0 and state is not None
     part = state["hazard_ms"]["door_grip"]
     assert bool(part["holds"][0, 0]) and math.acos(1.0 - float(state["hazard_ms"]["openings"]["open"][0, 0])) > 0.5

@@ -67,7 +67,7 @@ class Searcher(Agent):
             self._mitigator.note(decision)
         if self._gale is not None:
             self._gale.see(decision)
-        action = self._choose(decision)
+        action = self.asked(decision, self._brief.verb) or self._choose(decision)
         if (other := self._repeats.instead(decision, action)) is not None:
             action = self._say(self._repeats.note, other)
         self._memory.chose(decision, action)

@@ -111,10 +111,11 @@ def _tell_again(link: Link, rescue: Rescue, result: EpisodeResult) -> None:
 
 def _finish(link: Link, rescue: Rescue, folder: Path, path: Path, result: EpisodeResult) -> None:
     """Make the film of a rescue whose result is in the file `path`, and delete its journal."""
-    from hazard_ms.evaluation.runner import summary
+    from hazard_ms.evaluation.report import summary
     from hazard_ms.web.playing import keeping
 
-    link.say("over", ended=result.ended, summary=summary(result), files=_links(path, (".html", ".json")))
+    went = summary(result, rescue.episode.goal)
+    link.say("over", ended=result.ended, summary=went, files=_links(path, (".html", ".json")))
     os.nice(POLITE)
     if result.lost is not None and result.lost_alone is None:
         result = replace(result, lost_alone=keeping.lost_alone(rescue.episode))

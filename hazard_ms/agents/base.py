@@ -141,7 +141,7 @@ def agent(text: str) -> Agent:
     Raises ValueError for an agent that cannot be found, and for parameters that it does not have, RuntimeError for one
     that calls sys.exit.
     """
-    return made_of(text, Agent)
+    return made_of(text, Agent)  # type: ignore[type-abstract]
 
 
 def made_of(text: str, kind: type[Made]) -> Made:

@@ -55,7 +55,7 @@ def team_episodes() -> list[EpisodeResult]:
         told = ((TELL, f"{thing} is here"), (TELL, "I wait"), (WALK_ONE_STEP, thing), (STOP, None), (STOP, None))
         job = Job(TRIAL_TEAMS.options(place, "joint"), 60.0, told, robots=tuple(f"fetch-{k}" for k in (0, 1, 1, 0, 1)))
         done = attempt(job, ignore)
-        assert done.result is not None and not done.error and all(d.ok for d in done.result.decisions)
+        assert done.result is not None and not done.error and done.result.decisions[3].frames > 1
         made.append(done.result)
     env.close()
     return made

@@ -14,8 +14,9 @@ from hazard_ms.cli.__main__ import main
 from hazard_ms.evaluation.attempts import attempt
 from hazard_ms.evaluation.result import ERROR, EpisodeResult, Link
 from hazard_ms.evaluation.submissions import faults
+from hazard_ms.evaluation.submissions.packing import read_submission
 from hazard_ms.evaluation.submissions.report import read_report
-from hazard_ms.evaluation.submissions.simulating import _job, _nobody, compared, verify
+from hazard_ms.evaluation.submissions.simulating import _job, _nobody, _seen, compared, verify
 from hazard_ms.evaluation.submissions.tracks import TRACKS
 from hazard_ms.skills.decision import STOP
 from tests.evaluation.submissions.test_cheating import CHEATS, kinds
@@ -77,6 +78,18 @@ def test_one_robot_and_a_team_are_not_taken_for_each_other(of_team: bytes, submi
         assert {faults.PHYSICS, faults.VERSION} <= set(kinds(content, track))
 
 
+@pytest.mark.parametrize("name", ["greedy", "oracle"])
+def test_what_is_told_of_one_robot_is_as_it_was(name: str) -> None:
+    """Submissions and reports that were made before there were teams, to the byte and to the hash."""
+    folder = Path(__file__).parents[3] / "results" / "leaderboard"
+    submission, report = read_submission(folder / f"{name}.zip"), read_report(folder / f"{name}.report.json")
+    for file, (_, result) in submission.rows().items():
+        assert result.to_json().encode() == submission.files[file]
+        (seen,) = (one for one in report.seen if one.seed == result.seed)
+        assert _seen(seen.place, result, None, "exact").decisions == seen.decisions
+        assert [_job(result, seen.place, TRIAL).robots] == [("",) * len(result.decisions)]
+
+
 def exchanged(record: EpisodeResult, robots: dict[str, str]) -> EpisodeResult:
     """A record whose robots have each other's names."""
     return replace(record, decisions=tuple(replace(d, robot=robots[d.robot]) for d in record.decisions))
@@ -135,6 +148,7 @@ def test_a_team_is_submitted_verified_and_listed_and_its_copy_is_named(
     pairs: list[EpisodeResult], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """By the commands alone; another thief gives its decisions to a track of one robot, which takes none."""
+    (tmp_path / "results").mkdir()
     for result in (*pairs, short_episode(0)):
         result.write(tmp_path / "results" / f"{len(result.decisions)}-{result.seed}.json")
     key = make_key(tmp_path, "anna")

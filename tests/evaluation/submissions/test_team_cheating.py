@@ -6,7 +6,6 @@ import json
 import re
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,6 +13,7 @@ from hazard_ms.cli.__main__ import main
 from hazard_ms.evaluation.attempts import attempt
 from hazard_ms.evaluation.result import ERROR, EpisodeResult, Link
 from hazard_ms.evaluation.submissions import faults
+from hazard_ms.evaluation.submissions.copies import copied
 from hazard_ms.evaluation.submissions.packing import read_submission
 from hazard_ms.evaluation.submissions.report import read_report
 from hazard_ms.evaluation.submissions.simulating import _job, _nobody, _seen, compared, verify
@@ -147,27 +147,24 @@ def test_if_nobody_acts_all_robots_stop(pairs: list[EpisodeResult], episodes: li
 def test_a_team_is_submitted_verified_and_listed_and_its_copy_is_named(
     pairs: list[EpisodeResult], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """By the commands alone; another thief gives its decisions to a track of one robot, which takes none."""
+    """By the commands alone. A track of one robot takes no team, and says why."""
     (tmp_path / "results").mkdir()
     for result in (*pairs, short_episode(0)):
         result.write(tmp_path / "results" / f"{len(result.decisions)}-{result.seed}.json")
-    key = make_key(tmp_path, "anna")
-    for name, authors in (("first", ["somebody"]), ("thief", ["somebody else"])):
-        (tmp_path / "card.json").write_text(json.dumps({**asdict(CARD), "name": name, "authors": authors}))
-        words: list[Any] = ["--card", tmp_path / "card.json", "-o", tmp_path / f"{name}.zip"]
-        submit = ["submit", str(tmp_path / "results"), *map(str, words)]
-        assert main([*submit, "--track", "trial-teams"]) == 0
+    key, report, place = make_key(tmp_path, "anna"), tmp_path / "first.report.json", tmp_path / "first.zip"
+    (tmp_path / "card.json").write_text(json.dumps({**asdict(CARD), "name": "first"}))
+    submit = ["submit", str(tmp_path / "results"), "--card", str(tmp_path / "card.json"), "-o", str(place)]
     assert main([*submit, "--agent", "joint", "--track", "trial"]) == 2
     assert re.search(r"got 0; .*left out: 5-0\.json, whose robot_uids must be 'fetch', got", capsys.readouterr().err)
-    report = tmp_path / "first.report.json"
-    verified = ["verify", str(tmp_path / "first.zip"), "--workers", "1", "-o", str(report), "--key", str(key)]
-    assert main(verified) == 0
+    assert main([*submit, "--track", "trial-teams"]) == 0
+    assert main(["verify", str(place), "--backend", "serial", "-o", str(report), "--key", str(key)]) == 0
     assert "verified: all 2 episodes" in capsys.readouterr().out
-    seen = read_report(report).seen
-    assert [(one.tally, one.course) for one in seen] == [(r.tally, r.links[-1].sha256) for r in pairs]
-    theft = ["verify", str(tmp_path / "thief.zip"), "--workers", "1", "--known", str(tmp_path)]
-    assert main(theft) == 1
-    assert "copied decisions: decisions: 2 of 2 episodes are those of 'first'" in capsys.readouterr().out
+    found = read_report(report)
+    assert [(one.tally, one.course) for one in found.seen] == [(r.tally, r.links[-1].sha256) for r in pairs]
+    theft = replace(found, submission="f" * 64, card=replace(CARD, authors=("a thief",)))
+    assert [fault.what for fault in copied(theft, [found])] == ["2 of 2 episodes are those of 'first'"]
+    other = exchanged(pairs[0], {"fetch-0": "fetch-1", "fetch-1": "fetch-0"})
+    assert _seen(found.seen[0].place, other, None, "exact").decisions != found.seen[0].decisions
     assert main(["leaderboard", str(tmp_path), "-o", str(tmp_path / "site")]) == 0
     assert "trial-teams: first" in capsys.readouterr().out
     assert TRACKS["trial-teams"].words in (tmp_path / "site" / "index.html").read_text()

@@ -145,7 +145,7 @@ def agent(text: str) -> Agent:
 
 
 def made_of(text: str, kind: type[Made]) -> Made:
-    """A new agent of `kind`, as `agent` takes it and with its errors."""
+    """A new agent of `kind`, as `agent` takes it. Raises ValueError and RuntimeError as that does."""
     with staying(f"the agent {text}"):
         name, *given = PARAMETERS.split(text, maxsplit=1)
         made = _class(name)

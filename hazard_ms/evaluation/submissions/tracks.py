@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -72,8 +71,8 @@ class Track:
 
     def settings(self, place: Place) -> dict[str, Any]:
         """The settings of an episode, as the file of its result must tell them."""
-        told: dict[str, Any] = json.loads(json.dumps(self.options(place).settings))
-        return told
+        settings = self.options(place).settings
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in settings.items()}
 
     @contextmanager
     def scene_file(self, place: Place) -> Iterator[str | None]:

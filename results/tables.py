@@ -18,8 +18,12 @@ COMMAND = [sys.executable, "-m", "hazard_ms.cli"]
 
 
 def evaluate(task: str, folder: Path, *words: str, check: bool = True) -> None:
-    """Play what is missing of a sweep of one of TASKS; `check`: whether to raise CalledProcessError where it fails."""
-    subprocess.run([*COMMAND, "evaluate", "-e", TASKS[task], "-o", str(folder), *words], cwd=HERE.parent, check=check)
+    """Play what is missing of a sweep of a task, by its name in TASKS or its own.
+
+    `check`: whether to raise CalledProcessError where it fails.
+    """
+    told = ["-e", TASKS.get(task, task), "-o", str(folder), *words]
+    subprocess.run([*COMMAND, "evaluate", *told], cwd=HERE.parent, check=check)
 
 
 def results_in(folder: Path) -> list[EpisodeResult]:

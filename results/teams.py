@@ -1,9 +1,9 @@
 """Two robots in the scenes of one: `./run python results/teams.py [TASK...] [SCENES]`, or `cost`; resumes.
 
-Every team of hazard_ms.bench.teams plays the first scenes, 4 by default, of the split `test` of each task, one scene
-after another. Writes teams.md and teams.csv beside this file; episodes in teams.csv are not played again: those that a
-change would touch are to be deleted there. With `tables` alone it plays nothing. `cost` prints what a frame costs with
-one robot and with two, a ratio of medians of frames that take turns.
+Every one of SETUPS plays the first scenes, 4 by default, of the split `test` of each task, one scene after another,
+by `hazard-ms evaluate`. Writes teams.md and teams.csv beside this file; episodes in teams.csv are not played again:
+those that a change would touch are to be deleted there. With `tables` alone it plays nothing. `cost` prints what a
+frame costs with one robot and with two, a ratio of medians of frames that take turns.
 """
 
 from __future__ import annotations
@@ -13,18 +13,16 @@ import os
 import statistics
 import sys
 import time
-from collections.abc import Sequence
-from dataclasses import asdict, fields
 from typing import Any
 
 import gymnasium as gym
 
-from hazard_ms.bench.teams import SETUPS, TeamResult, measure
 from hazard_ms.evaluation.comparison.pairing import Episode, difference
+from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.spec.checks import one_of
-from results.tables import HERE, machine, words
+from results.tables import HERE, evaluate, machine, results_in, words
 
-FILE = HERE / "teams.csv"
+RAW, FILE = HERE.parent / "build" / "teams", HERE / "teams.csv"
 TASKS = {
     "fire": "HazardFire-v1",
     "flood": "HazardFlood-v1",
@@ -33,18 +31,27 @@ TASKS = {
     "gale": "HazardGale-v1",
 }
 SCENES = 4
-NAMES = {setup: f"{len(setup[0])} {setup[1]}" for setup in SETUPS}
-BEST, ALONE, APART = "2 joint", "1 independent:planner", "2 independent"
+ONE, PAIR = ("fetch",), ("fetch", "fetch")
+SETUPS = {  # robots and agent of each team, by its name
+    "1 greedy": (ONE, "greedy"),
+    "1 planner": (ONE, "planner"),
+    "2 independent": (PAIR, "independent"),
+    "2 auction": (PAIR, "auction"),
+    "2 joint": (PAIR, "joint"),
+}
+BEST, ALONE, APART, AUCTION = "2 joint", "1 planner", "2 independent", "2 auction"
+KEYS = ("env_id", "seed", "scene", "robots", "agent")
 BORNE = ("heat", "water")  # columns with a number for each robot, empty where nothing measures it
-COLUMNS = tuple(field.name for field in fields(TeamResult))
+COLUMNS = (*KEYS, "value", "rescued", "targets", "frames", "robot_collisions", "averted", *BORNE)
+Row = dict[str, str]
 WARM_UP, TURNS, FRAMES = 60, 15, 40  # frames before it is timed; turns of each team, and the frames of one
 HEAD = """# Two robots in the scenes of one
 
 Made by `./run python results/teams.py`. First scenes of the split `test`, Fetch, presets `paper`; hazards act on the
-robots in homes and gales alone. `1 independent` is one greedy robot, `1 independent:planner` one that plans; two robots
-are on their own (`2 independent`), hold auctions, or plan together. Value and what was averted in percent, with 95 %
-bootstrap intervals over scenes, averted only of scenes where it is defined; collisions are contacts between robots at
-more than 0.1 m/s, of all episodes together. teams.csv has every episode.
+robots in homes and gales alone. Two robots are on their own, each `greedy` (`2 independent`), hold auctions, or plan
+together. Value and what was averted in percent, with 95 % bootstrap intervals over scenes, averted only of scenes where
+it is defined; collisions are contacts between robots at more than 0.1 m/s, of all episodes together. teams.csv has
+every episode.
 Written at
 {machine}.
 
@@ -52,64 +59,82 @@ Written at
 |---|---|---|---|---|---|---|
 """
 COMPARED = """
-| task | Value of `2 joint` over that of `1 independent:planner` | less `2 independent` | less `2 auction` | episodes |
+| task | Value of `2 joint` over that of `1 planner` | less `2 independent` | less `2 auction` | episodes |
 |---|---|---|---|---|
 """
 
 
-def played() -> list[TeamResult]:
-    """The episodes of teams.csv."""
-    if not FILE.exists():
-        return []
-    with FILE.open(newline="", encoding="utf-8") as file:
-        return [_read(row) for row in csv.DictReader(file)]
+def episodes() -> list[Row]:
+    """All episodes: those of teams.csv, and those of the raw results here, which take the place of the same."""
+    rows: list[Row] = []
+    if FILE.exists():
+        with FILE.open(newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+    rows += [row_of(result) for folder in RAW.glob("*") for result in results_in(folder)]
+    made = {tuple(row[name] for name in KEYS): row for row in rows}
+    ids, names = [*TASKS.values()], [*SETUPS]
+    return sorted(made.values(), key=lambda r: (ids.index(r["env_id"]), names.index(setup_of(r)), int(r["seed"])))
 
 
-def _read(row: dict[str, str]) -> TeamResult:
-    numbers: dict[str, Any] = {name: int(row[name]) for name in ("seed", "rescued", "targets", "frames")}
-    numbers |= {"robot_collisions": int(row["robot_collisions"]), "value": float(row["value"])}
-    numbers |= {"averted": float(row["averted"]) if row["averted"] else None}
-    numbers |= {name: tuple(float(one) for one in row[name].split()) for name in BORNE}
-    robots = tuple(row["robots"].split())
-    return TeamResult(env_id=row["env_id"], scene=row["scene"], robots=robots, agent=row["agent"], **numbers)
+def row_of(result: EpisodeResult) -> Row:
+    """The row of an episode in teams.csv."""
+    robots, tally = result.settings["robot_uids"], result.tally
+    loads = [result.loads] if result.robot_loads is None else result.robot_loads.values()
+    borne = {name: [getattr(load, name, None) for load in loads] for name in BORNE}
+    told: dict[str, Any] = {
+        "env_id": result.env_id,
+        "seed": result.seed,
+        "scene": result.scene,
+        "robots": robots if isinstance(robots, str) else " ".join(robots),
+        "agent": result.agent,
+        "value": tally.value,
+        "rescued": tally.rescued,
+        "targets": len(result.targets),
+        "frames": result.frames,
+        "robot_collisions": result.robot_collisions or 0,
+        "averted": "" if result.averted is None else result.averted,
+        **{name: " ".join(str(one) for one in own if one is not None) for name, own in borne.items()},
+    }
+    return {name: str(value) for name, value in told.items()}
 
 
-def write(every: list[TeamResult]) -> None:
+def setup_of(row: Row) -> str:
+    """The name of the team that played an episode."""
+    played = (tuple(row["robots"].split()), row["agent"])
+    return next(name for name, setup in SETUPS.items() if setup == played)
+
+
+def write(every: list[Row]) -> None:
     """Write teams.csv and teams.md."""
-    ids, names = [*TASKS.values()], [*NAMES]
-    every.sort(key=lambda r: (ids.index(r.env_id), names.index((r.robots, r.agent)), r.seed))
     with FILE.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows(
-            {**asdict(r), **{name: _listed(getattr(r, name)) for name in ("robots", *BORNE)}} for r in every
-        )
+        writer.writerows(every)
     (HERE / "teams.md").write_text(HEAD.format(machine=machine()) + tables(every), encoding="utf-8")
 
 
-def _listed(values: Sequence[Any]) -> str:
-    return " ".join(str(value) for value in values if value is not None)
-
-
-def tables(every: list[TeamResult]) -> str:
+def tables(every: list[Row]) -> str:
     """What each team rescues in each task, and how far the best one is ahead."""
     text, compared = "", ""
     for task, env_id in TASKS.items():
         values: dict[str, dict[Episode, float]] = {}
-        for setup, name in NAMES.items():
-            mine = [r for r in every if (r.env_id, r.robots, r.agent) == (env_id, *setup)]
+        for name in SETUPS:
+            mine = [r for r in every if (r["env_id"], setup_of(r)) == (env_id, name)]
             if not mine:
                 continue
-            own = values[name] = {(r.seed, r.scene): r.value for r in mine}
+            own = values[name] = {(int(r["seed"]), r["scene"]): float(r["value"]) for r in mine}
             mean = words(difference(own, dict.fromkeys(own, 0.0)))
-            shares = {(r.seed, r.scene): r.averted for r in mine if r.averted is not None}
+            shares = {(int(r["seed"]), r["scene"]): float(r["averted"]) for r in mine if r["averted"]}
             kept = words(difference(shares, dict.fromkeys(shares, 0.0))) if shares else "-"
-            frames, hits = statistics.mean(r.frames for r in mine), sum(r.robot_collisions for r in mine)
+            frames, hits = (
+                statistics.mean(int(r["frames"]) for r in mine),
+                sum(int(r["robot_collisions"]) for r in mine),
+            )
             text += f"| {task} | {name} | {mean} | {kept} | {frames:.0f} | {hits} | {len(mine)} |\n"
-        if {BEST, ALONE, APART, "2 auction"} <= values.keys():
+        if {BEST, ALONE, APART, AUCTION} <= values.keys():
             both = values[BEST].keys() & values[ALONE].keys()
             one, two = (sum(values[name][e] for e in both) for name in (ALONE, BEST))
-            less = " | ".join(words(difference(values[BEST], values[name])) for name in (APART, "2 auction"))
+            less = " | ".join(words(difference(values[BEST], values[name])) for name in (APART, AUCTION))
             compared += f"| {task} | {two / one if one else float('nan'):.2f} | {less} | {len(both)} |\n"
     return text + COMPARED + compared
 
@@ -117,10 +142,11 @@ def tables(every: list[TeamResult]) -> str:
 def play(env_id: str, scenes: int) -> None:
     """Play what is missing of the first `scenes` of a task, and write it after each episode."""
     for seed in range(scenes):
-        for robots, agent in NAMES:
-            every = played()
-            if (env_id, robots, agent, seed) not in {(r.env_id, r.robots, r.agent, r.seed) for r in every}:
-                write([*every, *measure(env_id, [seed], robots, agent)])
+        for name, (robots, agent) in SETUPS.items():
+            if (env_id, name, str(seed)) not in {(r["env_id"], setup_of(r), r["seed"]) for r in episodes()}:
+                told = ("--split", "test", "--agents", agent, "-s", str(seed), "--episodes", "1", "-r", *robots)
+                evaluate(env_id, RAW / name.replace(" ", "-"), *told, check=False)
+                write(episodes())
 
 
 def cost() -> None:
@@ -156,7 +182,7 @@ def main(wanted: list[str]) -> None:
     scenes = int(wanted.pop()) if wanted and wanted[-1].isdecimal() else SCENES
     for task in [] if wanted == ["tables"] else [one_of(each, TASKS, "a task") for each in wanted] or [*TASKS]:
         play(TASKS[task], scenes)
-    write(played())
+    write(episodes())
     print((HERE / "teams.md").read_text(encoding="utf-8"))
 
 

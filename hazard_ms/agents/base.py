@@ -14,7 +14,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
@@ -32,6 +32,7 @@ from hazard_ms.spec.parameters import parameters
 if TYPE_CHECKING:
     from hazard_ms.skills.executor import SkillEnv
 
+Made = TypeVar("Made")
 LONGEST_NOTE = 2000  # characters of a note that are kept [ours]
 AT_HAND = 0.7  # distance from which a thing is picked up without a walk, as for `greedy` [m]
 PARAMETERS = re.compile(r":(?=\w+=)")  # what stands between an agent and its parameters; values may hold colons
@@ -154,16 +155,18 @@ def agent(text: str) -> Agent:
     Raises ValueError for an agent that cannot be found, and for parameters that it does not have, RuntimeError for one
     that calls sys.exit.
     """
+    return made_of(text, Agent)  # type: ignore[type-abstract]
+
+
+def made_of(text: str, kind: type[Made]) -> Made:
+    """A new agent of `kind`, as `agent` takes it. Raises ValueError and RuntimeError as that does."""
     with staying(f"the agent {text}"):
-        return _made(text)
-
-
-def _made(text: str) -> Agent:
-    name, *given = PARAMETERS.split(text, maxsplit=1)
-    made = _class(name)
-    if not (isinstance(made, type) and issubclass(made, Agent)):
-        raise ValueError(f"agent must be a subclass of hazard_ms.agents.base.Agent, got {text!r}, which is {made!r}")
-    return made(**parameters(made, "".join(given).split(",")))
+        name, *given = PARAMETERS.split(text, maxsplit=1)
+        made = _class(name)
+        if not (isinstance(made, type) and issubclass(made, kind)):
+            wanted = f"{kind.__module__}.{kind.__name__}"
+            raise ValueError(f"agent must be a subclass of {wanted}, got {text!r}, which is {made!r}")
+        return made(**parameters(made, "".join(given).split(",")))
 
 
 def _class(name: str) -> Any:

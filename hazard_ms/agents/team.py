@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import cast
 
-from hazard_ms.agents.base import Agent, agent, check_name
+from hazard_ms.agents.base import Agent, agent, made_of
 from hazard_ms.registry.loading import load
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
@@ -68,11 +68,13 @@ FOLLOWED = ("independent", "llm")  # those that an agent follows, or parameters
 
 
 def team_agent(name: str) -> TeamAgent:
-    """A new agent of teams: "joint", "auction", "independent", or "llm".
+    """A new agent of teams: "joint", "auction", "independent", "llm", package.module:Class or file.py:Class.
 
-    An agent may follow the third, as in "independent:planner", parameters the last: "llm:model=NAME,way=letter". Raises
-    ValueError for others.
+    An agent may follow the third, as in "independent:planner", parameters the last two: "llm:model=NAME,way=letter".
+    Raises ValueError for others, RuntimeError for one of one's own that calls sys.exit.
     """
+    if _own(name):
+        return made_of(name, TeamAgent)  # type: ignore[type-abstract]
     kind, _, member = name.partition(":")
     made = load(TEAM_AGENTS[one_of(kind, TEAM_AGENTS, "team agent")])
     if member and kind not in FOLLOWED:
@@ -85,8 +87,11 @@ def check_team_name(text: str) -> None:
 
     Code of a module or a file that it names is not run: whether there is one is seen where episodes are played.
     """
-    member = text.removeprefix("independent:")
-    if member != text and "." in member.partition(":")[0]:
-        check_name(member)
-    else:
+    if not _own(text.removeprefix("independent:")):
         team_agent(text)
+
+
+def _own(text: str) -> bool:
+    """Whether an agent is named by its module or file and its class."""
+    module, _, rest = text.partition(":")
+    return module not in TEAM_AGENTS and rest != "" and "=" not in rest.partition(":")[0]

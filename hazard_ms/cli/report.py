@@ -9,7 +9,8 @@ import tyro
 
 from hazard_ms.evaluation.choices import BACKENDS, flag, offer
 
-TRACKS = ("published", "perception", "clock", "houses", "trial")  # as evaluation.submissions.tracks has them
+# as evaluation.submissions.tracks has them
+TRACKS = ("published", "perception", "clock", "houses", "teams", "trial", "trial-teams")
 Hidden = tuple[Path, Path] | None
 Backend = Annotated[str, offer(BACKENDS)]
 

@@ -34,6 +34,8 @@ BROKEN = "simulation error"  # how an episode ends if its simulation breaks
 STUCK = "too many decisions"  # how it ends after 100 in a row that took no time
 ERROR, TOO_SLOW, DIED = "error", "too slow", "worker died"
 FAILED = (ERROR, TOO_SLOW, DIED)  # how an episode ends that its agent, or the process playing it, did not finish
+REGRET = ".regret.json"  # end of the names of the files that `hazard-ms regret` writes beside results
+ALONE = ".alone.json"  # end of those that tell what is lost if nobody acts
 PACKAGES = ("sapien", "mani-skill", "gymnasium", "torch", "warp-lang", "numpy")  # whose versions can change an episode
 
 LARGEST = 64_000_000  # of a result's file [bytes]; one of a long episode has 200,000 [ours]
@@ -68,10 +70,6 @@ class DecisionRecord:
     robot: Name = ""  # of a team, which did it; empty for a single robot
 
 
-REGRET = ".regret.json"  # end of the names of the files that `hazard-ms regret` writes beside results
-ALONE = ".alone.json"  # end of those that tell what is lost if nobody acts
-
-
 @dataclass(frozen=True)
 class Link:
     """One link of the chain of hashes: the state of everything at `frame`, and all links before it."""
@@ -101,8 +99,8 @@ class EpisodeResult:
 
     `ended` is one of: what the task's goal says when it is achieved ("all rescued"); "failed", when it never can be;
     "stopped", by the agent, or the word that it has for that ("budget"); "time", when the last frame has passed;
-    "simulation error"; "too many decisions", when 100 in a row took no time; "frame reached", for a run that
-    was asked to end at a frame; "error", when the agent raised an error or chose what is not an action; "too slow",
+    "simulation error"; "too many decisions", when 100 in a row took no time; "frame reached" and "end of record", for
+    runs that were to end there; "error", when the agent raised an error or chose what is not an action; "too slow",
     when a decision took it longer than allowed; "worker died", when the process that played it died twice. After the
     last three all is as it was at the last decision, and scored as it was then.
     """
@@ -129,7 +127,8 @@ class EpisodeResult:
     files: dict[str, str] = field(default_factory=dict)  # SHA-256 of those that agent and perception name, by path
     lost: Loss | None = None  # when the task's time was up; None where nobody asked
     lost_alone: Loss | None = None  # the same if nobody acts
-    loads: Loads | None = None  # on the robot; None where nobody asked
+    loads: Loads | None = None  # on a single robot; None where nobody asked
+    robot_loads: dict[str, Loads] | None = None  # on each robot of a team, by its name
     robot_collisions: Frame | None = None  # of robots of a team with one another; None for a single robot
     versions: dict[str, str] = field(default_factory=lambda: versions())
     machine: dict[str, Any] = field(default_factory=lambda: machine())
@@ -209,7 +208,8 @@ class EpisodeResult:
             raise ValueError(f"settings must have at most {LONGEST_SETTINGS} characters, got more")
         if found.frames > found.max_frames:
             raise ValueError(f"frames must be at most max_frames, {found.max_frames}, got {found.frames}")
-        check(found.settings, found.format, (d.robot for d in found.decisions), found.robot_collisions)
+        robots = (*(d.robot for d in found.decisions), *(found.robot_loads or ()))
+        check(found.settings, found.format, robots, found.robot_collisions)
         return found
 
 

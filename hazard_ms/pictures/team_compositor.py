@@ -64,11 +64,16 @@ class TeamCompositor:
         x = LEFT + text_width(name, 15) + 12
         write(sheet, name, (LEFT + 2, top + 3), 15, SOFT)
         write(sheet, verb, (x, top + 3), 15, ACCENT)
-        holding = f", holding {shot.held}" if shot.held is not None else ""
         x += text_width(verb, 15) + 8
-        write(sheet, shorten(f"{shot.target or ''}{holding}", 15, LEFT + ACROSS - x), (x, top + 3), 15, TEXT)
+        write(sheet, shorten(_on(shot), 15, LEFT + ACROSS - x), (x, top + 3), 15, TEXT)
         place(sheet, labelled(cover(shot.head, self._head, self._high), "head camera"), (LEFT, top + LINE))
         drawn = self._maps[name]
         drawn.openings, drawn.tools = shot.openings, shot.tools
         plan = drawn.draw(shot.map, shot.targets, shot.names, shot.agent, shot.path, shot.target)
         place(sheet, labelled(plan, "what it has seen"), (LEFT + self._head + GAP, top + LINE))
+
+
+def _on(shot: Shot) -> str:
+    """What a robot does something with, and what it holds meanwhile, where that is another thing."""
+    holding = f"holding {shot.held}" if shot.held not in (None, shot.target) else ""
+    return ", ".join(filter(None, (shot.target, holding)))

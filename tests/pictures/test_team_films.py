@@ -11,6 +11,7 @@ import pytest
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.teams.player import RecordedTeam, play
 from hazard_ms.machine.files import drafts
+from hazard_ms.pictures import team_compositor
 from hazard_ms.pictures.compositor import HEIGHT, MAIN, WIDTH
 from hazard_ms.pictures.drawing import BLUE
 from hazard_ms.pictures.film import LAST_SHOTS
@@ -57,6 +58,27 @@ def test_the_caption_tells_of_all() -> None:
     held = {**shots, "g1-1": shot(verb="", target=None, held="pen_1")}
     y, x = np.nonzero((plain[640:] != compositor.compose(held, (), 0)[640:]).any(-1))
     assert 450 < x.min() and x.max() < 1000
+
+
+@pytest.mark.parametrize(
+    ("target", "held", "told"),
+    [
+        (None, None, ""),
+        (None, "pen_1", "holding pen_1"),
+        ("cart_1", "pen_1", "cart_1, holding pen_1"),
+        ("pen_1", "pen_1", "pen_1"),
+        ("pen_1", None, "pen_1"),
+    ],
+)
+def test_the_row_says_what_is_done_with_what_and_what_is_held(
+    target: str | None, held: str | None, told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No comma before or after nothing, and nothing twice."""
+    texts: list[str] = []
+    monkeypatch.setattr(team_compositor, "write", lambda sheet, text, *_: texts.append(text))
+    compositor = TeamCompositor("title", "subtitle", (TEMPERATURE,), ("fetch-0",))
+    compositor.compose({"fetch-0": shot(verb="explore", target=target, held=held)}, (), 0)
+    assert texts[:3] == ["fetch-0", "explore", told]
 
 
 def test_the_camera_in_the_open_steps_back_where_robots_are_far_apart() -> None:

@@ -19,10 +19,13 @@ from hazard_ms.evaluation.submissions.card import Card
 from hazard_ms.evaluation.submissions.packing import Manifest, mean_values, pack, packed, submission_of
 from hazard_ms.evaluation.submissions.report import Report, Seen
 from hazard_ms.evaluation.submissions.signing import sign
-from hazard_ms.evaluation.submissions.tracks import TRACKS
+from hazard_ms.evaluation.submissions.tracks import PAIR, TRACKS, Track
 from hazard_ms.evaluation.workers import Job, Word
+from hazard_ms.registry.mitigations import TELL
+from hazard_ms.skills.decision import STOP, WALK_ONE_STEP
+from hazard_ms.skills.team import TeamSkills
 
-TRIAL = TRACKS["trial"]
+TRIAL, TRIAL_TEAMS = TRACKS["trial"], TRACKS["trial-teams"]
 SHORT = "tests.evaluation.test_play:Short"  # looks around, takes a step, and stops
 CARD = Card("short", ("somebody",), "Looks around, takes a step, and stops.", "nothing", {}, False, "none")
 FIRST, SECOND = "episodes/HazardFire-v1-0000.json", "episodes/HazardFire-v1-0001.json"
@@ -41,9 +44,26 @@ def ignore(word: Word) -> None:
     """Nobody listens."""
 
 
-def honest(results: list[EpisodeResult], card: Card = CARD) -> bytes:
-    """The submission of the two episodes of the track `trial`."""
-    return pack({(r.env_id, r.seed): r for r in results}, TRIAL, card)
+def team_episodes() -> list[EpisodeResult]:
+    """Two real episodes in which robot 0 tells of a thing that it alone sees, and robot 1 takes a step towards it."""
+    env = TeamSkills.make("HazardFire-v1", PAIR, split="test", effects="off")
+    made = []
+    for place in TRIAL_TEAMS.places:
+        env.reset(seed=place[1])
+        first, second = env.knowledge.values()
+        thing = first.labeller.names[next(i for i in first.seen.objects if i not in second.seen.objects)]
+        told = ((TELL, f"{thing} is here"), (TELL, "I wait"), (WALK_ONE_STEP, thing), (STOP, None), (STOP, None))
+        job = Job(TRIAL_TEAMS.options(place, "joint"), 60.0, told, robots=tuple(f"fetch-{k}" for k in (0, 1, 1, 0, 1)))
+        done = attempt(job, ignore)
+        assert done.result is not None and not done.error and done.result.decisions[3].frames > 1
+        made.append(done.result)
+    env.close()
+    return made
+
+
+def honest(results: list[EpisodeResult], card: Card = CARD, track: Track = TRIAL) -> bytes:
+    """The submission of the two episodes of a track."""
+    return pack({(r.env_id, r.seed): r for r in results}, track, card)
 
 
 def changed(

@@ -82,11 +82,11 @@ class Account(Watcher):
     def closed(self, fates: Callable[[], tuple[Fate, ...]]) -> dict[str, Any]:
         """The fields of a result that tell of loads, loss and targets, whose `fates` are asked for at the end.
 
-        Loads are told of a single robot alone; those of a team are in `loads`.
+        Loads on a single robot are `loads`, those on each robot of a team `robot_loads`.
         """
-        loads, lost = [*self.loads().values()], self.close()
-        one = loads[0] if len(loads) == 1 else None
-        return {"loads": one, "lost": lost, **({} if lost is None else self._kept(fates))}
+        loads, lost = self.loads(), self.close()
+        told = {"robot_loads": loads} if isinstance(self._env, TeamSkills) else {"loads": next(iter(loads.values()))}
+        return {**told, "lost": lost, **({} if lost is None else self._kept(fates))}
 
     def _kept(self, fates: Callable[[], tuple[Fate, ...]]) -> dict[str, Any]:
         """The targets, as `fates` tells, where what lies where it was put counts as rescued; nothing elsewhere."""

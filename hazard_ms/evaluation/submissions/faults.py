@@ -13,6 +13,7 @@ from hazard_ms.agents.thinking import OFF, frames_of
 from hazard_ms.evaluation.result import BROKEN, FAILED, FORMAT, EpisodeResult
 from hazard_ms.evaluation.submissions.packing import MANIFEST, Entry, Submission, mean_values, name_of
 from hazard_ms.evaluation.submissions.tracks import Track
+from hazard_ms.evaluation.teams.fields import TEAM_FORMAT
 from hazard_ms.registry import AGENTS, load
 from hazard_ms.registry.version import __version__
 from hazard_ms.sensing.detection.perception import eyes_of
@@ -44,7 +45,7 @@ KINDS = {  # what each means
     PHYSICS: "an episode was played with other settings",
     RULES: "an episode was played by another agent, perception or clock than the submission says",
     SCENE: "an episode was played in another scene than its seed chooses",
-    SCORE: "a score is not that of the targets, or the targets have other fates in the simulation",
+    SCORE: "a score is not that of the targets, or targets or collisions of robots are others in the simulation",
     START: "the simulation begins otherwise than the record: that is of another scene or other physics than it says",
     CUT: "an episode ends before its end, or its record before the episode",
     COURSE: "the simulation of the decisions goes another way than the record",
@@ -128,10 +129,10 @@ def _episode(
         return
     if entry.place not in track.places:
         return
-    if result.format != FORMAT:
-        yield Fault(VERSION, where, f"format must be {FORMAT}, got {result.format}")
+    if result.format != (number := FORMAT if isinstance(track.robot, str) else TEAM_FORMAT):
+        yield Fault(VERSION, where, f"format must be {number}, got {result.format}")
     yield from _version(where, result.versions)
-    expected = track.options(entry.place).settings
+    expected = track.settings(entry.place)
     own = {name: value for name, value in result.settings.items() if name != "scenes" or track.scenes is None}
     if own != expected:
         odd = sorted(n for n in own.keys() | expected.keys() if own.get(n) != expected.get(n))[0]
@@ -177,7 +178,7 @@ def _version(where: str, versions: dict[str, str]) -> Iterator[Fault]:
 
 
 def _card(submission: Submission) -> Iterator[Fault]:
-    entry = AGENTS.get(submission.manifest.agent.partition(":")[0])
+    entry = AGENTS.get(submission.manifest.agent.removeprefix("independent:").partition(":")[0])
     if entry is not None and issubclass(load(entry.agent), PrivilegedAgent) and not submission.manifest.card.privileged:
         yield Fault(CARD, MANIFEST, f"privileged must be true for {entry.name}, got false")
 

@@ -102,10 +102,14 @@ def results_of(folders: Sequence[Path], track: Track, agent: str | None) -> dict
     """
     wanted = set(track.places)
     found: dict[str, dict[Place, EpisodeResult]] = {}
+    odd = ""  # what the first that is left out is played by
     for path in result_files(folders):
         result = EpisodeResult.read(path)
         place = (result.env_id, result.seed)
-        if place not in wanted or not _fits(result, place, track):
+        if place not in wanted:
+            continue
+        if why := _odd(result, place, track):
+            odd = odd or f"; left out: {path.name}, whose {why}"
             continue
         own = found.setdefault(result.agent, {})
         if place in own:
@@ -119,16 +123,24 @@ def results_of(folders: Sequence[Path], track: Track, agent: str | None) -> dict
         first = name_of(missing[0])
         raise ValueError(
             f"folders must hold all {len(track.places)} episodes of track {track.name}, got {len(own)}; "
-            f"the first that is missing: {first}"
+            f"the first that is missing: {first}{odd}"
         )
     return {place: own[place] for place in track.places}
 
 
-def _fits(result: EpisodeResult, place: Place, track: Track) -> bool:
-    """Whether a result was played by the rules of a track, as far as it tells."""
+def _odd(result: EpisodeResult, place: Place, track: Track) -> str:
+    """What in a result is not by the rules of a track, as far as it tells; empty: nothing."""
     settings = {name: value for name, value in result.settings.items() if name != "scenes" or track.scenes is None}
-    scene = result.scene == track.scene(place) and settings == track.options(place).settings
-    return scene and result.clock == track.clock and track.perceives(result.perception)
+    told = settings | {"scene": result.scene, "clock": result.clock}
+    wanted = track.settings(place) | {"scene": track.scene(place), "clock": track.clock}
+    for name in sorted(told.keys() | wanted.keys()):
+        if told.get(name) != wanted.get(name):
+            return f"{name} must be {wanted.get(name)!r}, got {told.get(name)!r:.100}"
+    return (
+        ""
+        if track.perceives(result.perception)
+        else f"perception must be {' or '.join(track.detectors)}, got {result.perception!r:.100}"
+    )
 
 
 def pack(results: dict[Place, EpisodeResult], track: Track, card: Card) -> bytes:

@@ -21,7 +21,7 @@ from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.evaluation.attempts import attempt as play
 from hazard_ms.evaluation.metrics import Tally
 from hazard_ms.evaluation.replay import DIFFERENT, EXACT, compare, other_versions
-from hazard_ms.evaluation.result import BROKEN, STUCK, EpisodeResult, machine, versions
+from hazard_ms.evaluation.result import BROKEN, FAILED, STUCK, EpisodeResult, machine, versions
 from hazard_ms.evaluation.spread import Where, spread
 from hazard_ms.evaluation.submissions.faults import COURSE, CUT, DAMAGED, HASH, SCORE, START, Fault, faults_of
 from hazard_ms.evaluation.submissions.packing import Submission, name_of, read_submission
@@ -86,7 +86,7 @@ def simulated(
     seen: dict[Place, Seen] = {}
     faults: dict[Place, list[Fault]] = {}
     jobs = {place: _job(record, place, track) for place, record in records.items()}
-    alone = {place: replace(job, actions=((STOP, None),), waits=()) for place, job in jobs.items() if track.averted}
+    alone = {place: _nobody(job) for place, job in jobs.items() if track.averted}
     lost: dict[Place, EpisodeResult | None] = {}
     for place, outcome in _played(alone, where):
         lost[place] = outcome.result
@@ -119,9 +119,11 @@ def compared(record: EpisodeResult, played: EpisodeResult | None, error: str = "
         if record.links[0] != played.links[0]:
             return verdict, [Fault(START, where, why)]
         return verdict, [Fault(COURSE if verdict == DIFFERENT else HASH, where, why)]
-    if record.targets != played.targets:
+    if (record.targets, record.robot_collisions) != (played.targets, played.robot_collisions):
         return verdict, [Fault(SCORE, where, why)]
-    if record.frames != played.frames or (record.ended in UNASKED and record.ended != played.ended):
+    alone = record.robot_collisions is None  # of a robot alone, any record ends by a stop
+    told = record.ended in UNASKED if alone else record.ended not in FAILED
+    if record.frames != played.frames or (told and record.ended != played.ended):
         what = f"it ends at frame {record.frames} ({record.ended}), the simulation at {played.frames} ({played.ended})"
         return verdict, [Fault(CUT, where, what)]
     own = record.to_dict()["score"]
@@ -164,8 +166,14 @@ def attempt(job: Job, say: Say) -> Outcome:
 def _job(record: EpisodeResult, place: Place, track: Track) -> Simulation:
     options = track.options(place, _asked(record.agent), record.perception)
     actions = tuple((d.verb, d.target) for d in record.decisions)
-    waits = tuple(d.waited for d in record.decisions)
-    return Simulation(options, SILENCE, actions, waits, averted=track.averted, track=track)
+    waits, robots = (tuple(getattr(d, name) for d in record.decisions) for name in ("waited", "robot"))
+    return Simulation(options, SILENCE, actions, waits, averted=track.averted, robots=robots, track=track)
+
+
+def _nobody(job: Simulation) -> Simulation:
+    """The same episode if nobody acts."""
+    robots = job.options.team or ("",)
+    return replace(job, actions=((STOP, None),) * len(robots), waits=(), robots=robots)
 
 
 def _asked(agent: str) -> str:
@@ -197,7 +205,8 @@ def _check_machine(played: EpisodeResult) -> None:
 
 def _seen(place: Place, record: EpisodeResult, played: EpisodeResult | None, verdict: str) -> Seen:
     found = played or replace(record, targets=tuple(replace(f, rescued=False, frame=None) for f in record.targets))
-    decided = json.dumps([[d.verb, d.target, d.waited] for d in record.decisions]).encode()
+    told = [[*([d.robot] if d.robot else []), d.verb, d.target, d.waited] for d in record.decisions]
+    decided = json.dumps(told).encode()
     return Seen(
         *place,
         scene=record.scene,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from typing import Any
 
 from hazard_ms.agents.thinking import OFF, TOKENS
 from hazard_ms.evaluation.options import EpisodeOptions
@@ -17,6 +18,7 @@ from hazard_ms.tasks.spare import file_of
 Place = tuple[str, int]  # task and seed of an episode
 PUBLISHED = ("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1")
 HIDDEN = "hidden-"  # how names of tracks of hidden scenes begin
+PAIR = ("fetch", "fetch")
 HOMES = ("HazardHouseFire-v1", "HazardHouseFlood-v1")
 
 
@@ -38,7 +40,7 @@ class Track:
     scenes: Mapping[str, tuple[str, ...]] | None = None
     split: str = field(default="test", kw_only=True)
     physics: str = field(default="paper", kw_only=True)
-    robot: str = field(default="fetch", kw_only=True)
+    robot: str | tuple[str, ...] = field(default="fetch", kw_only=True)  # several are a team
 
     @property
     def places(self) -> list[Place]:
@@ -67,6 +69,11 @@ class Track:
             perception=perception,
         )
 
+    def settings(self, place: Place) -> dict[str, Any]:
+        """The settings of an episode, as the file of its result must tell them."""
+        settings = self.options(place).settings
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in settings.items()}
+
     @contextmanager
     def scene_file(self, place: Place) -> Iterator[str | None]:
         """The file of an episode's scene while the context lasts; None for one of the split."""
@@ -94,7 +101,9 @@ TRACKS = {
         Track("perception", "the same, told of things by the detector `small`", PUBLISHED, 25, detectors=("small",)),
         Track("clock", "the same, while hazards go on by the tokens that a model takes", PUBLISHED, 25, clock=TOKENS),
         Track("houses", "whole homes in fire and in flood; the score is what was averted", HOMES, 50, averted=True),
+        Track("teams", "two robots rescue together, in the scenes of the track `published`", PUBLISHED, 25, robot=PAIR),
         Track("trial", "two episodes, to try everything out: too few to compare agents", PUBLISHED[:1], 2),
+        Track("trial-teams", "the same two with two robots", PUBLISHED[:1], 2, robot=PAIR),
     )
 }
 

@@ -1,4 +1,4 @@
-"""The fields of results that teams alone have: the robot of each decision, and how often robots collided."""
+"""The fields of results that teams alone have: the robot of each decision, loads of each, how often they collided."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 
 from hazard_ms.evaluation.choices import team_names
 
+OWN = ("robot_loads", "robot_collisions")
 TEAM_FORMAT = 4  # of results of teams; those of one robot have none of their fields, and keep theirs
 
 
@@ -15,11 +16,11 @@ def told(row: dict[str, Any]) -> dict[str, Any]:
     if team_names(row["settings"].get("robot_uids")):
         return row
     decisions = [{name: value for name, value in decision.items() if name != "robot"} for decision in row["decisions"]]
-    return {name: value for name, value in row.items() if name != "robot_collisions"} | {"decisions": decisions}
+    return {name: value for name, value in row.items() if name not in OWN} | {"decisions": decisions}
 
 
 def check(settings: dict[str, Any], format_number: int, robots: Iterable[str], collisions: int | None) -> None:
-    """Check that what a result tells of a team is that of the team of its settings; `robots`: those of its decisions.
+    """Check that what a result tells of a team is that of the team of its settings; `robots`: those that it names.
 
     Raises ValueError where it is not.
     """
@@ -31,4 +32,4 @@ def check(settings: dict[str, Any], format_number: int, robots: Iterable[str], c
         )
     for robot in robots:
         if robot not in (names or ("",)):
-            raise ValueError(f"robot of a decision must be one of {', '.join(names) or 'none'}, got {robot!r:.100}")
+            raise ValueError(f"a robot of a result must be one of {', '.join(names) or 'none'}, got {robot!r:.100}")

@@ -27,6 +27,7 @@ from hazard_ms.skills.failures import EPISODE_OVER
 from hazard_ms.skills.team import TeamSkills
 
 STOPPED = "stopped"  # how an episode ends that all robots have stopped
+CUT_OFF = "end of record"  # how the simulation of a record ends where a robot has no decision left
 
 
 class EndOfRecordError(Exception):
@@ -83,7 +84,7 @@ class TeamRunner:
             try:
                 actions = self._asked(decisions)
             except EndOfRecordError:
-                return STOPPED
+                return CUT_OFF
             self._begin(decisions, actions)
             start, looked = time.perf_counter(), self._looked()
             decisions, terminated, truncated, info = self.env.step(actions)

@@ -8,8 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hazard_ms.bench.teams import measure, play
+from hazard_ms.agents.team import TeamAgent
 from hazard_ms.evaluation.averted.account import Account
+from hazard_ms.evaluation.averted.loss import Loads
+from hazard_ms.evaluation.options import EpisodeOptions
+from hazard_ms.evaluation.teams.player import TeamRunner, play
 from hazard_ms.skills.decision import EXPLORE, STOP, Action
 from hazard_ms.skills.team import TeamSkills
 from tests.evaluation.averted.test_account import FRAMES, environment, rooms
@@ -18,7 +21,7 @@ __all__ = ["rooms"]
 PAIR = ("fetch", "fetch")
 
 
-class Does:
+class Does(TeamAgent):
     """All robots do one thing until time is up."""
 
     def __init__(self, verb: str) -> None:
@@ -89,7 +92,12 @@ def test_a_team_that_stops_at_once_averts_nothing_and_time_after_it_counts() -> 
     env = TeamSkills.make("HazardWind-v1", PAIR, split="test", effects="off", max_episode_steps=FRAMES)
     losses, frames = [], []
     for player in (None, Does(STOP), Does(EXPLORE)):
-        account = play(env, player, 1)  # type: ignore[arg-type]
+        account = Account()
+        if player is None:
+            env.reset(seed=1)
+            account.begin(env)
+        else:
+            TeamRunner(env, player, [account]).run(1)
         frames.append(env.frame)
         losses.append(account.close())
         assert env.frame == FRAMES
@@ -107,9 +115,9 @@ def test_a_team_that_stops_at_once_averts_nothing_and_time_after_it_counts() -> 
 
 
 @pytest.mark.render
-def test_the_bench_tells_what_was_averted_where_a_task_asks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(TeamSkills, "max_frames", property(lambda env: 90))
-    monkeypatch.setattr("hazard_ms.bench.teams.team_agent", lambda name: Does(STOP))
-    (gale,), (wind,) = (measure(task, [0], PAIR, "independent") for task in ("HazardGale-v1", "HazardWind-v1"))
-    assert wind.averted is None and wind.value == 0.0 and wind.heat == (None, None)
-    assert gale.averted in (0.0, None) and gale.value > 0.0  # what lies where it was put when time is up is safe
+def test_results_tell_what_each_robot_bore_and_what_lies_where_it_was_put_is_safe() -> None:
+    """In a gale, where all stop at once; the wind knocks nobody into furniture, and there is no heat and no water."""
+    options = EpisodeOptions("HazardGale-v1", split="test", robot_uids=PAIR, agent="joint", effects="off")
+    result = play(options, [Account()], Does(STOP), max_episode_steps=90)
+    assert result.robot_loads == dict.fromkeys(("fetch-0", "fetch-1"), Loads(collisions=0)) and result.loads is None
+    assert result.frames == 0 and result.lost is not None and result.tally.value > 0.0

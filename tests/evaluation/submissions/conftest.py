@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from hazard_ms.evaluation.result import EpisodeResult
-from tests.worlds.submissions import honest, short_episode
+from tests.worlds.submissions import TRIAL_TEAMS, honest, short_episode, team_episodes
 
 
 @pytest.fixture(scope="session")
@@ -18,3 +18,15 @@ def episodes() -> list[EpisodeResult]:
 def submission(episodes: list[EpisodeResult]) -> bytes:
     """The honest submission of these."""
     return honest(episodes)
+
+
+@pytest.fixture(scope="session")
+def pairs() -> list[EpisodeResult]:
+    """The two episodes of the track `trial-teams`, each of five decisions, two of which are messages."""
+    return team_episodes()
+
+
+@pytest.fixture(scope="session")
+def of_team(pairs: list[EpisodeResult]) -> bytes:
+    """The honest submission of these."""
+    return honest(pairs, track=TRIAL_TEAMS)

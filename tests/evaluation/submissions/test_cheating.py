@@ -19,6 +19,7 @@ from hazard_ms.evaluation.submissions.copies import copied
 from hazard_ms.evaluation.submissions.faults import KINDS, faults_of
 from hazard_ms.evaluation.submissions.packing import submission_of
 from hazard_ms.evaluation.submissions.simulating import compared, verify
+from hazard_ms.evaluation.submissions.tracks import Track
 from hazard_ms.evaluation.workers import SILENCE, Job
 from hazard_ms.skills.decision import EXPLORE
 from tests.worlds.submissions import (
@@ -37,9 +38,9 @@ from tests.worlds.submissions import (
 )
 
 
-def kinds(content: bytes) -> list[str]:
+def kinds(content: bytes, track: Track = TRIAL) -> list[str]:
     """The kinds of the faults that show without a simulation."""
-    return list(dict.fromkeys(fault.kind for fault in faults_of(submission_of(content, "it"), TRIAL)))
+    return list(dict.fromkeys(fault.kind for fault in faults_of(submission_of(content, "it"), track)))
 
 
 def test_an_honest_submission_has_no_fault(submission: bytes, episodes: list[EpisodeResult]) -> None:

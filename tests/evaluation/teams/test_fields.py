@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from hazard_ms.evaluation.averted.loss import Loads
 from hazard_ms.evaluation.options import EpisodeOptions, SweepOptions
 from hazard_ms.evaluation.page import page
 from hazard_ms.evaluation.replay import DIFFERENT, EXACT, compare, episode_of, job_of
@@ -24,7 +25,8 @@ DECISIONS = (
     DecisionRecord(0, WALK_TO, "pan_1", False, "no_path", 40, "why", robot="g1-1"),
     DecisionRecord(40, PICK_UP, "pan_1", False, "episode_over", 90, robot="g1-1"),
 )
-TEAM = replace(result_of(PAIR), decisions=DECISIONS, robot_collisions=2, format=4)
+LOADS = {"fetch-0": Loads(heat=0.25), "g1-1": Loads(collisions=1)}
+TEAM = replace(result_of(PAIR), decisions=DECISIONS, robot_collisions=2, format=4, robot_loads=LOADS)
 
 
 def test_a_result_of_one_robot_has_none_of_it() -> None:
@@ -42,7 +44,7 @@ def test_a_result_of_one_robot_has_none_of_it() -> None:
 def test_a_result_of_a_team_survives_its_file(tmp_path: Path) -> None:
     TEAM.write(tmp_path / "team.json")
     row = json.loads((tmp_path / "team.json").read_text())
-    assert row["format"] == 4 and row["robot_collisions"] == 2
+    assert row["format"] == 4 and row["robot_collisions"] == 2 and row["robot_loads"]["fetch-0"]["heat"] == 0.25
     assert [d["robot"] for d in row["decisions"]] == ["fetch-0", "g1-1", "g1-1"]
     read = EpisodeResult.read(tmp_path / "team.json")
     assert read == replace(TEAM, settings={**TEAM.settings, "robot_uids": ["fetch", "g1"]})
@@ -55,6 +57,7 @@ def test_a_result_of_a_team_survives_its_file(tmp_path: Path) -> None:
     ("change", "told"),
     [
         ({"decisions": [{**DECISIONS[0].__dict__, "robot": "fetch-1"}]}, "must be one of fetch-0, g1-1, got 'fetch-1'"),
+        ({"robot_loads": {"fetch-1": {}}}, "a robot of a result must be one of fetch-0, g1-1, got 'fetch-1'"),
         ({"format": 3}, "got format 3 and 2 for 2 robots"),
         ({"robot_collisions": None}, "got format 4 and None for 2 robots"),
         ({"settings": {"robot_uids": "fetch"}}, "got format 4 and 2 for 1 robots"),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+from collections.abc import Iterator
+from multiprocessing import forkserver
 from pathlib import Path
 
 import pytest
@@ -11,6 +13,17 @@ import pytest
 from hazard_ms.evaluation import workers
 from hazard_ms.evaluation.workers import Crew, Job, Outcome, ending
 from tests.worlds.jobs import DIES, DIES_ONCE, HANGS_ASKED, HANGS_BETWEEN, HOUR, WELL, attempt, job
+
+
+@pytest.fixture(scope="module")
+def quick_starts() -> Iterator[None]:
+    """Processes are copies of one that has imported everything, which takes a new one seconds."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["tests.worlds.jobs"])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(workers.multiprocessing, "get_context", lambda method: context)
+        yield
+    forkserver._forkserver._stop()  # type: ignore[attr-defined]
 
 
 def played(jobs: list[Job], count: int) -> dict[int, Outcome]:
@@ -24,7 +37,7 @@ def played(jobs: list[Job], count: int) -> dict[int, Outcome]:
     return dict(made)
 
 
-def test_what_dies_or_hangs_costs_its_job_alone(tmp_path: Path) -> None:
+def test_what_dies_or_hangs_costs_its_job_alone(tmp_path: Path, quick_starts: None) -> None:
     """The limits of jobs that do not hang are an hour, so a slow machine changes nothing."""
     seeds = [WELL, DIES, 5, DIES_ONCE, HANGS_ASKED, 10]
     found = played([job(s, tmp_path, 0.5 if s == HANGS_ASKED else HOUR) for s in seeds], 2)
@@ -41,7 +54,7 @@ def test_what_dies_or_hangs_costs_its_job_alone(tmp_path: Path) -> None:
 
 
 def test_a_process_that_hangs_between_decisions_is_taken_for_dead(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, quick_starts: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workers, "SILENCE", 0.5)
     (found,) = played([job(HANGS_BETWEEN, tmp_path)], 1).values()

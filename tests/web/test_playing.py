@@ -78,7 +78,7 @@ def test_a_rescue_is_played_and_kept_and_its_replay_is_equal(tmp_path: Path) -> 
     folder.mkdir()
     ours, theirs = multiprocessing.Pipe()
     page = Page(ours)
-    rescue = asked_for({"seed": 0, "every": 8}, ())
+    rescue = asked_for({"seed": 0, "every": 16}, ())
     play(Link(theirs), rescue, folder)
     theirs.close()
     page.join(10)

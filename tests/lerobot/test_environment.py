@@ -42,11 +42,11 @@ EPISODE = EpisodeOptions(agent="tests.lerobot.test_environment:Turns", seed=11, 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "lerobot" / "env.py"
 CAMERAS = ("head", "wrist", "shoulder")
 MOST_OFF = 6.0  # of a film's colours, which are compressed, in the mean [levels]
-FEWEST = 10  # frames of the recording
+FEWEST = 8  # frames of the recording
 
 
 class Turns(PrivilegedAgent):
-    """Waits, turns by a radian, and stops: a short episode, since each of its frames is drawn six times."""
+    """Waits, turns by half a radian, and stops: a short episode, since each of its frames is drawn six times."""
 
     def attach(self, env: SkillEnv) -> None:
         self.env = env
@@ -56,7 +56,7 @@ class Turns(PrivilegedAgent):
 
     def act(self, decision: Decision) -> Action:
         self.env.run(wait(self.env.stage, 3))
-        self.env.run(turn_by(self.env.stage, 1.0))
+        self.env.run(turn_by(self.env.stage, 0.5))
         return Action(STOP)
 
 

@@ -22,6 +22,12 @@ from hazard_ms.web.playing.process import main, play
 from hazard_ms.web.rescue import Rescue, Taken, asked_for, journal, keep, read
 
 
+@pytest.fixture(autouse=True)
+def few_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Films have a picture a second: drawing takes most of the time."""
+    monkeypatch.setattr(keeping, "EVERY", 30)
+
+
 class Page(threading.Thread):
     """Looks around once, asks about a thing, sends what is not valid, and stops."""
 

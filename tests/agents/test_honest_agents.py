@@ -21,7 +21,7 @@ from tests.worlds.policies import ship
 HONEST = sorted(name for name, entry in AGENTS.items() if not load(entry.agent).privileged)
 TASKS = ["HazardFire-v1", pytest.param("HazardFlood-v1", marks=pytest.mark.long)]
 TASKS.append(pytest.param("HazardWind-v1", marks=pytest.mark.long))
-DECISIONS = 4  # of an episode in which the agents are asked
+DECISIONS = 3  # of an episode in which the agents are asked
 
 
 class Cheat(Agent):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import random
 import subprocess
 import sys
@@ -18,6 +19,7 @@ from hazard_ms.demonstrations.options import RecordOptions
 from hazard_ms.demonstrations.reading import entries
 from hazard_ms.demonstrations.recording import RecordJob, attempt
 from hazard_ms.evaluation.result import EpisodeResult, versions
+from hazard_ms.evaluation.spread import spread
 from results.killed_recordings import Ordeal
 from tests.worlds.files.checkout import ROOT
 from tests.worlds.recordings import content, stored
@@ -41,9 +43,11 @@ def test_a_dataset_is_looked_after_by_commands(tmp_path: Path, capsys: pytest.Ca
 
 
 def test_episodes_of_another_engine_are_told_beside_the_verdict(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The verdict is that of the simulation; with one action that was changed, an episode is damaged, not different."""
+    here_alone = functools.partial(spread, backend="serial")  # a new process would take seconds to start
+    monkeypatch.setattr("hazard_ms.demonstrations.verify.spread", here_alone)
     dataset = tmp_path / "HazardFire-v1" / "oracle"
     stored(dataset, 0)
     manifest, here = dataset / MANIFEST, version("sapien")

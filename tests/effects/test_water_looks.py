@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import sapien
 import torch
+from mani_skill.render import PREBUILT_SHADER_CONFIGS, set_shader_pack
 
 from hazard_ms.bench.effects import costs
 from hazard_ms.effects.entities import PREFIX, dry_ior, materials
@@ -23,7 +24,6 @@ from hazard_ms.hazards.flood.flood import Flood
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Partition, Room
 from hazard_ms.tasks.compound import hazard_compound
-from tests.worlds.alone import alone
 from tests.worlds.looking import BOX, INSIDE, OVERHEAD, flooded, picture_hashes
 
 ROOT = Path(__file__).parents[2]
@@ -39,11 +39,11 @@ PARTED = replace(
 
 @pytest.mark.render
 @pytest.mark.parametrize(("mode", "stock"), MODES)
-@alone
 def test_labels_are_those_without_water(mode: str, stock: str) -> None:
+    set_shader_pack(PREBUILT_SHADER_CONFIGS[stock])  # the pixel formats of stock packs are those of the last one
     wet, dry = flooded(0.0, mode), flooded(0.0, "off", stock)
     without = dry.picture(0)
-    for frame, level in ((0, 0.0), (40, 0.05), (90, 0.2), (300, 0.6), (900, 1.5)):
+    for frame, level in ((40, 0.05), (90, 0.2), (900, 1.5)):
         wet.state.level[:] = level
         seen = wet.picture(frame)
         assert set(seen) == set(without)

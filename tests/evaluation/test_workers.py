@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+from collections.abc import Iterator
+from multiprocessing import forkserver
 from pathlib import Path
 
 import pytest
@@ -11,6 +13,17 @@ import pytest
 from hazard_ms.evaluation import workers
 from hazard_ms.evaluation.workers import Crew, Job, Outcome, ending
 from tests.worlds.jobs import DIES, DIES_ONCE, HANGS_ASKED, HANGS_BETWEEN, HOUR, WELL, attempt, job
+
+
+@pytest.fixture(scope="module")
+def quick_starts() -> Iterator[type[multiprocessing.process.BaseProcess]]:
+    """Processes are copies of one that has imported everything, which takes a new one seconds. Their class."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["tests.worlds.jobs"])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(workers.multiprocessing, "get_context", lambda method: context)
+        yield context.Process
+    forkserver._forkserver._stop()  # type: ignore[attr-defined]
 
 
 def played(jobs: list[Job], count: int) -> dict[int, Outcome]:
@@ -24,7 +37,7 @@ def played(jobs: list[Job], count: int) -> dict[int, Outcome]:
     return dict(made)
 
 
-def test_what_dies_or_hangs_costs_its_job_alone(tmp_path: Path) -> None:
+def test_what_dies_or_hangs_costs_its_job_alone(tmp_path: Path, quick_starts: object) -> None:
     """The limits of jobs that do not hang are an hour, so a slow machine changes nothing."""
     seeds = [WELL, DIES, 5, DIES_ONCE, HANGS_ASKED, 10]
     found = played([job(s, tmp_path, 0.5 if s == HANGS_ASKED else HOUR) for s in seeds], 2)
@@ -41,7 +54,7 @@ def test_what_dies_or_hangs_costs_its_job_alone(tmp_path: Path) -> None:
 
 
 def test_a_process_that_hangs_between_decisions_is_taken_for_dead(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, quick_starts: object, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workers, "SILENCE", 0.5)
     (found,) = played([job(HANGS_BETWEEN, tmp_path)], 1).values()
@@ -50,15 +63,20 @@ def test_a_process_that_hangs_between_decisions_is_taken_for_dead(
 
 
 def test_a_process_with_one_thread_serves_many_jobs_and_is_then_replaced(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, quick_starts: type[multiprocessing.process.BaseProcess], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workers, "LIFETIME", 2)
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
-    crew, processes = Crew(1, attempt), []
+    start, threads = quick_starts.start, list[str]()
+
+    def started(process: multiprocessing.process.BaseProcess) -> None:
+        threads.append(os.environ["OMP_NUM_THREADS"])  # in what a new process inherits
+        start(process)
+
+    monkeypatch.setattr(quick_starts, "start", started)
+    crew = Crew(1, attempt)
     with ending(crew.end):
-        for _, outcome in crew.play([job(5 * k, tmp_path) for k in range(3)]):
-            processes.append(outcome.error)
-            words = Path(f"/proc/{outcome.error}/environ").read_bytes().split(b"\0")
-            assert b"OMP_NUM_THREADS=1" in words
+        processes = [outcome.error for _, outcome in crew.play([job(5 * k, tmp_path) for k in range(3)])]
     assert [processes.count(p) for p in dict.fromkeys(processes)] == [2, 1]
+    assert threads == ["1", "1"]
     assert os.environ["OMP_NUM_THREADS"] == "7", "this process keeps its own"

@@ -19,6 +19,7 @@ pytest.importorskip("av", reason="av is not installed; the extra demos brings it
 import av
 import pyarrow.parquet as pq
 
+from hazard_ms.agents.base import PrivilegedAgent
 from hazard_ms.demonstrations.export import lerobot
 from hazard_ms.demonstrations.export.source import Source
 from hazard_ms.demonstrations.options import RecordOptions
@@ -29,13 +30,34 @@ from hazard_ms.lerobot import ENV_ID
 from hazard_ms.lerobot.environment import RobotEnv
 from hazard_ms.lerobot.hub import make_env
 from hazard_ms.lerobot.sizes import ACTIONS, FRAMES, STATES, frames_of
+from hazard_ms.skills.actions import wait
+from hazard_ms.skills.brief import Brief
+from hazard_ms.skills.decision import STOP, Action, Decision
+from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.motor.motion import turn_by
 from tests.worlds.registering import practising
 
 pytestmark = pytest.mark.render
-EPISODE = EpisodeOptions(agent="tests.demonstrations.test_recorder:Told", seed=11, scene="kitchen_a/03")
+EPISODE = EpisodeOptions(agent="tests.lerobot.test_environment:Turns", seed=11, scene="kitchen_a/03")
 EXAMPLE = Path(__file__).parents[2] / "examples" / "lerobot" / "env.py"
 CAMERAS = ("head", "wrist", "shoulder")
 MOST_OFF = 6.0  # of a film's colours, which are compressed, in the mean [levels]
+FEWEST = 8  # frames of the recording
+
+
+class Turns(PrivilegedAgent):
+    """Waits, turns by half a radian, and stops: a short episode, since each of its frames is drawn six times."""
+
+    def attach(self, env: SkillEnv) -> None:
+        self.env = env
+
+    def reset(self, brief: Brief) -> None:
+        return
+
+    def act(self, decision: Decision) -> Action:
+        self.env.run(wait(self.env.stage, 3))
+        self.env.run(turn_by(self.env.stage, 0.5))
+        return Action(STOP)
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +93,7 @@ def test_the_actions_of_a_dataset_give_its_states_and_pictures_again(exported: P
     env = gym.make(ENV_ID, task=episode["env_id"], cameras=CAMERAS[1:], **json.loads(episode["settings"]))
     seen, _ = env.reset(seed=episode["seed"], options={"scene": episode["scene"], "lerobot_new_rollout": True})
     moved, apart = np.zeros_like(seen["agent_pos"]), list[float]()
-    assert [len(shown) for shown in films.values()] == [len(rows["action"])] * 3 and len(rows["action"]) > 20
+    assert [len(shown) for shown in films.values()] == [len(rows["action"])] * 3 and len(rows["action"]) >= FEWEST
     for number, (state, action) in enumerate(zip(rows["observation.state"], rows["action"], strict=True)):
         np.testing.assert_array_equal(seen["agent_pos"], np.array(state, np.float32))
         assert set(seen["pixels"]) == set(CAMERAS)

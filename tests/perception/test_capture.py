@@ -130,7 +130,9 @@ def command(options: CaptureOptions, output: Path, *more: str) -> list[str]:
 
 
 def test_pictures_of_the_first_frame_show_what_no_hazard_has_changed(tmp_path: Path) -> None:
-    options = CaptureOptions(scenes=("kitchen_a/03",), per_scene=9, size=64, last_frame=0, output=tmp_path)
+    options = CaptureOptions(
+        scenes=("kitchen_a/03",), per_scene=9, size=64, last_frame=0, backend="serial", output=tmp_path
+    )
     assert capture(options) == 0
     rows = rows_of(tmp_path / "HazardFire-v1")
     assert {image["frame"] for image in rows["images"]} == {0}

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import copy
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from hazard_ms.cli.__main__ import main
 from hazard_ms.perception import layout
 from hazard_ms.perception.coco import box_of, run_lengths
 from hazard_ms.perception.score import average_precision, read_results, score
@@ -150,21 +149,13 @@ def test_ids_and_crowds_that_pycocotools_needs_are_asked_for(
         score(tmp_path, tmp_path / "found.json", "test")
 
 
-def test_the_command_scores_an_empty_list(truth: dict[str, Any], tmp_path: Path) -> None:
+def test_the_command_scores_an_empty_list(
+    truth: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / layout.instances("test")).write_text(json.dumps(truth))
     (tmp_path / "found.json").write_text("[]")
-    command = [
-        sys.executable,
-        "-m",
-        "hazard_ms.cli",
-        "perception",
-        "score",
-        str(tmp_path),
-        str(tmp_path / "found.json"),
-    ]
-    run = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
-    assert run.returncode == 0, run.stderr
-    assert run.stdout.count("| all | 4 | 0.000 | 0.000 | 0.000 |") == 2, "boxes and masks"
+    assert main(["perception", "score", str(tmp_path), str(tmp_path / "found.json")]) == 0
+    assert capsys.readouterr().out.count("| all | 4 | 0.000 | 0.000 | 0.000 |") == 2, "boxes and masks"
 
 
 @pytest.mark.parametrize("text", ["", "{}", '{"annotations": []}', "[1]", '[{"image_id": 1}]'])

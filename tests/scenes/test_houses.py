@@ -164,9 +164,9 @@ def test_fires_begin_in_different_rooms_and_water_at_two_outer_doors(name: str) 
 
 
 def test_homes_differ_in_size_and_layout() -> None:
-    made = [scene(name) for name in scene_names("test", "house")[:16]]
-    assert len({s.room.size for s in made}) >= 12
-    assert len({tuple(sorted(a.name for a in s.room.areas)) for s in made}) >= 5
+    made = [scene(name) for name in scene_names("test", "house")[:8]]
+    assert len({s.room.size for s in made}) >= 6
+    assert len({tuple(sorted(a.name for a in s.room.areas)) for s in made}) >= 4
     assert {len(rooms_of(s)) for s in made} == {4, 6, 8}
     begin = [o.open for s in made for o in s.room.openings if o.open is not None]
     assert 0.6 < np.mean([share == 1.0 for share in begin]) < 0.95 and {0.0, 0.3} < set(begin)

@@ -1,4 +1,4 @@
-"""500 actions that cannot be done: each gives a ValueError or a documented failure; none hangs or does harm."""
+"""250 actions that cannot be done: each gives a ValueError or a documented failure; none hangs or does harm."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def holding(played: Played) -> Played:
 
 
 @given(data=st.data())
-@settings(max_examples=150, **QUIET)
+@settings(max_examples=75, **QUIET)
 def test_what_is_no_action_is_refused(data: st.DataObject) -> None:
     """An unknown verb, a verb or a target that is not text, or no target where one is needed."""
     kind = data.draw(st.sampled_from(["verb", "target", "missing"]))
@@ -138,7 +138,7 @@ def test_what_is_no_action_is_refused(data: st.DataObject) -> None:
 
 
 @given(data=st.data())
-@settings(max_examples=190, **QUIET)
+@settings(max_examples=95, **QUIET)
 def test_unknown_names_and_things_that_are_no_actions_are_refused(played: Played, data: st.DataObject) -> None:
     """The error names the value and what there is; nothing has happened."""
     kind = data.draw(st.sampled_from(["name", "needless", "type"]))
@@ -160,7 +160,7 @@ def test_unknown_names_and_things_that_are_no_actions_are_refused(played: Played
 
 
 @given(data=st.data())
-@settings(max_examples=80, **QUIET)
+@settings(max_examples=40, **QUIET)
 def test_with_an_empty_hand(played: Played, data: st.DataObject) -> None:
     """Dropping nothing; walking to what was never seen; picking up furniture, or a thing that is not a target."""
     kind = data.draw(st.sampled_from(["drop", "walk", "pick"]))
@@ -185,7 +185,7 @@ def test_then_a_look_around_works(played: Played) -> None:
 
 
 @given(data=st.data())
-@settings(max_examples=80, **QUIET)
+@settings(max_examples=40, **QUIET)
 def test_with_a_full_hand(holding: Played, data: st.DataObject) -> None:
     """Picking up anything; walking to what is in the hand; dropping it into what is not a container."""
     kind = data.draw(st.sampled_from(["pick", "pick", "walk", "drop"]))

@@ -22,6 +22,12 @@ from hazard_ms.web.playing.process import main, play
 from hazard_ms.web.rescue import Rescue, Taken, asked_for, journal, keep, read
 
 
+@pytest.fixture(autouse=True)
+def few_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Films have a picture a second: drawing takes most of the time."""
+    monkeypatch.setattr(keeping, "EVERY", 30)
+
+
 class Page(threading.Thread):
     """Looks around once, asks about a thing, sends what is not valid, and stops."""
 
@@ -78,7 +84,7 @@ def test_a_rescue_is_played_and_kept_and_its_replay_is_equal(tmp_path: Path) -> 
     folder.mkdir()
     ours, theirs = multiprocessing.Pipe()
     page = Page(ours)
-    rescue = asked_for({"seed": 0, "every": 8}, ())
+    rescue = asked_for({"seed": 0, "every": 16}, ())
     play(Link(theirs), rescue, folder)
     theirs.close()
     page.join(10)

@@ -32,11 +32,18 @@ FIRST, SECOND = "episodes/HazardFire-v1-0000.json", "episodes/HazardFire-v1-0001
 Row = dict[str, Any]
 
 
-def short_episode(seed: int, **settings: Any) -> EpisodeResult:
+def short_episode(seed: int) -> EpisodeResult:
     """A real episode of three decisions in the test split."""
-    options = EpisodeOptions(**{"split": "test", "seed": seed, "agent": SHORT, **settings})
-    result = attempt(Job(options, 60.0), ignore).result
+    result = attempt(Job(EpisodeOptions(split="test", seed=seed, agent=SHORT), 60.0), ignore).result
     assert result is not None and len(result.decisions) == 3
+    return result
+
+
+def begun_episode(seed: int, **settings: Any) -> EpisodeResult:
+    """A real episode in the test split that is stopped at once."""
+    options = EpisodeOptions(**{"split": "test", "seed": seed, "agent": SHORT, **settings})
+    result = attempt(Job(options, 60.0, actions=()), ignore).result
+    assert result is not None and [decision.verb for decision in result.decisions] == [STOP]
     return result
 
 

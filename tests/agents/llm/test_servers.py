@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
@@ -77,14 +78,19 @@ def answering(body: dict[str, Any]) -> Act:
     return lambda handler, request: send(handler, 200, body)
 
 
-BOMB = gzip.compress(gzip.compress(b"") + bytes(300_000_000), 1)
+@cache
+def bomb() -> bytes:
+    """A megabyte that unpacks to 300."""
+    return gzip.compress(gzip.compress(b"") + bytes(300_000_000), 1)
+
+
 ENDLESS = {
     "endless 200": endless(200),
     "endless 401": endless(401),
     "endless 500": endless(500),
     "dripping 401": endless(401, b" ", 0.05),
-    "packed 200": lambda handler, request: send(handler, 200, BOMB, packed=True),
-    "packed 500": lambda handler, request: send(handler, 500, BOMB, packed=True),
+    "packed 200": lambda handler, request: send(handler, 200, bomb(), packed=True),
+    "packed 500": lambda handler, request: send(handler, 500, bomb(), packed=True),
     "headers": lambda handler, request: (
         [handler.wfile.write(b"HTTP/1.1 200 OK\r\n")]
         and [handler.wfile.write(b"X: " + b"a" * 1000 + b"\r\n") for _ in range(10**6)]

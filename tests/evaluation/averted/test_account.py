@@ -27,7 +27,7 @@ from hazard_ms.tasks.flood import hazard_flood
 from tests.worlds.registering import registered_task
 
 TASKS = {"HazardYard-v1": hazard_fire, "HazardPool-v1": hazard_flood}
-FRAMES = 240
+FRAMES = 150
 ROOM = SceneSpec(  # a table 1 m ahead of the robot, a pan beside it, a fire at its back
     name="test/room",
     room=Room((8.0, 8.0)),

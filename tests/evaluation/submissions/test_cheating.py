@@ -29,12 +29,12 @@ from tests.worlds.submissions import (
     SHORT,
     TRIAL,
     Row,
+    begun_episode,
     changed,
     honest,
     ignore,
     report_of,
     rescored,
-    short_episode,
 )
 
 
@@ -152,10 +152,10 @@ def test_other_decisions_and_another_start_are_named(episodes: list[EpisodeResul
     edited = replace(record, decisions=(replace(record.decisions[0], verb=EXPLORE),) * 2 + record.decisions[2:])
     _, found = compared(edited, again(edited))
     assert found and found[0].kind in (faults.COURSE, faults.HASH, faults.CUT)
-    lied = replace(short_episode(0, physics="realistic"), settings=record.settings)
+    lied = replace(begun_episode(0, physics="realistic"), settings=record.settings)
     _, found = compared(lied, again(lied))
     assert [fault.kind for fault in found] == [faults.START]
-    elsewhere = replace(short_episode(0, scene="kitchen_b/07"), scene=record.scene)
+    elsewhere = replace(begun_episode(0, scene="kitchen_b/07"), scene=record.scene)
     _, found = compared(elsewhere, again(elsewhere))
     assert [fault.kind for fault in found] == [faults.START]
 

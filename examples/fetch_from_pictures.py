@@ -16,7 +16,7 @@ of DAgger without playing: Ross et al., AISTATS 2011). Where the thing is not in
 It sees all that is before it at the full resolution of its camera, in which a thing 4 m away is three pixels wide.
 Beside what it sends it foresees whether it has arrived, and where the thing then is before it: nothing acts on the
 latter, but who foresees it learns sooner what to look for. If nothing is in the hand TAKES tenths of a second after it
-has arrived, it turns to a side and walks again.
+has arrived, it backs off and walks again.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ from hazard_ms.skills.motor.navigation import plan
 VIEWS = ["far", "near"]  # of the policy that walks
 ENV = {"task": "HazardFetch-v1", "cameras": ["wrist"], "every": 3, "robot_uids": "fetch"}
 LOOKS = 2  # actions of a walk that are carried out before it looks again
-TAKES = 45  # tenths of a second in which something must be in the hand; 99 % of demonstrations need less than 30
-AWAY = 6  # tenths of a second in which it turns left then, by about 100 degrees
+TAKES = 30  # tenths of a second in which something must be in the hand; 99 % of demonstrations need less
+BACK = 6  # tenths of a second in which it drives back then, by 0.3 m
 ARRIVED, MORE, TURN = -3, 3, -4  # where it foresees whether it has arrived; numbers beside an action; where it turns
 EDGE = np.pi / 3  # where pictures end to the left and right [rad]
 CELL, BESIDE = 0.05, 0.02  # of the plan of a room; least distance of the robot's side from anything where it looks [m]
@@ -163,18 +163,18 @@ class Fetching:
     def __init__(self, walks: Path, takes: Path) -> None:
         self.walker, self.taker = act.Policy(walks), act.Policy(takes)
         self.since: int | None = None  # the step since which it takes
-        self.until = 0  # the step until which it turns away from where it took nothing
+        self.until = 0  # the step until which it backs off from where it took nothing
 
     def coming(self, seen: dict[str, Any], steps: int) -> np.ndarray:
         """The actions to carry out before it is asked again, [K, A], after `steps` of an episode."""
         if steps == 0:
             self.since, self.until = None, 0
         if self.since is not None and steps - self.since >= TAKES and not seen["agent_pos"][-1]:
-            self.since, self.until = None, steps + AWAY
+            self.since, self.until = None, steps + BACK
         if self.since is None:
             foreseen = self.walker.act(seen)
             if steps < self.until:
-                foreseen[:, TURN - 1 : ARRIVED + 1] = 0.0, 1.0, 0.0
+                foreseen[:, TURN - 1 : ARRIVED + 1] = -1.0, 0.0, 0.0
             on_the_way = int((foreseen[:, ARRIVED] < 0.5).cumprod().sum())
             if on_the_way:
                 return foreseen[: min(on_the_way, LOOKS), :-MORE]

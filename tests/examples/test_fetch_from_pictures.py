@@ -167,9 +167,9 @@ def test_one_walks_until_it_has_arrived_and_again_where_nothing_is_taken(
     assert done == ["walk", "walk", "walk", "take"]
     who.coming(empty, 3 + example.TAKES - 1)
     who.coming(full, 3 + example.TAKES)
-    away = who.coming(empty, 3 + example.TAKES + 4)  # it let go: it turns left, though it has arrived
-    assert done[4:] == ["take", "take", "walk"] and away[:, 11:].tolist() == [[0.0, 1.0]] * example.LOOKS
-    who.coming(empty, 3 + example.TAKES + 4 + example.AWAY)
+    away = who.coming(empty, 3 + example.TAKES + 4)  # it let go: it backs off, though it has arrived
+    assert done[4:] == ["take", "take", "walk"] and away[:, 11:].tolist() == [[-1.0, 0.0]] * example.LOOKS
+    who.coming(empty, 3 + example.TAKES + 4 + example.BACK)
     assert done[7:] == ["walk", "take"]
     arrived[:] = 0.0
     assert not who.coming(empty, 0)[:, 11:].any()  # of the next episode

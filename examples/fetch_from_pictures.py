@@ -1,9 +1,11 @@
 """Walk to a thing, take it and put it into the bag, from pictures: one policy walks, another takes.
 
-    python examples/fetch_from_pictures.py look learned/looks.npz
-    python examples/fetch_from_pictures.py walk learned/looks.npz --out learned/walk
+    python examples/fetch_from_pictures.py look learned/calm.npz
+    python examples/fetch_from_pictures.py look learned/fire.npz --each 12 --seed 1 --hazards fire
+    python examples/fetch_from_pictures.py look learned/flood.npz --each 8 --seed 2 --hazards flood
+    python examples/fetch_from_pictures.py walk learned/calm.npz learned/{fire,fire,flood,flood}.npz --out learned/walk
     hazard-ms demos record -e HazardStow-v1 --load hazard_ms.tasks.practice -a oracle \\
-        --obs rgb --cameras head+wrist --perturb control:2 --no-verify -n 600 -o demos
+        --obs rgb --cameras head+wrist --perturb control:2 --no-verify -n 300 -o demos
     python examples/act_from_pictures.py train demos/HazardStow-v1/oracle --out learned/take
     python examples/fetch_from_pictures.py play learned/walk learned/take --episodes 25
 
@@ -41,6 +43,7 @@ TAKES = 30  # tenths of a second in which something must be in the hand; 99 % of
 BACK = 6  # tenths of a second in which it drives back then, by 0.3 m
 ARRIVED, MORE, TURN = -3, 3, -4  # where it foresees whether it has arrived; numbers beside an action; where it turns
 EDGE = np.pi / 3  # where pictures end to the left and right [rad]
+FRAMES = 12  # from one look beside a hazard to the next
 CELL, BESIDE = 0.05, 0.02  # of the plan of a room; least distance of the robot's side from anything where it looks [m]
 END, FACING = 0.7, 0.1  # a walk ends so far from the thing [m], turned to it so well [rad]
 NEAR, ELSEWHERE, CLOSE_BY = (0.45, 1.3), 0.4, 0.6  # looks from near [m]; chances that they go to a stand, are from near
@@ -115,16 +118,25 @@ class Plan:
         return np.array(rows)
 
 
-def look(out: Path, /, *, each: int = 60, rooms: int = 100, seed: int = 0) -> None:
-    """Look from `each` places in `rooms` rooms of `train`, and write the pictures and what a walk sends from there."""
+def look(
+    out: Path, /, *, each: int = 70, rooms: int = 90, seed: int = 0, split: str = "train", hazards: act.Names = ()
+) -> None:
+    """Look from `each` places in `rooms` rooms, and write the pictures and what a walk sends from there.
+
+    Beside hazards such as fire, FRAMES pass from one look to the next.
+    """
     importlib.import_module("hazard_ms.tasks.practice")
-    env = gym.make("hazard_ms.lerobot:HazardRobot-v1", split="train", render_mode=None, **{**ENV, "cameras": []})
+    settings = {**ENV, "cameras": [], **({"hazards": list(hazards)} if hazards else {})}
+    env = gym.make("hazard_ms.lerobot:HazardRobot-v1", split=split, render_mode=None, **settings)
     base, chance = env.unwrapped.env.unwrapped, np.random.default_rng(seed)
     pictures, chunks = {view: [] for view in VIEWS}, []
     for number in range(rooms):
-        env.reset(seed=0, options={"scene": f"practice/{number}"})
-        room, rest = Plan(base), base.agent.action(0.0, 0.0, base.agent.tucked, True)[: TURN - 1 + MORE]
+        env.reset(seed=seed, options={"scene": f"practice/{number}"})
+        room, rest = Plan(base), base.agent.action(0.0, 0.0, base.agent.tucked, True)
         for _ in range(each):
+            for _ in range(FRAMES if hazards else 0):
+                env.unwrapped.env.step(rest)
+            room.thing = base.world.position[0, 0, :2].cpu().numpy().astype(float)  # a flood may carry it off
             pose = room.look(chance)
             at = torch.from_numpy(pose).float()
             base.agent.place(torch.tensor([0]), at[None, :2], at[2:])
@@ -132,7 +144,7 @@ def look(out: Path, /, *, each: int = 60, rooms: int = 100, seed: int = 0) -> No
             for view in VIEWS:
                 pictures[view].append(act.small(seen, view))
             walk = room.walk(pose)
-            chunks.append(np.concatenate([np.tile(rest, (len(walk), 1)), walk], 1))
+            chunks.append(np.concatenate([np.tile(rest[: TURN - 1 + MORE], (len(walk), 1)), walk], 1))
         print(f"room {number}: {len(chunks)} looks", flush=True)
     env.close()
     out.parent.mkdir(parents=True, exist_ok=True)

@@ -52,6 +52,7 @@ in 18 with the seed 0 from 283 demonstrations of HazardStow-v1 in calm with `--p
 looks beside a fire and 720 in a flood. `fetch-1` walks by what it learned from all these looks in 16 minutes with the
 seed 1 (2,655 steps), and takes by what it learned in 14 (2,855 steps). That
 `fetch_calm-0` failed in the first four rooms beside a fire was seen before the looks beside hazards were added.
+Of fewer than 25 rooms time allowed the first.
 Written at
 {machine}.
 

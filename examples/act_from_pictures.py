@@ -36,6 +36,7 @@ VIEWS = {
     "head": ("head", (3 / 8, 3 / 16, 5 / 8, 5 / 8), (96, 96)),
     "wrist": ("wrist", (0.0, 0.0, 1.0, 1.0), (96, 96)),
     "far": ("head", (3 / 8, 0.0, 1 / 4, 1.0), (64, 256)),  # a thing 4 m away is as wide as three of its pixels
+    "near": ("head", (1 / 2, 0.0, 1 / 2, 1.0), (64, 128)),
 }
 POINTS = 64  # features whose places in a picture are told
 CHUNK, CARRIED = 10, 4  # actions that it foresees; those that are carried out before it looks again
@@ -135,13 +136,13 @@ def sent(one: Any) -> np.ndarray:
     return np.stack([actions[frame : frame + every].mean(0) for frame in range(0, len(actions), every)])
 
 
-def rows_of(one: Any, views: list[str], actions: np.ndarray, part: slice = slice(None)) -> Rows:
-    """The rows of `part` of the pictures of a demonstration, from what is sent after each picture, [T, A]."""
-    at, last = np.arange(0, len(one.frames["action"]), one.meta["every"]), len(actions) - 1
+def rows_of(one: Any, views: list[str]) -> Rows:
+    """The rows of a demonstration, one for each picture."""
+    actions, at = sent(one), np.arange(0, len(one.frames["action"]), one.meta["every"])
     body = felt(one.frames["qpos"][at], one.frames["held"][at] >= 0)
-    chunks = actions[np.minimum(np.arange(len(at))[:, None] + np.arange(CHUNK), last)]
-    pictures = [torch.from_numpy(film(one.films[VIEWS[view][0]], view)[: len(at)][part]) for view in views]
-    return Rows(pictures, torch.from_numpy(body[part]).float(), torch.from_numpy(chunks[part]).float())
+    chunks = actions[np.minimum(np.arange(len(at))[:, None] + np.arange(CHUNK), len(at) - 1)]
+    pictures = [torch.from_numpy(film(one.films[VIEWS[view][0]], view)[: len(at)]) for view in views]
+    return Rows(pictures, torch.from_numpy(body).float(), torch.from_numpy(chunks).float())
 
 
 def read(folders: list[Path]) -> list[Any]:
@@ -155,12 +156,13 @@ def read(folders: list[Path]) -> list[Any]:
 def train(folders: list[Path], /, *, out: Path, minutes: float = 30.0, seed: int = 0) -> None:
     """Train for some minutes on the datasets in `folders`, and write the policy."""
     every = read(folders)
-    views = [*every[0].films]
-    learn(every[0], views, [rows_of(one, views, sent(one)) for one in every], out, minutes, seed)
+    views, one = [*every[0].films], every[0]
+    env = {"task": one.result.env_id, "cameras": views[1:], "every": one.meta["every"], "robot_uids": one.meta["robot"]}
+    learn(env, views, [rows_of(one, views) for one in every], out, minutes, seed)
 
 
-def learn(one: Any, views: list[str], rows: list[Rows], out: Path, minutes: float, seed: int) -> None:
-    """Train on `rows`, and write the policy, to be played as `one` was recorded; one that is there goes on learning."""
+def learn(env: dict[str, Any], views: list[str], rows: list[Rows], out: Path, minutes: float, seed: int) -> None:
+    """Train on `rows`, and write the policy, to be played in `env`; one that is there already goes on learning."""
     torch.manual_seed(seed)
     pictures = [[seen for part in rows for seen in part.pictures[view]] for view in range(len(views))]  # not copied
     body, chunks = (torch.cat([getattr(part, name) for part in rows]) for name in ("body", "chunks"))
@@ -168,9 +170,7 @@ def learn(one: Any, views: list[str], rows: list[Rows], out: Path, minutes: floa
     for name, numbers in (("felt", body), ("sent", chunks.flatten(0, 1))):
         getattr(model, name).copy_(torch.stack([numbers.mean(0), numbers.std(0).clamp(min=LEAST)]))
     out.mkdir(parents=True, exist_ok=True)
-    env = {"task": one.result.env_id, "cameras": [*one.films][1:], "every": one.meta["every"]}
-    settings = {"views": views, "env": {**env, "robot_uids": one.meta["robot"]}}
-    (out / "settings.json").write_text(json.dumps(settings, indent=1))
+    (out / "settings.json").write_text(json.dumps({"views": views, "env": env}, indent=1))
     if (out / "policy.safetensors").exists():
         model.load_state_dict(load_file(out / "policy.safetensors"))
     start, done, losses = time.monotonic(), 0.0, []

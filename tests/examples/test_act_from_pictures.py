@@ -53,7 +53,7 @@ def dataset(tmp_path_factory: pytest.TempPathFactory, practice: Any) -> Path:
 
 def test_rows_are_what_was_seen_and_what_was_done_from_then_on(example: Any, dataset: Path) -> None:
     (one,) = example.read([dataset])
-    rows = example.rows_of(one, [*one.films], example.sent(one))
+    rows = example.rows_of(one, [*one.films])
     actions, last = one.frames["action"], (len(one.frames["action"]) - 1) // EVERY
     assert [view.shape for view in rows.pictures] == [(last + 1, 3, 96, 96)] * 2
     assert rows.body.shape == (last + 1, 13)

@@ -83,7 +83,8 @@ def tried(checkout: Path, tests: list[str]) -> tuple[int, str]:
     environment = {**os.environ, "PYTHONPATH": str(checkout), "TMPDIR": str(checkout / "tmp"), "OMP_NUM_THREADS": "1"}
     environment["PYTHONDONTWRITEBYTECODE"] = "1"  # nobody runs the code of this folder again
     command = [sys.executable, "-m", "pytest", "-x", "-v", "--no-header", "--tb=no", "-p", "no:cacheprovider"]
-    command += ["--long", *tests]  # whatever an entry names is to notice its mistake, however long it takes
+    command += ["--long"] if all("::" in test for test in tests) else []  # tests that are named, not whole files
+    command += tests
     with subprocess.Popen(
         command, cwd=checkout, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True
     ) as run:

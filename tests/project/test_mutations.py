@@ -79,7 +79,7 @@ def test_the_expected_tests_come_first_then_the_room_then_all_that_import_the_fi
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    """A checkout with one test of a sum, and one that fails whatever is done."""
+    """A checkout with two tests of a sum, of which one is long, and one that fails whatever is done."""
     place = tmp_path / "checkout"
     (place / "hazard_ms").mkdir(parents=True)
     (place / "tests").mkdir()
@@ -87,7 +87,11 @@ def checkout(tmp_path: Path) -> Path:
     (place / "hazard_ms/sum.py").write_text("def add(a, b):\n    return a + b\n")
     (place / "tests/test_sum.py").write_text(
         "import pytest\nfrom hazard_ms.sum import add\n\n"
-        "@pytest.mark.parametrize('a', [2], ids=['2 - 2 FAILED?'])\ndef test_sum(a):\n    assert add(a, 2) == 4\n"
+        "@pytest.mark.parametrize('a', [2], ids=['2 - 2 FAILED?'])\ndef test_sum(a):\n    assert add(a, 2) == 4\n\n"
+        "def test_long(request):\n    assert not request.config.getoption('--long') or add(2, 3) == 5\n"
+    )
+    (place / "tests/conftest.py").write_text(
+        "def pytest_addoption(parser):\n    parser.addoption('--long', action='store_true')\n"
     )
     (place / "tests/test_ill.py").write_text("def test_ill():\n    assert False\n")
     return place
@@ -113,6 +117,12 @@ def test_what_no_test_notices_is_printed_and_ends_with_1(
     assert lines[2] == "survivor now a * b in hazard_ms/sum.py: It breaks."
     assert lines[3].startswith("2 mutations, 1 survivors, ")
     assert (checkout / "hazard_ms/sum.py").read_text().endswith("a + b\n")  # they were made in copies
+
+
+def test_a_long_test_that_is_named_is_run(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """2 * 3 is not 5."""
+    monkeypatch.setattr(runner, "stages", lambda mutation: [[mutation.tests], [f"{mutation.tests}::test_long"]])
+    assert runner.judge(mistake("a * b"), checkout).noticed_by == "tests/test_sum.py::test_long"
 
 
 @pytest.mark.long

@@ -51,8 +51,8 @@ in 18 with the seed 0 from 283 demonstrations of HazardStow-v1 in calm with `--p
 `fetch-0` takes the same way, and its walk learned on for 9 minutes with the seed 20 (1,866 steps), also from 1,080
 looks beside a fire and 720 in a flood. `fetch-1` walks by what it learned from all these looks in 16 minutes with the
 seed 1 (2,655 steps), and takes by what it learned in 14 (2,855 steps); `fetch-2` the same with the seed 2, each in 14
-minutes (3,864 and 4,188 steps, with most of a core each). That `fetch_calm-0` failed in the first four rooms beside a fire was
-seen before the looks beside hazards were added. Of fewer than 25 rooms time allowed the first.
+minutes (3,864 and 4,188 steps, with most of a core each). That `fetch_calm-0` failed in the first four rooms beside a
+fire was seen before the looks beside hazards were added. Of fewer than 25 rooms time allowed the first.
 Written at
 {machine}.
 

@@ -11,9 +11,11 @@ from pathlib import Path
 import pytest
 
 from hazard_ms.cli.__main__ import main
-from hazard_ms.evaluation.submissions.commitments import Commitments, Hidden, Published, check, draw
+from hazard_ms.evaluation.submissions.commitments import LARGEST, Commitments, Hidden, Published, check, draw
+from hazard_ms.evaluation.submissions.tracks import PUBLISHED
 from hazard_ms.scenes.schema import to_json
 from hazard_ms.scenes.splits import spare_scene
+from hazard_ms.spec.foreign import plain
 
 FIRE, WIND = "HazardFire-v1", "HazardWind-v1"
 
@@ -81,3 +83,12 @@ def test_a_set_is_drawn_and_checked_by_the_command(tmp_path: Path, capsys: pytes
     secret.write_text(json.dumps(changed))
     assert main(["commitments", str(file), "--published", str(secret)]) == 2
     assert "scene 0 of HazardFire-v1 must be the one that was committed" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("file", sorted((Path(__file__).parents[3] / "results" / "hidden").glob("*.json")))
+def test_a_set_of_ours_has_25_scenes_of_each_task_and_tells_nothing_of_them(file: Path) -> None:
+    told = plain.made(Commitments, plain.read(file, LARGEST), str(file))
+    assert told.name == file.stem
+    assert {task: len(own) for task, own in told.hashes.items()} == dict.fromkeys(PUBLISHED, 25)
+    assert len({one for own in told.hashes.values() for one in own}) == 25 * len(PUBLISHED)
+    assert set(json.loads(file.read_text())) == {"name", "hashes", "format"}

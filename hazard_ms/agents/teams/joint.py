@@ -24,13 +24,14 @@ from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import Plan, Problem
 from hazard_ms.registry.mitigations import PUBLISHED, TELL
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
+from hazard_ms.skills.decision import EXPLORE, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.skills.telling import LONGEST
 
 MOST_LABELS = 2_000  # of the search for the plan of one robot, while it is open who fetches what [ours]
 APART = 2.0  # distance from where another robot works within which none begins to [m] [ours: twice a reach of 1 m]
 STANDING = 1.2  # distance from one that stands, its arm tucked, within which none begins to [m] [ours: a reach, a base]
+SOON = 4.0  # way within which a robot that walks to its work keeps others from there [m] [ours: above two walks of 100 frames]
 PUSH = "push"  # the verb of pushing the cart at hand to a thing
 TURNS = 3  # looks around in a row with which it waits for its turn at most [ours]
 
@@ -86,7 +87,11 @@ class Joint(TeamAgent):
             if action.target is not None and _measure(action, decision):
                 self._measures[name] = action.target
             self._work[name] = places_of(decision, action)
-            if self._work[name] or action.verb == STOP:  # what a robot that has stopped is near to is not lost
+            leaves = action.verb in (WALK_TO, WALK_ONE_STEP)
+            if leaves:  # where it will be only later is free for others
+                here = decision.agent_position
+                self._work[name] = [place for place in self._work[name] if math.dist(place, here) <= SOON]
+            if self._work[name] or leaves or action.verb == STOP:  # what one that has stopped is near to is not lost
                 self._stands.pop(name)
             made[name] = action
         self.notes = notes

@@ -51,5 +51,21 @@ def test_what_lies_in_a_shelf_is_not_behind_it() -> None:
     height, _ = floor_with_wall(2.0)
     places = np.array([[-1.0, -3.0], [1.0, -3.0], [1.0, 1.7]])
     assert behind(height, CELL, ORIGIN, places, GOAL).tolist() == [True, False, False]
-    assert not behind(height, CELL, ORIGIN, places, (0.05, -3.0)).any()  # in what is tall itself
+    assert not behind(height, CELL, ORIGIN, places[:2], (0.05, -3.0)).any()  # in what is tall itself
     assert not behind(height, CELL, ORIGIN, places[:0], GOAL).any()
+
+
+def test_nobody_reaches_through_a_shelf_lengthwise_or_through_the_wall_at_its_back() -> None:
+    """A shelf is 1 m wide and 0.4 m deep, its back at a wall of 0.2 m; what stands in it has its middle at the origin."""
+    height = np.zeros((SIZE, SIZE), np.float32)
+    height[45:55, 48:52] = 1.9  # x from -0.2 to 0.2 m, y from -0.5 to 0.5 m
+    height[:, 46:48] = 2.4  # the wall, x from -0.4 to -0.2 m
+    front, beside, through = [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]
+    assert behind(height, CELL, ORIGIN, np.array([front, beside, through]), (0.0, 0.0)).tolist() == [False, True, True]
+
+
+def test_another_tall_thing_hides_what_stands_in_a_shelf() -> None:
+    height = np.zeros((SIZE, SIZE), np.float32)
+    height[45:55, 48:52] = 1.9
+    height[:, 58:60] = 2.4  # a wall at x from 0.8 to 1.0 m
+    assert behind(height, CELL, ORIGIN, np.array([[0.6, 0.0], [1.2, 0.0]]), (0.0, 0.0)).tolist() == [False, True]

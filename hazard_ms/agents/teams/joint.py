@@ -24,12 +24,14 @@ from hazard_ms.planning.orienteering import solve
 from hazard_ms.planning.problem import Plan, Problem
 from hazard_ms.registry.mitigations import PUBLISHED, TELL
 from hazard_ms.skills.brief import Brief
-from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
+from hazard_ms.skills.decision import EXPLORE, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
+from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.skills.telling import LONGEST
 
 MOST_LABELS = 2_000  # of the search for the plan of one robot, while it is open who fetches what [ours]
 APART = 2.0  # distance from where another robot works within which none begins to [m] [ours: twice a reach of 1 m]
 STANDING = 1.2  # distance from one that stands, its arm tucked, within which none begins to [m] [ours: a reach, a base]
+SOON = 4.0  # way within which a robot that walks to its work keeps others from there [m] [ours: above two walks of 100 frames]
 PUSH = "push"  # the verb of pushing the cart at hand to a thing
 TURNS = 3  # looks around in a row with which it waits for its turn at most [ours]
 
@@ -57,7 +59,8 @@ class Joint(TeamAgent):
 
     def act(self, decisions: Mapping[str, Decision]) -> dict[str, Action]:
         for name, decision in decisions.items():
-            self._aims.pop(name, None)
+            if decision.last_result is None or decision.last_result.reason not in UNFINISHED:
+                self._aims.pop(name, None)
             self._measures.pop(name, None)
             self._work.pop(name, None)
             self._stands[name] = decision.agent_position
@@ -74,6 +77,9 @@ class Joint(TeamAgent):
             notes[name] = self._partners[name].note
             if action.verb == STOP and self.fetched(name):
                 action, notes[name] = Action(EXPLORE), "it may be needed when another fails"
+            self._aims.pop(name, None)
+            if decision.held is not None:
+                self._aims[name] = decision.held
             if action.verb == STOP:
                 self._ahead.pop(name, None)
             elif action.verb in APPROACH and action.target is not None:
@@ -81,7 +87,11 @@ class Joint(TeamAgent):
             if action.target is not None and _measure(action, decision):
                 self._measures[name] = action.target
             self._work[name] = places_of(decision, action)
-            if self._work[name] or action.verb == STOP:  # what a robot that has stopped is near to is not lost
+            leaves = action.verb in (WALK_TO, WALK_ONE_STEP)
+            if leaves:  # where it will be only later is free for others
+                here = decision.agent_position
+                self._work[name] = [place for place in self._work[name] if math.dist(place, here) <= SOON]
+            if self._work[name] or leaves or action.verb == STOP:  # what one that has stopped is near to is not lost
                 self._stands.pop(name)
             made[name] = action
         self.notes = notes
@@ -121,12 +131,12 @@ class Joint(TeamAgent):
     def shared(self, name: str, ahead: Outlook, left_out: Collection[str] = ()) -> Outlook:
         """The part of what lies `ahead` of the robot `name` that is left to it, without what is `left_out`."""
         self._ahead[name] = ahead
-        taken = self.fetched(name) | self._rescued
+        taken = set(self._aims.values()) | self._rescued
         others = [other for other in self._ahead if other != name]
         first = self._planned([name, *others], taken)
         last = self._planned([*others, name], taken)
         order = first if _sum(first) >= _sum(last) else last
-        before: set[str] = set(taken)
+        before: set[str] = self.fetched(name) | self._rescued
         for other, (plan, goals) in order.items():
             if other == name:
                 break

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -19,6 +20,7 @@ REACHED_ERROR = 0.05  # position error at which a posture counts as reaching its
 CARRIED = 0.6  # the arm counts as folded when every joint is this close; it goes on to fold while the base drives [rad]
 THERE = 0.06  # a posture is reached when every joint is this close [rad]
 REACH_FRAMES = 60  # budget of one movement of the arm [frames]
+STARTING = 20  # frames by which the base takes longer for a way than at full speed, at least [ours]
 ADVANCE = 0.06  # least decrease of the joint gap that counts as progress, or of the way left by as many frames [rad]
 STALLED_FRAMES = 4  # frames without progress after which something must be in the way
 HOVER = 0.1  # height above a thing from which the hand comes down on it [m] [ours]
@@ -121,7 +123,9 @@ def follow(stage: Stage, route: Route, done: Callable[[], bool] = never, close: 
     used, at = 0, 0.0
     for leg in route.legs:
         last = leg is route.legs[-1]
-        moved = yield from go(stage, leg.arm, REACH_FRAMES, done, close if last else leg.near, leg.ahead - at)
+        driven = abs(leg.ahead - at) / stage.robot.build.forward_step
+        frames = max(REACH_FRAMES, math.ceil(driven) + STARTING)
+        moved = yield from go(stage, leg.arm, frames, done, close if last else leg.near, leg.ahead - at)
         used, at = used + moved.frames, leg.ahead
         if last or not moved.ok or done():
             break

@@ -19,7 +19,7 @@ from hazard_ms.simulation.world import rotate
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Result
-from hazard_ms.skills.motor.arm import REACH_FRAMES, fold, fold_until, follow, go, lacking
+from hazard_ms.skills.motor.arm import CARRIED, REACH_FRAMES, fold, fold_until, follow, go, lacking
 from hazard_ms.skills.motor.grasping import LIMIT, SHUT_FRAMES, come_near
 from hazard_ms.skills.motor.kinematics import Posture, lifted, solve
 from hazard_ms.skills.motor.motion import turn_to
@@ -41,6 +41,7 @@ MARGIN = 0.06  # least distance from the walls of the basket to what falls into 
 FALL_FRAMES = 10  # frames in which it falls in [ours]
 DRIVE_ON = 0.9  # most that the base drives straight on while the arm unfolds: the arm takes as long [m] [ours]
 HIT_COST = 20.0  # what a point of the arm in a cart counts as much as: carts do not give way [frames] [ours]
+RETREAT = 0.5  # how far it draws back from a cart before it tries another posture [m] [ours]
 TRIES = 2  # number of postures that are tried
 SIDES = tuple(np.deg2rad([75.0, 45.0, 15.0, -15.0]).tolist())  # how far down the fingers point [rad] [ours]
 
@@ -119,6 +120,8 @@ def _into_cart(stage: Stage, index: int, held: int) -> Skill:
         used += (yield from fold(stage, basket.place)).frames
         if lowered.ok:
             return Result(True, frames=used)
+        if len(tried) < TRIES:  # where the arm met the cart it has no room to unfold
+            used += (yield from go(stage, stage.robot.tucked, REACH_FRAMES, close=CARRIED, forward=-RETREAT)).frames
     return Result(False, failures.CART_UNREACHABLE, used)
 
 
@@ -151,7 +154,7 @@ def _way(stage: Stage, basket: Basket, held: int, tried: set[int]) -> Way | None
     """
     surface, back, heading = Surface(stage, basket.place), lacking(stage) + DRAW_BACK, stage.robot.base()[2]
     carried = _carried(stage, held)
-    best: Way | None = None
+    best, least = None, np.inf
     ends = ((spot, min(ahead, DRIVE_ON)) for spot in basket.spots for ahead in standings(stage, spot))
     for number, ((spot, ahead), down) in enumerate(itertools.product(ends, SIDES)):
         if number in tried:
@@ -159,11 +162,12 @@ def _way(stage: Stage, basket: Basket, held: int, tried: set[int]) -> Way | None
         moved = ahead * np.array([np.cos(heading), np.sin(heading), 0.0])
         for posture in _postures(stage, spot - moved, carried, down):
             above = lifted(stage.robot, posture.arm, RAISED)
-            if best is not None and stage.arm_gap(above) / stage.robot.build.arm_step >= best.route.cost:
+            lowered = HIT_COST * surface.hits([Leg(above, ahead), Leg(posture.arm, ahead)])
+            if stage.arm_gap(above) / stage.robot.build.arm_step + lowered >= least:
                 continue
             route = quickest(stage, [Leg(above, ahead)], surface, back, hit_cost=HIT_COST)
-            if best is None or route.cost < best.route.cost:
-                best = Way(number, route, posture.arm)
+            if route.cost + lowered < least:
+                best, least = Way(number, route, posture.arm), route.cost + lowered
     return best
 
 

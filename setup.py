@@ -31,7 +31,8 @@ setup(
     long_description=(ROOT / "README.md").read_text(encoding="utf-8") if (ROOT / "README.md").exists() else "",
     long_description_content_type="text/markdown",
     author="The authors of hazard_ms",
-    license="Apache-2.0 AND CC-BY-3.0 AND CC-BY-3.0-US AND CC0-1.0",  # the code's, and those of models and textures
+    # the licence of the code, and those of models and textures
+    license_expression="Apache-2.0 AND CC-BY-3.0 AND CC-BY-3.0-US AND CC0-1.0",
     license_files=["LICENSE", "assets/ATTRIBUTION.md"],
     python_requires=">=3.10,<3.13",
     keywords=["robotics", "embodied AI", "simulation", "reinforcement learning", "imitation learning", "ManiSkill"],

@@ -110,7 +110,6 @@ def bill(lock: str) -> dict[str, Any]:
                 "name": "hazard_ms",
                 "version": __version__,
                 "purl": ours,
-                "licenses": [{"license": {"id": "Apache-2.0"}}],
             },
         },
         "components": [component(pin) for pin in pins if pin],

@@ -39,7 +39,7 @@ def purl(name: str, version: str) -> str:
 def stated(about: importlib.metadata.PackageMetadata) -> Iterator[str]:
     """Licences that the metadata of a package state, the most exact first."""
     yield from about.get_all("License-Expression") or ()
-    text = about.get("License") or ""
+    text = (about.get_all("License") or [""])[0]
     if "\n" not in text and text not in ("", "UNKNOWN") and len(text) <= LONGEST_NAME:
         yield text
     for classifier in about.get_all("Classifier") or ():

@@ -23,7 +23,7 @@ from tests.worlds.files.checkout import (
     small_checkout,
 )
 
-LOCKS = ("requirements.lock", "requirements-uv.txt", "requirements-local-llm.txt")
+LOCKS = ("requirements.lock", "requirements-uv.txt", "requirements-local-llm.txt", "requirements-release.txt")
 
 pytestmark = pytest.mark.setup
 LOCKED_EXTRAS = ("rl", "pictures", "demos", "docs", "test")  # the others serve users, not our own checks

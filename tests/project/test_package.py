@@ -6,7 +6,9 @@ where `./run` and the lock set up what they need.
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import subprocess
 import sys
 import tarfile
@@ -15,7 +17,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.worlds.files.checkout import ROOT, build, source_copy
+from hazard_ms.registry.version import __version__
+from tests.worlds.files.checkout import PYTHONS, ROOT, build, installed_uv, source_copy
 
 pytestmark = pytest.mark.setup
 UNSHIPPED_ASSETS = {"build"}  # the scripts that made the models
@@ -59,7 +62,24 @@ def test_the_wheel_holds_the_package_its_assets_and_the_licence(wheel: Path) -> 
         names = {name for name in archive.namelist() if not name.endswith("/")}
     about = {name.split("/", 1)[1] for name in names if ".dist-info/" in name}
     assert {name for name in names if ".dist-info/" not in name} == expected_in_wheel()
-    assert about == {"licenses/LICENSE", "METADATA", "WHEEL", "RECORD", "entry_points.txt", "top_level.txt"}
+    licences = {"licenses/LICENSE", "licenses/assets/ATTRIBUTION.md"}
+    assert about == licences | {"METADATA", "WHEEL", "RECORD", "entry_points.txt", "top_level.txt"}
+
+
+def test_the_wheel_says_what_it_is_and_under_which_licences(wheel: Path) -> None:
+    """Fields that PyPI refuses are refused here; every licence of a model stands beside that of the code."""
+    from packaging.metadata import Metadata
+
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
+        told = Metadata.from_email(archive.read(name), validate=True)
+    assert told.name == "hazard_ms" and str(told.version) == __version__ and told.author and told.summary
+    assert told.description == (ROOT / "README.md").read_text() and told.description_content_type == "text/markdown"
+    licences = {entry["licence"] for entry in json.loads((ROOT / "assets/index.json").read_text())}
+    assert told.license_expression
+    assert set(told.license_expression.split(" AND ")) == {"Apache-2.0"} | (licences - {"own work"})
+    pythons = {text.rpartition(" ")[2] for text in told.classifiers if text.startswith("Programming Language :: ")}
+    assert told.requires_python and pythons == {text for text in PYTHONS if told.requires_python.contains(text)}
 
 
 def test_the_sdist_holds_what_the_wheel_is_built_from(sdist: Path, wheel: Path, tmp_path: Path) -> None:
@@ -116,3 +136,32 @@ def test_pip_installs_from_another_directory(source: Path, tmp_path: Path) -> No
     command = [sys.executable, str(target / "bin/hazard-ms"), "version"]
     said = subprocess.run(command, cwd=tmp_path, env=environ, capture_output=True, text=True, check=False)
     assert said.returncode == 0 and "hazard_ms" in said.stdout, said.stderr
+
+
+@pytest.mark.long
+@pytest.mark.timeout(3600)
+def test_the_wheel_brings_all_that_an_episode_needs(wheel: Path, tmp_path: Path) -> None:
+    """Installed into an empty environment with what it asks for, in the versions of the lock, it plays a rescue.
+
+    Downloads gigabytes, where uv has not kept them.
+    """
+    uv = installed_uv()
+    if uv is None:
+        pytest.skip("not started by ./run")
+    kept = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
+    base = getattr(sys, "_base_executable", sys.executable)
+    subprocess.run(
+        [str(uv / "bin/uv"), "venv", "--quiet", "--python", base, "bare"], cwd=tmp_path, env=kept, check=True
+    )
+    constraints = ["-c", str(ROOT / "requirements.lock"), "--overrides", str(ROOT / "requirements-overrides.txt")]
+    subprocess.run(
+        [str(uv / "bin/uv"), "pip", "install", "--quiet", "--no-build", "--python", "bare", str(wheel), *constraints],
+        cwd=tmp_path,
+        env=kept,
+        check=True,
+    )
+    command = [str(tmp_path / "bare/bin/hazard-ms"), *"play -e HazardFire-v1 --agent greedy -s 0".split()]
+    played = subprocess.run(command, cwd=tmp_path, env=kept, capture_output=True, text=True, check=False)
+    assert played.returncode == 0, played.stderr[-3000:]
+    found = re.search(r"greedy rescued (\d+) of \d+ targets", played.stdout)
+    assert found and int(found[1]) > 0, played.stdout

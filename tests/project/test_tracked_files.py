@@ -8,7 +8,7 @@ import pytest
 
 from tests.worlds.files.checkout import ROOT
 
-FOLDERS = {".ci", "assets", "docs", "examples", "hazard_ms", "results", "tests"}
+FOLDERS = {".ci", ".github", "assets", "docs", "examples", "hazard_ms", "results", "tests"}
 LARGEST = 46_000_000  # of all files together [bytes]; they have 42 million, 7 of them weights of a detector [ours]
 
 

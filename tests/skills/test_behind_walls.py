@@ -56,7 +56,7 @@ def test_what_lies_in_a_shelf_is_not_behind_it() -> None:
 
 
 def test_nobody_reaches_through_a_shelf_lengthwise_or_through_the_wall_at_its_back() -> None:
-    """A shelf is 1 m wide and 0.4 m deep, its back at a wall of 0.2 m; what stands in it has its middle at the origin."""
+    """A shelf, 1 m wide and 0.4 m deep, stands with its back at a wall of 0.2 m; the goal is in its middle."""
     height = np.zeros((SIZE, SIZE), np.float32)
     height[45:55, 48:52] = 1.9  # x from -0.2 to 0.2 m, y from -0.5 to 0.5 m
     height[:, 46:48] = 2.4  # the wall, x from -0.4 to -0.2 m

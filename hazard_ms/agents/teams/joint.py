@@ -31,7 +31,7 @@ from hazard_ms.skills.telling import LONGEST
 MOST_LABELS = 2_000  # of the search for the plan of one robot, while it is open who fetches what [ours]
 APART = 2.0  # distance from where another robot works within which none begins to [m] [ours: twice a reach of 1 m]
 STANDING = 1.2  # distance from one that stands, its arm tucked, within which none begins to [m] [ours: a reach, a base]
-SOON = 4.0  # way within which a robot that walks to its work keeps others from there [m] [ours: above two walks of 100 frames]
+SOON = 4.0  # way within which a robot that walks to its work keeps others from there [m] [ours: above two walks]
 PUSH = "push"  # the verb of pushing the cart at hand to a thing
 TURNS = 3  # looks around in a row with which it waits for its turn at most [ours]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import pytest
@@ -10,9 +10,14 @@ import torch
 
 from hazard_ms.registry import ROBOTS
 from hazard_ms.skills import failures
-from hazard_ms.skills.context import LowLevel
-from hazard_ms.skills.motor.grasping import pick_up
+from hazard_ms.skills.context import LowLevel, Skill, Stage
+from hazard_ms.skills.decision import Result
+from hazard_ms.skills.motor import stowing
+from hazard_ms.skills.motor.arm import follow
+from hazard_ms.skills.motor.grasping import come_near, pick_up
+from hazard_ms.skills.motor.routes import Route
 from hazard_ms.skills.motor.stowing import drop
+from hazard_ms.skills.motor.surface import Leg, Surface
 from tests.worlds.arena import Arena, Box
 
 SIZE = (0.56, 0.94, 1.02)  # of a cart [m]
@@ -88,6 +93,48 @@ def test_from_farther_away_the_base_drives_on_while_the_arm_unfolds(street: Aren
         assert abs(x - X) < SIDE and abs(y) < END
         frames.append(street.stage.frame - began)
     assert frames[1] - frames[0] < 0.85 * WALK * BACK, frames
+
+
+def test_the_base_has_time_for_the_whole_way_of_a_leg(street: Arena) -> None:
+    """A metre takes longer than a movement of the arm may."""
+    begin(street)
+    street.agent.place(torch.tensor([0]), torch.tensor([[-3.0, 0.0]]), torch.tensor([0.0]))
+    leg = Leg(street.stage.robot.arm(), 1.1)
+    assert street.run(follow(street.stage, Route((leg,), 0.0, 0))).ok
+    assert street.stage.robot.base()[0] == pytest.approx(-1.9, abs=0.05)
+
+
+def test_a_second_try_begins_with_room_before_the_cart(street: Arena, monkeypatch: pytest.MonkeyPatch) -> None:
+    cart = begin(street)
+    assert street.run(pick_up(street.stage, street.index("can"))).ok
+    lower, tries = stowing._lower_into, list[tuple[int, float]]()
+
+    def failing_first(stage: Stage, cart: int, held: int, way: stowing.Way) -> Skill:
+        tries.append((way.number, stage.robot.base()[0]))
+        return (yield from lower(stage, cart, held, way)) if len(tries) > 1 else Result(False)
+
+    monkeypatch.setattr(stowing, "_lower_into", failing_first)
+    street.run(drop(street.stage, cart))
+    assert street.stage.held == -1
+    (first, near), (second, far) = tries
+    assert first != second and near - far > 0.3
+
+
+def test_the_way_down_into_a_basket_counts(street: Arena, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the arm would lie in something once it is down, another posture is taken."""
+    cart = begin(street)
+    assert street.run(pick_up(street.stage, street.index("can"))).ok
+    street.run(come_near(street.stage, street.stage.position(cart)))
+    basket, hits = stowing._basket(street.stage, cart), Surface.hits
+    chosen = stowing._way(street.stage, basket, street.stage.held, set())
+    assert chosen is not None
+
+    def hit(self: Surface, legs: Sequence[Leg], enough: float = np.inf) -> int:
+        return 100 if np.array_equal(legs[-1].arm, chosen.arm) else hits(self, legs, enough)
+
+    monkeypatch.setattr(Surface, "hits", hit)
+    other = stowing._way(street.stage, basket, street.stage.held, set())
+    assert other is not None and not np.array_equal(other.arm, chosen.arm)
 
 
 def test_a_thing_stays_in_the_hand_where_no_basket_is_within_reach(street: Arena) -> None:

@@ -39,7 +39,7 @@ HOLDS_ON = 0.01
 # share of what would be lost that measures must avert beyond rescues alone to be begun where things drift: they take
 # longer than planned, and rescues wait meanwhile [measured: in house_flood_test_1/03 two boards that were to avert 2 %
 # more took 1,000 frames, and less was averted than by rescues alone]
-LEAST_IN_WATER = 0.15
+LEAST_IN_WATER = 0.1
 ENOUGH = 0.3  # distance from where a fire is fought at which a walk there ends [hazard_ms.skills.mitigations.views]
 SAME_PLACE = 1.5  # distance within which a fire, or a door, is the one that was there [m] [ours]
 

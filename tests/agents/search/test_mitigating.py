@@ -213,3 +213,12 @@ def test_it_does_not_shut_a_door_for_what_is_in_no_danger_or_too_late() -> None:
     dry.map.levels[0] = np.where(np.isfinite(dry.map.levels[0]), 0.0, np.nan)
     for given in (dry, wet(2000)):
         assert begun("planner", told).act(given) != SHUT
+
+
+def test_it_does_not_shut_a_door_for_a_fiftieth_of_what_it_would_lose() -> None:
+    """With six books for 200 each on this side of the door it averts 607 instead of 593, if all goes as planned."""
+    given = with_more_in_the_west(wet())
+    dear = tuple(replace(target, value=200.0) if target.index > len(NAMES) else target for target in given.targets)
+    dry = {index: replace(sighting, levels=(0.0,)) for index, sighting in given.map.objects.items()}
+    given.map.objects = dry
+    assert begun("planner", home("HazardHouseFlood-v1")).act(replace(given, targets=dear)) != SHUT

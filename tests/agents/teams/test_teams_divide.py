@@ -13,7 +13,8 @@ from hazard_ms.agents.teams.auction import Auction
 from hazard_ms.agents.teams.joint import Joint, places_of
 from hazard_ms.planning.problem import Problem
 from hazard_ms.planning.travel import StaticTravel
-from hazard_ms.skills.decision import WALK_TO, Action
+from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action, Result
+from hazard_ms.skills.failures import MAX_FRAMES
 
 
 def decision(place: tuple[float, float], seen: dict[str, tuple[float, float]], **more: Any) -> Any:
@@ -74,6 +75,56 @@ def test_a_joint_plan_leaves_to_others_what_they_alone_can_fetch() -> None:
     team._rescued, team._aims = set(), {"r0": "b"}  # on its way there, whatever would be better
     assert team.shared("r1", lying_ahead(10.0)).problem.values == (5.0, 0.0)
     assert team.fetched("r0") == set() and team.fetched("r1") == {"b"}
+
+
+def test_a_robot_is_not_robbed_of_what_it_is_on_its_way_to() -> None:
+    """r0 at 10 m can fetch a or b, r1 at 0 m a alone: r0 would leave a to it, unless it is on its way to a."""
+    team = Joint()
+    team._ahead, team._aims, team._rescued = {}, {}, set()
+    assert team.shared("r1", lying_ahead(0.0)).problem.values == (5.0, 3.0)
+    assert team.shared("r0", lying_ahead(10.0)).problem.values == (0.0, 3.0)
+    team._aims = {"r0": "a"}
+    assert team.shared("r0", lying_ahead(10.0)).problem.values == (5.0, 3.0)
+
+
+class Fixed(Joint):
+    """A team of one robot, r0, that is at `place` and always does `action`; `known`: its aims while it chose."""
+
+    def __init__(self, place: tuple[float, float], action: Action) -> None:
+        super().__init__()
+        self.reset({})
+        self.place, self.action, self.known = place, action, dict[str, str]()
+        self._partners = {"r0": SimpleNamespace(act=self._chosen, note="")}  # type: ignore[dict-item]
+
+    def _chosen(self, _: Any) -> Action:
+        self.known = dict(self._aims)
+        return self.action
+
+    def asked(self, result: Result | None) -> None:
+        seen = {"a": (5.0, 0.0)}
+        more = {"last_result": result, "tools": (), "walked_up_to": None}
+        told = decision(self.place, seen)
+        self.act({"r0": SimpleNamespace(**{**vars(told), **more})})  # type: ignore[dict-item]
+
+
+def test_a_robot_keeps_its_aim_while_its_walk_is_unfinished() -> None:
+    team = Fixed((0.0, 0.0), Action(WALK_TO, "a"))
+    team.asked(None)
+    for result, kept in ((Result(False, MAX_FRAMES, 100), {"r0": "a"}), (Result(True, frames=60), {})):
+        team.asked(result)
+        assert team.known == kept and team.fetched("r1") == {"a"}
+    team.action = Action(EXPLORE)
+    team.asked(Result(False, MAX_FRAMES, 100))
+    assert team.fetched("r1") == set()
+
+
+def test_work_keeps_others_away_once_a_robot_will_soon_be_there() -> None:
+    """a lies at 5 m: a walk from 0.9 m leaves the place to others, one from 1.1 m does not, nor does a reach."""
+    for x, action, busy in ((0.9, WALK_TO, False), (1.1, WALK_TO, True), (0.9, PICK_UP, True)):
+        team = Fixed((x, 0.0), Action(action, "a"))
+        team.asked(None)
+        assert team.crowded("r1", [(5.5, 0.0)]) == busy
+        assert not team.crowded("r1", [(x, 0.5)])  # it does not stay where it is, or works elsewhere
 
 
 def test_nobody_begins_within_reach_of_where_another_robot_works() -> None:

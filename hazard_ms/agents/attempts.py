@@ -16,6 +16,7 @@ from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_ONE_STEP, WAL
 from hazard_ms.skills.failures import NO_PATH, UNFINISHED
 
 ENCLOSED = 2  # things to which there is no path, from which it is the robot that cannot get away [ours]
+AT_ONCE = 1  # frames of what fails before anything moves: none, or in a team one
 # verbs whose failures agents count by themselves, or that have none
 COUNTED = (WALK_TO, WALK_ONE_STEP, PICK_UP, EXPLORE)
 FEW = 2  # failures of one action from one place, after which something else is done [ours]
@@ -53,19 +54,23 @@ class Enclosure:
     """Tells from failed walks that no way leads out of where the robot stands."""
 
     def __init__(self) -> None:
-        self._no_path: set[str] = set()  # things to which there was no path, one after another
+        self._no_path: dict[str, int] = {}  # how often there was no path to things, one after another
 
-    def noticed(self, decision: Decision) -> bool:
-        """Whether there is no way to one thing after another: not they are to blame, but where the robot stands."""
-        last, result = decision.last_action, decision.last_result
-        if last is None or result is None or last.target is None or result.reason != NO_PATH or result.frames:
-            self._no_path.clear()
-            return False
-        self._no_path.add(last.target)
-        if len(self._no_path) < ENCLOSED:
-            return False
-        self._no_path.clear()
-        return True
+    def noticed(self, decision: Decision) -> dict[str, int]:
+        """The failed walks to each thing where there is no way to one after another; none where there may be ways.
+
+        Not these things are to blame, but where the robot stands.
+        """
+        last, result, found = decision.last_action, decision.last_result, self._no_path
+        stays = result is not None and result.reason == NO_PATH and result.frames <= AT_ONCE
+        if last is None or last.target is None or not stays:
+            self._no_path = {}
+            return {}
+        found[last.target] = found.get(last.target, 0) + 1
+        if len(found) < ENCLOSED:
+            return {}
+        self._no_path = {}
+        return found
 
 
 class Repeats:

@@ -7,11 +7,12 @@ from unittest.mock import patch
 
 import pytest
 
-from hazard_ms.agents.attempts import FEW, MANY, Repeats
+from hazard_ms.agents.attempts import FEW, MANY, Enclosure, Repeats
 from hazard_ms.agents.base import agent
 from hazard_ms.agents.search.memory import Memory
-from hazard_ms.skills.decision import DROP, EXPLORE, WALK_ONE_STEP, WALK_TO, Action, Decision, Result
-from hazard_ms.skills.failures import BLOCKED, MAX_FRAMES
+from hazard_ms.agents.search.searcher import MOST_WAITS
+from hazard_ms.skills.decision import DROP, EXPLORE, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision, Result
+from hazard_ms.skills.failures import BLOCKED, MAX_FRAMES, NO_PATH
 from tests.worlds import playground
 from tests.worlds.playground import Playground, play
 
@@ -115,3 +116,45 @@ def test_the_memory_counts_what_ended_unfinished_where_it_began() -> None:
         last = {"last_action": SHUT, "last_result": Result(False, MAX_FRAMES, 100)}
         memory.note(replace(ground.decision(), agent_position=place, **last))
         assert memory.failures.get("shut door_0", 0) == failures
+
+
+@dataclass
+class Barred(Playground):
+    """A playground in which no way leads anywhere until a frame: what the robot ran into seems to be around it."""
+
+    until: int = 300
+
+    def _walk(self, name: str) -> Result:
+        return Result(False, NO_PATH, 0) if self.frame < self.until else super()._walk(name)
+
+
+THREE = {"a": (2.0, 0.0), "b": (0.0, 2.0), "c": (-2.0, 0.0)}
+
+
+@pytest.mark.parametrize("who", ["planner", "mcts:simulations=50"])
+def test_who_cannot_get_away_does_not_give_up_what_it_cannot_get_to(who: str) -> None:
+    ground = Barred(dict(THREE), {"a": 5.0, "b": 5.0, "c": 5.0})
+    taken = play(agent(who), ground, most=60)
+    assert ground.rescued == {"a", "b", "c"}
+    assert 3 <= sum(action.verb == EXPLORE for action in taken) <= 6  # of 60 frames each, and the first
+
+
+def test_it_waits_so_long_only_once() -> None:
+    """Where no way leads anywhere for good, it ends."""
+    ground = Barred(dict(THREE), {"a": 5.0, "b": 5.0, "c": 5.0}, until=10_000)
+    taken = play(agent("planner"), ground, most=80)
+    assert taken[-1].verb == STOP and sum(action.verb == EXPLORE for action in taken) <= 1 + MOST_WAITS + 2
+
+
+def test_enclosed_is_who_has_no_way_to_one_thing_after_another() -> None:
+    ground = looked()
+    walk = {name: Action(WALK_TO, name) for name in ("beside", "near")}
+
+    def told(made: Enclosure, last: Action, reason: str, frames: int) -> dict[str, int]:
+        return made.noticed(replace(ground.decision(), last_action=last, last_result=Result(False, reason, frames)))
+
+    made = Enclosure()
+    assert told(made, walk["near"], NO_PATH, 0) == {} == told(made, walk["near"], NO_PATH, 1)  # it may be walled in
+    assert told(made, walk["beside"], NO_PATH, 0) == {"near": 2, "beside": 1}
+    assert told(made, walk["near"], NO_PATH, 0) == {} == told(made, walk["beside"], NO_PATH, 40)  # it came away
+    assert told(made, walk["beside"], NO_PATH, 0) == {} == told(made, walk["near"], BLOCKED, 0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import abc
 from typing import NamedTuple
 
-from hazard_ms.agents.attempts import Repeats
+from hazard_ms.agents.attempts import Enclosure, Repeats
 from hazard_ms.agents.base import Agent, distance, known, open_targets
 from hazard_ms.agents.gale.aims import aims_of
 from hazard_ms.agents.search.memory import Memory
@@ -13,7 +13,7 @@ from hazard_ms.agents.search.mitigating import Mitigator
 from hazard_ms.agents.search.outlook import Outlook, Weights, outlook
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
-from hazard_ms.skills.failures import TOO_FAR
+from hazard_ms.skills.failures import NO_PATH, TOO_FAR
 from hazard_ms.skills.motor.walking import MIDPOINT
 from hazard_ms.spec.checks import whole
 
@@ -22,6 +22,7 @@ REACH = 0.2  # way to a target from which it is picked up without walking up to 
 DROP_WAY = 0.7  # way left to a cart from which a drop drives on by itself, while the arm unfolds [m] [ours]
 DOUBTFUL = 0.3  # doubt about a target from which it is looked at on the way before it is walked up to [ours]
 CLOSER = 1.5  # length of the way from which that is done [m] [ours]
+MOST_WAITS = 6  # looks around of 60 frames in a row where no way leads anywhere [hazard_ms.skills.context: BUMP_MEMORY]
 GIVE_UP = 4  # failures with one thing, after which it is given up [ours]
 MOST_FAILURES = 100  # any larger number to give up at must be a mistake [ours]
 
@@ -57,7 +58,7 @@ class Searcher(Agent):
         acts = self._mitigate and brief.several_rooms and brief.averted and brief.mitigations
         self._mitigator = Mitigator(brief, self._memory) if acts else None
         self._gale = aims_of(brief, self._mitigate)
-        self._repeats = Repeats(bool(brief.mitigations))
+        self._repeats, self._enclosure, self._waits = Repeats(bool(brief.mitigations)), Enclosure(), 0
         self._goal: tuple[str, frozenset[str]] | None = None  # where it goes to search, and the targets known then
 
     def act(self, decision: Decision) -> Action:
@@ -67,7 +68,7 @@ class Searcher(Agent):
             self._mitigator.note(decision)
         if self._gale is not None:
             self._gale.see(decision)
-        action = self.asked(decision, self._brief.verb) or self._choose(decision)
+        action = self.asked(decision, self._brief.verb) or self._waiting(decision) or self._choose(decision)
         if (other := self._repeats.instead(decision, action)) is not None:
             action = self._say(self._repeats.note, other)
         self._memory.chose(decision, action)
@@ -122,6 +123,19 @@ class Searcher(Agent):
         if not near and self._doubtful(decision, name) and ahead.way(begin.goal) > CLOSER:
             return self._say(f"closer first: {begin.why}", Action(WALK_ONE_STEP, name))
         return self._say(begin.why, Action(PICK_UP if near else WALK_TO, name))
+
+    def _waiting(self, decision: Decision) -> Action | None:
+        """A look around where no way leads anywhere: after a time, what it ran into bars no more ways."""
+        blamed, last, result = self._enclosure.noticed(decision), decision.last_action, decision.last_result
+        if last is not None and last.verb in (WALK_TO, WALK_ONE_STEP) and result and result.reason != NO_PATH:
+            self._waits = 0
+        if not blamed or self._waits == MOST_WAITS:
+            return None
+        for name, times in blamed.items():
+            if name in self._memory.failures:
+                self._memory.failures[name] -= min(times, self._memory.failures[name])
+        self._waits += 1
+        return self._say("no way leads anywhere now", Action(EXPLORE))
 
     def _doubtful(self, decision: Decision, name: str) -> bool:
         """Whether a target may well be something else, so that a closer look may change the plan."""

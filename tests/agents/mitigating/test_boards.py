@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 
 from hazard_ms.agents.base import agent
+from hazard_ms.agents.teams.oracle import TeamOracle
 from hazard_ms.evaluation.runner import Runner
 from hazard_ms.sketch.futures.interventions import BLOCK, Intervention, foresee
 from hazard_ms.sketch.futures.surroundings import free_boards, inlets_of
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.team import TeamSkills
 from hazard_ms.spec import AgentStart, Body, Opening, Room, SceneSpec, Task
 from hazard_ms.tasks.house import hazard_house_flood
 from tests.worlds.registering import registered_task
@@ -96,3 +98,25 @@ def test_the_oracle_sets_boards_into_both_doors_before_it_rescues(env: SkillEnv)
         assert decision.last_result is not None
         done += [action.verb] if decision.last_result.ok else []
     assert done.count("block") == 2 and not inlets_of(env.base.world)
+
+
+@pytest.mark.render
+def test_two_oracles_set_one_board_each(env: SkillEnv) -> None:
+    """Never both at one door, nor with one board."""
+    pair = TeamSkills.make(TASK, ("fetch", "fetch"), sensor_configs={"width": 128, "height": 128}, effects="off")
+    decisions, _ = pair.reset(seed=0)
+    team = TeamOracle()
+    team.attach(pair)
+    team.reset({name: pair.brief(name) for name in pair.names})
+    set_by: dict[str, str] = {}
+    while len(set_by) < 2 and pair.frame < 1200:
+        decisions, _, _, info = pair.step(team.act(decisions))
+        begun = [seer.begun for seer in team._seers.values()]
+        held = [int(member.hand.held[0]) for member in pair.base.members]
+        assert not begun[0] & begun[1] and (held[0] != held[1] or held[0] < 0)
+        for name, result in info["results"].items():
+            last = pair.decision(name).last_action
+            if result.ok and last is not None and last.verb == "block":
+                set_by[str(last.target)] = name
+    pair.close()
+    assert len(set_by) == 2 == len(set(set_by.values())) and not inlets_of(pair.base.world)

@@ -9,28 +9,31 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from hazard_ms.agents.mitigating.prospects import FETCH, Part
-from hazard_ms.agents.oracle import Oracle
-from hazard_ms.agents.team import PrivilegedTeam
+from hazard_ms.agents.oracle import LOYALTY_ADRIFT, Oracle
+from hazard_ms.agents.team import APPROACH, PrivilegedTeam
 from hazard_ms.agents.teams.sharing import APART, TURNS, Sharing, place_of
 from hazard_ms.agents.truth import Future, Truth
 from hazard_ms.planning.averting import averting
-from hazard_ms.planning.problem import Problem
+from hazard_ms.planning.problem import Plan, Problem
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.context import Stage
-from hazard_ms.skills.decision import EXPLORE, STOP, WALK_TO, Action, Decision
+from hazard_ms.skills.decision import EXPLORE, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
+from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.skills.team import TeamSkills
 
-FAR = 2.0 * APART  # distance from where another robot works from which a walk there need not wait [m] [ours]
+FAR = 2.0 * APART  # distance of a thing from which a walk to it keeps nobody away, and need not wait [m] [ours]
+BESIDE = 0.8  # distance from one that stands, its arm tucked, within which none begins to [m] [ours: it knows of it]
 
 
 class TeamOracle(Sharing, PrivilegedTeam):
     """Oracles that divide what they rescue, and what they do about hazards."""
 
+    standing = BESIDE
     _env: TeamSkills | None = None
 
     def attach(self, env: TeamSkills) -> None:
@@ -50,11 +53,32 @@ class TeamOracle(Sharing, PrivilegedTeam):
         return made
 
     def act(self, decisions: Mapping[str, Decision]) -> dict[str, Action]:
-        return super().act({name: self._seers[name].told(decision) for name, decision in decisions.items()})
+        made = super().act({name: self._seers[name].told(decision) for name, decision in decisions.items()})
+        for name, action in made.items():
+            if action.verb not in APPROACH and decisions[name].held is None:
+                self._aims.pop(name, None)
+        return made
 
     def _ended(self, name: str, decision: Decision) -> None:
         super()._ended(name, decision)
         self._stands.pop(name)  # who is asked before it does not wait for it to go
+        last, result = decision.last_action, decision.last_result
+        if last is None or last.target is None or result is None or decision.held is not None:
+            return
+        if last.verb in (WALK_TO, WALK_ONE_STEP) and (result.ok or result.reason in UNFINISHED):
+            self._aims[name] = last.target
+
+    def _planned(self, names: Sequence[str], taken: Collection[str]) -> dict[str, Plan]:
+        """What a robot was on its way to is left to it until it has chosen something else."""
+        return super()._planned(names, {*taken, *self._aims.values()})
+
+    def keeps_away(self, decision: Decision, action: Action) -> bool:
+        """Not a walk to what is far: who is there is done before it ends."""
+        return action.verb != WALK_TO or _is_near(decision, action.target)
+
+    def crowded_things(self, name: str, decision: Decision) -> set[str]:
+        """Those that are not far: there another one may be done before this robot comes."""
+        return {thing for thing in super().crowded_things(name, decision) if _is_near(decision, thing)}
 
     def forget(self, name: str) -> None:
         """The robot `name` plans to fetch nothing."""
@@ -111,6 +135,7 @@ class _Seer(Oracle):
 
     def reset(self, brief: Brief) -> None:
         super().reset(brief)
+        self._loyalty = LOYALTY_ADRIFT  # what others fetch changes plans, too
         self._crowded: set[str] = set()
         self._waited = 0
 
@@ -141,14 +166,9 @@ class _Seer(Oracle):
         if denied and not (waits and any(tool.held for tool in decision.tools)):
             denied, action = False, self._without_measures(decision, truth)
         later = action.verb == STOP and any(t.name in self._crowded and not t.rescued for t in decision.targets)
-        far = action.verb == WALK_TO and self._away(decision, action.target) > FAR
-        waits &= denied or later or (action.target in self._crowded and not far)
+        waits &= denied or later or action.target in self._crowded
         self._waited = self._waited + 1 if waits else 0
         return self._say("another robot is at work there", Action(EXPLORE)) if waits else action
-
-    def _away(self, decision: Decision, thing: str | None) -> float:
-        """The distance to a thing on the map [m]; 0 where it is not there."""
-        return math.dist(decision.agent_position, place_of(decision, thing) or decision.agent_position)
 
     def _without_measures(self, decision: Decision, truth: Truth) -> Action:
         """What it does if it does nothing about the hazard now."""
@@ -176,3 +196,8 @@ class _Seer(Oracle):
     def _arrived_at(self, decision: Decision, truth: Truth, planned: int) -> int:
         index = super()._arrived_at(decision, truth, planned)
         return planned if decision.names[index] in self._team.fetched(self._name) else index
+
+
+def _is_near(decision: Decision, thing: str | None) -> bool:
+    place = place_of(decision, thing)
+    return place is None or math.dist(decision.agent_position, place) <= FAR

@@ -49,6 +49,8 @@ class Goals(Protocol):
 class Sharing(TeamAgent):
     """Agents that each plan for one robot, and leave to the others what these fetch and are at."""
 
+    standing = STANDING
+
     def reset(self, briefs: Mapping[str, Brief]) -> None:
         self._partners = {name: self._partner(name) for name in briefs}
         for name, brief in briefs.items():
@@ -86,14 +88,19 @@ class Sharing(TeamAgent):
                 self._aims[name] = action.target
             if action.target is not None and _measure(action, decision):
                 self._measures[name] = action.target
-            self._work[name] = places_of(decision, action)
-            if self._work[name] or action.verb == STOP:  # what a robot that has stopped is near to is not lost
+            places = places_of(decision, action)
+            self._work[name] = places if self.keeps_away(decision, action) else []
+            if places or action.verb == STOP:  # what a robot that has stopped is near to is not lost
                 self._stands.pop(name, None)
             else:
                 self._stands[name] = decision.agent_position
             made[name] = action
         self.notes = notes
         return made
+
+    def keeps_away(self, decision: Decision, action: Action) -> bool:
+        """Whether an action keeps others away from where it is done."""
+        return True
 
     def _ended(self, name: str, decision: Decision) -> None:
         """Note that what the robot `name` did is over: until it has chosen again it stands."""
@@ -116,7 +123,7 @@ class Sharing(TeamAgent):
     def crowded(self, name: str, places: Iterable[Place]) -> bool:
         """Whether any of the `places` [m] is near to where another robot than `name` works, or nearer to one."""
         busy = [(place, APART) for other, row in self._work.items() if other != name for place in row]
-        busy += [(place, STANDING) for other, place in self._stands.items() if other != name]
+        busy += [(place, self.standing) for other, place in self._stands.items() if other != name]
         return any(math.dist(place, one) < gap for place in places for one, gap in busy)
 
     def crowded_things(self, name: str, decision: Decision) -> set[str]:

@@ -1,4 +1,4 @@
-"""The oracle of teams: what its robots are told, how they divide a small room, and that its records are played again."""
+"""The oracle of teams: what its robots are told, how they divide a small room, and how its records are played again."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from collections.abc import Iterator
 import pytest
 
 from hazard_ms.agents.team import TEAM_AGENTS, team_agent
+from hazard_ms.agents.teams.joint import Joint
 from hazard_ms.agents.teams.oracle import TeamOracle
+from hazard_ms.agents.teams.sharing import Sharing
 from hazard_ms.evaluation.attempts import attempt
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.replay import EXACT, compare, job_of
@@ -16,10 +18,11 @@ from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.evaluation.teams.player import privileged_team
 from hazard_ms.evaluation.workers import Job, Word
 from hazard_ms.registry import AGENTS, load
-from hazard_ms.skills.decision import EXPLORE, WALK_TO
+from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action
 from hazard_ms.skills.team import TeamSkills
 from hazard_ms.spec import AgentStart, Body, Room, SceneSpec, Task
 from hazard_ms.tasks.fire import hazard_fire
+from tests.agents.teams.test_teams_divide import decision
 from tests.worlds.playground import brief
 from tests.worlds.registering import registered_task
 
@@ -146,3 +149,16 @@ def test_the_second_robot_plans_without_what_the_first_goes_for(room: TeamSkills
     assert seer._truth is not None
     left = {seer._scene.spec.things[i].name for i in seer._problem(seer.told(decisions["fetch-1"]), seer._truth)[0]}
     assert aims[0] not in left and aims[1] in left
+
+
+def test_a_robot_that_is_still_far_keeps_nobody_away() -> None:
+    """A walk to what is 5 m away, one to what is 3 m away, and a robot that stands: within 0.8 m none begins."""
+    team, told = TeamOracle(), decision((0.0, 0.0), {"a": (5.0, 0.0), "b": (3.0, 0.0)})
+    assert [team.keeps_away(told, Action(WALK_TO, name)) for name in "abc"] == [False, True, True]  # nobody saw c
+    assert team.keeps_away(told, Action(PICK_UP, "a")) and Joint().keeps_away(told, Action(WALK_TO, "a"))
+    team._work, team._stands = {"r1": [(5.5, 0.0)]}, {}  # there it may be done before this robot comes
+    assert team.crowded_things("r0", told) == set() and Sharing.crowded_things(team, "r0", told) == {"a"}
+    team._work, team._stands = {}, {"r1": (2.3, 0.0)}
+    assert team.crowded_things("r0", told) == {"b"}
+    team._stands = {"r1": (2.1, 0.0)}
+    assert team.crowded_things("r0", told) == set()

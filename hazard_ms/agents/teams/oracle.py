@@ -26,7 +26,8 @@ from hazard_ms.skills.decision import EXPLORE, STOP, WALK_ONE_STEP, WALK_TO, Act
 from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.skills.team import TeamSkills
 
-FAR = 2.0 * APART  # distance of a thing from which a walk to it keeps nobody away, and need not wait [m] [ours]
+WALKS = (WALK_TO, WALK_ONE_STEP)  # verbs
+FAR = 2.0 * APART  # distance of a thing from which a walk to it need not wait for who works there [m] [ours]
 BESIDE = 0.8  # distance from one that stands, its arm tucked, within which none begins to [m] [ours: it knows of it]
 
 
@@ -65,7 +66,7 @@ class TeamOracle(Sharing, PrivilegedTeam):
         last, result = decision.last_action, decision.last_result
         if last is None or last.target is None or result is None or decision.held is not None:
             return
-        if last.verb in (WALK_TO, WALK_ONE_STEP) and (result.ok or result.reason in UNFINISHED):
+        if last.verb in WALKS and (result.ok or result.reason in UNFINISHED):
             self._aims[name] = last.target
 
     def _planned(self, names: Sequence[str], taken: Collection[str]) -> dict[str, Plan]:
@@ -73,12 +74,12 @@ class TeamOracle(Sharing, PrivilegedTeam):
         return super()._planned(names, {*taken, *self._aims.values()})
 
     def keeps_away(self, decision: Decision, action: Action) -> bool:
-        """Not a walk to what is far: who is there is done before it ends."""
-        return action.verb != WALK_TO or _is_near(decision, action.target)
+        """Not a walk to what is farther than APART: who is there goes first."""
+        return action.verb not in WALKS or _is_near(decision, action.target, APART)
 
     def crowded_things(self, name: str, decision: Decision) -> set[str]:
         """Those that are not far: there another one may be done before this robot comes."""
-        return {thing for thing in super().crowded_things(name, decision) if _is_near(decision, thing)}
+        return {thing for thing in super().crowded_things(name, decision) if _is_near(decision, thing, FAR)}
 
     def forget(self, name: str) -> None:
         """The robot `name` plans to fetch nothing."""
@@ -167,7 +168,10 @@ class _Seer(Oracle):
             denied, action = False, self._without_measures(decision, truth)
         later = action.verb == STOP and any(t.name in self._crowded and not t.rescued for t in decision.targets)
         waits &= denied or later or action.target in self._crowded
-        self._waited = self._waited + 1 if waits else 0
+        if waits:
+            self._waited += 1
+        elif action.verb not in WALKS:  # a walk is followed by what it waited for
+            self._waited = 0
         return self._say("another robot is at work there", Action(EXPLORE)) if waits else action
 
     def _without_measures(self, decision: Decision, truth: Truth) -> Action:
@@ -198,6 +202,7 @@ class _Seer(Oracle):
         return planned if decision.names[index] in self._team.fetched(self._name) else index
 
 
-def _is_near(decision: Decision, thing: str | None) -> bool:
+def _is_near(decision: Decision, thing: str | None, reach: float) -> bool:
+    """Whether a thing is within `reach` [m], or not on the map."""
     place = place_of(decision, thing)
-    return place is None or math.dist(decision.agent_position, place) <= FAR
+    return place is None or math.dist(decision.agent_position, place) <= reach

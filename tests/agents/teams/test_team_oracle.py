@@ -152,13 +152,13 @@ def test_the_second_robot_plans_without_what_the_first_goes_for(room: TeamSkills
 
 
 def test_a_robot_that_is_still_far_keeps_nobody_away() -> None:
-    """A walk to what is 5 m away, one to what is 3 m away, and a robot that stands: within 0.8 m none begins."""
-    team, told = TeamOracle(), decision((0.0, 0.0), {"a": (5.0, 0.0), "b": (3.0, 0.0)})
+    """Walks to what is 5 and 2 m away, and a robot that stands: within 0.8 m none begins."""
+    team, told = TeamOracle(), decision((0.0, 0.0), {"a": (5.0, 0.0), "b": (2.0, 0.0)})
     assert [team.keeps_away(told, Action(WALK_TO, name)) for name in "abc"] == [False, True, True]  # nobody saw c
     assert team.keeps_away(told, Action(PICK_UP, "a")) and Joint().keeps_away(told, Action(WALK_TO, "a"))
     team._work, team._stands = {"r1": [(5.5, 0.0)]}, {}  # there it may be done before this robot comes
     assert team.crowded_things("r0", told) == set() and Sharing.crowded_things(team, "r0", told) == {"a"}
-    team._work, team._stands = {}, {"r1": (2.3, 0.0)}
+    team._work, team._stands = {}, {"r1": (1.3, 0.0)}
     assert team.crowded_things("r0", told) == {"b"}
-    team._stands = {"r1": (2.1, 0.0)}
+    team._stands = {"r1": (1.1, 0.0)}
     assert team.crowded_things("r0", told) == set()

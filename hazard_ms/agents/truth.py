@@ -30,7 +30,7 @@ class Played(Protocol):
 
     @property
     def base(self) -> Any:
-        """The HazardEnv."""
+        """The HazardEnv in which the robot is."""
 
     @property
     def seen(self) -> SemanticMap:
@@ -132,7 +132,7 @@ class Truth:
 
     @property
     def changes(self) -> int:
-        """How often something was done about the hazard."""
+        """Number of times that something was done about the hazard."""
         return self._future.changes
 
     def record(self) -> Timeline:

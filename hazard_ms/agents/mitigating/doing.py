@@ -46,7 +46,7 @@ class Mitigator:
 
     @property
     def begun(self) -> frozenset[Part]:
-        """What was chosen and is not yet done."""
+        """All parts of what was chosen and is not yet done."""
         return frozenset(part for prospect in self._queue for part in prospect.parts)
 
     def leave(self, others: Iterable[Part]) -> None:

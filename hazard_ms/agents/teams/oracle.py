@@ -74,11 +74,11 @@ class TeamOracle(Sharing, PrivilegedTeam):
         return super()._planned(names, {*taken, *self._aims.values()})
 
     def keeps_away(self, decision: Decision, action: Action) -> bool:
-        """Not a walk to what is farther than APART: who is there goes first."""
+        """Whether an action keeps others away: no walk to what is farther than APART does, who is there goes first."""
         return action.verb not in WALKS or _is_near(decision, action.target, APART)
 
     def crowded_things(self, name: str, decision: Decision) -> set[str]:
-        """Those that are not far: there another one may be done before this robot comes."""
+        """The things near to where another one works, but for what is far: it may be done before this one comes."""
         return {thing for thing in super().crowded_things(name, decision) if _is_near(decision, thing, FAR)}
 
     def forget(self, name: str) -> None:
@@ -86,7 +86,7 @@ class TeamOracle(Sharing, PrivilegedTeam):
         self._ahead.pop(name, None)
 
     def begun(self, name: str, decision: Decision) -> set[Part]:
-        """What the others than the robot `name` have begun about the hazard, and the things that they fetch or hold."""
+        """Parts of all that other robots than `name` have begun about hazards, and the things that they fetch or hold."""
         made = {part for other, seer in self._seers.items() if other != name for part in seer.begun}
         things = self.fetched(name) | self.handled(name)
         return made | {(FETCH, decision.index(thing)) for thing in things if thing in decision.names}

@@ -86,7 +86,7 @@ class TeamOracle(Sharing, PrivilegedTeam):
         self._ahead.pop(name, None)
 
     def begun(self, name: str, decision: Decision) -> set[Part]:
-        """Parts of all that others than the robot `name` have begun about hazards, and things that they have or fetch."""
+        """Parts of what others than the robot `name` have begun about hazards, and things that they fetch or hold."""
         made = {part for other, seer in self._seers.items() if other != name for part in seer.begun}
         things = self.fetched(name) | self.handled(name)
         return made | {(FETCH, decision.index(thing)) for thing in things if thing in decision.names}

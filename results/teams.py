@@ -1,9 +1,10 @@
-"""Two robots in the scenes of one: `./run python results/teams.py [TASK...] [SCENES]`, or `cost`; resumes.
+"""Two robots in the scenes of one: `./run python results/teams.py [oracle] [TASK...] [SCENES]`, or `cost`; resumes.
 
-Every one of SETUPS plays the first scenes, 4 by default, of the split `test` of each task, one scene after another,
-by `hazard-ms evaluate`. Writes teams.md and teams.csv beside this file; episodes in teams.csv are not played again:
-those that a change would touch are to be deleted there. With `tables` alone it plays nothing. `cost` prints what a
-frame costs with one robot and with two, a ratio of medians of frames that take turns.
+Every one of SETUPS but the reference plays the first scenes, 4 by default, of the split `test` of each task, one scene
+after another, by `hazard-ms evaluate`; with `oracle` the reference alone does. Writes teams.md and teams.csv beside
+this file; episodes in teams.csv are not played again: those that a change would touch are to be deleted there. With
+`tables` alone it plays nothing. `cost` prints what a frame costs with one robot and with two, a ratio of medians of
+frames that take turns.
 """
 
 from __future__ import annotations
@@ -38,7 +39,9 @@ SETUPS = {  # robots and agent of each team, by its name
     "2 independent": (PAIR, "independent"),
     "2 auction": (PAIR, "auction"),
     "2 joint": (PAIR, "joint"),
+    "2 oracle": (PAIR, "oracle"),
 }
+REFERENCE, ASKED = "2 oracle", "oracle"  # it sees what is hidden; played where this word asks for it
 BEST, ALONE, APART, AUCTION = "2 joint", "1 planner", "2 independent", "2 auction"
 KEYS = ("env_id", "seed", "scene", "robots", "agent")
 BORNE = ("heat", "water")  # columns with a number for each robot, empty where nothing measures it
@@ -49,9 +52,9 @@ HEAD = """# Two robots in the scenes of one
 
 Made by `./run python results/teams.py`. First scenes of the split `test`, Fetch, presets `paper`; hazards act on the
 robots in homes and gales alone. Two robots are on their own, each `greedy` (`2 independent`), hold auctions, or plan
-together. Value and what was averted in percent, with 95 % bootstrap intervals over scenes, averted only of scenes where
-it is defined; collisions are contacts between robots at more than 0.1 m/s, of all episodes together. teams.csv has
-every episode.
+together; `2 oracle`, where it was played, sees what is hidden. Value and what was averted in percent, with 95 %
+bootstrap intervals over scenes, averted only of scenes where it is defined; collisions are contacts between robots at
+more than 0.1 m/s, of all episodes together. teams.csv has every episode.
 Written at
 {machine}.
 
@@ -139,10 +142,12 @@ def tables(every: list[Row]) -> str:
     return text + COMPARED + compared
 
 
-def play(env_id: str, scenes: int) -> None:
-    """Play what is missing of the first `scenes` of a task, and write it after each episode."""
+def play(env_id: str, scenes: int, reference: bool = False) -> None:
+    """Play what is missing of the first `scenes` of a task, of the `reference` or the others, and write it at once."""
     for seed in range(scenes):
         for name, (robots, agent) in SETUPS.items():
+            if (name == REFERENCE) != reference:
+                continue
             if (env_id, name, str(seed)) not in {(r["env_id"], setup_of(r), r["seed"]) for r in episodes()}:
                 told = ("--split", "test", "--agents", agent, "-s", str(seed), "--episodes", "1", "-r", *robots)
                 evaluate(env_id, RAW / name.replace(" ", "-"), *told, check=False)
@@ -179,9 +184,11 @@ def main(wanted: list[str]) -> None:
     if wanted == ["cost"]:
         cost()
         return
+    reference = ASKED in wanted
+    wanted = [word for word in wanted if word != ASKED]
     scenes = int(wanted.pop()) if wanted and wanted[-1].isdecimal() else SCENES
     for task in [] if wanted == ["tables"] else [one_of(each, TASKS, "a task") for each in wanted] or [*TASKS]:
-        play(TASKS[task], scenes)
+        play(TASKS[task], scenes, reference)
     write(episodes())
     print((HERE / "teams.md").read_text(encoding="utf-8"))
 

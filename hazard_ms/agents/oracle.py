@@ -62,7 +62,7 @@ class Oracle(PrivilegedAgent):
         if self._truth is None:
             raise ValueError("an environment must be attached to the oracle before its reset, got none")
         base = self._truth.env.base
-        self._scene = RescueScene(base.specs[0], brief.robot, base.agent.build.radius, brief.max_frames)
+        self._scene = RescueScene(base.specs[0], brief.robot, brief.radius, brief.max_frames)
         self._carts = np.array([base.world.index(0, name) for name in brief.containers], np.int64)
         self._attempts = Attempts()
         self._goal: str | None = None
@@ -87,14 +87,16 @@ class Oracle(PrivilegedAgent):
         if self._mitigator is None or not self._mitigator.took(decision):
             self._judge(decision, self._truth)
         self._attempts.in_vain = self._in_vain(decision, self._truth)
-        action = self._get_out(decision) if self._enclosure.noticed(decision) else self._choose(decision, self._truth)
+        action = self._next(decision, self._truth)
         if (other := self._repeats.instead(decision, action)) is not None:
             action = self._say(self._repeats.note, other)
         self._before = (action, decision.agent_position)
         self._truth.reveal()
         return action
 
-    def _get_out(self, decision: Decision) -> Action:
+    def _next(self, decision: Decision, truth: Truth) -> Action:
+        if not self._enclosure.noticed(decision):
+            return self._choose(decision, truth)
         door = self._mitigator and self._mitigator.way_out(decision)
         return self._say("no way leads anywhere", door or Action(EXPLORE))
 
@@ -220,11 +222,8 @@ class Oracle(PrivilegedAgent):
         if decision.last_result.ok and not (stuck and decision.walked_up_to is not None and truth.aim):
             return
         moved = float(np.hypot(*np.subtract(decision.agent_position, start)))
-        if (
-            action.target is None
-            or action.verb == PUSH
-            or (action.verb in (WALK_TO, WALK_ONE_STEP) and moved > PROGRESS)
-        ):
+        walked = action.verb in (WALK_TO, WALK_ONE_STEP) and moved > PROGRESS
+        if action.target is None or action.verb == PUSH or walked:
             return
         self._attempts.failures[action.target] = self._attempts.failures.get(action.target, 0) + 1
         if decision.last_result.reason == UNREACHABLE and not decision.last_result.frames:

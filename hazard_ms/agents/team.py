@@ -8,13 +8,16 @@ from __future__ import annotations
 import abc
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import cast
+from typing import TYPE_CHECKING, ClassVar, cast
 
 from hazard_ms.agents.base import Agent, agent, made_of
 from hazard_ms.registry.loading import load
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.spec.checks import one_of
+
+if TYPE_CHECKING:
+    from hazard_ms.skills.team import TeamSkills
 
 APPROACH = (WALK_TO, WALK_ONE_STEP, PICK_UP)  # verbs by which a robot goes for a target
 
@@ -24,6 +27,7 @@ class TeamAgent(abc.ABC):
 
     notes: Mapping[str, str | None] = MappingProxyType({})  # of each robot
     counters: Mapping[str, float] = MappingProxyType({})  # of all together
+    privileged: ClassVar[bool] = False  # whether it may see what is hidden: only subclasses of PrivilegedTeam do
 
     @abc.abstractmethod
     def reset(self, briefs: Mapping[str, Brief]) -> None:
@@ -32,6 +36,16 @@ class TeamAgent(abc.ABC):
     @abc.abstractmethod
     def act(self, decisions: Mapping[str, Decision]) -> dict[str, Action]:
         """The next action of each robot in `decisions`; called again when one of them has ended."""
+
+
+class PrivilegedTeam(TeamAgent):
+    """An agent of teams that sees what is hidden from all others: a reference that honest ones are compared with."""
+
+    privileged: ClassVar[bool] = True
+
+    @abc.abstractmethod
+    def attach(self, env: TeamSkills) -> None:
+        """Take the environment in which an episode has just begun; called before `reset`."""
 
 
 class Independent(TeamAgent):
@@ -63,12 +77,13 @@ TEAM_AGENTS = {  # the class of each, imported when it is asked for
     "auction": "hazard_ms.agents.teams.auction:Auction",
     "joint": "hazard_ms.agents.teams.joint:Joint",
     "llm": "hazard_ms.agents.teams.language:LanguageModels",
+    "oracle": "hazard_ms.agents.teams.oracle:TeamOracle",
 }
 FOLLOWED = ("independent", "llm")  # those that an agent follows, or parameters
 
 
 def team_agent(name: str) -> TeamAgent:
-    """A new agent of teams: "joint", "auction", "independent", "llm", package.module:Class or file.py:Class.
+    """A new agent of teams: "joint", "auction", "independent", "llm", "oracle", package.module:Class or file.py:Class.
 
     An agent may follow the third, as in "independent:planner", parameters the last two: "llm:model=NAME,way=letter".
     Raises ValueError for others, RuntimeError for one of one's own that calls sys.exit.

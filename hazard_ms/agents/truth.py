@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.search.walks import detours
 from hazard_ms.sensing.furniture import told
+from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sketch.recording import ahead, recorded
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.sketch.timeline import Timeline
+from hazard_ms.skills.context import Stage
 from hazard_ms.skills.decision import Decision
-from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.motor.walking import ARRIVED
 from hazard_ms.skills.options.landmarks import WALKABLE
 
@@ -23,10 +25,39 @@ LASTS = 300  # frames for which the future of a home is kept, whatever is picked
 SURPRISE = 0.25  # how far a target may be from where it was expected before the future is predicted again [m] [ours]
 
 
-class Future:
-    """The future of a running episode if nobody acts, predicted when it is asked for and kept while it holds."""
+class Played(Protocol):
+    """The part of a `SkillEnv` that the truth is read from, and entered into; one robot of a team has it, too."""
 
-    def __init__(self, env: SkillEnv) -> None:
+    @property
+    def base(self) -> Any:
+        """The HazardEnv in which the robot is."""
+
+    @property
+    def seen(self) -> SemanticMap:
+        """The map of what the robot has seen."""
+
+    @property
+    def maps(self) -> list[SemanticMap]:
+        """All maps into which its looks are entered."""
+
+    @property
+    def stage(self) -> Stage:
+        """The episode as its skills see it."""
+
+    @property
+    def frame(self) -> int:
+        """Frames since the start of the episode."""
+
+
+class Future:
+    """The future of a running episode if nobody acts, predicted when it is asked for and kept while it holds.
+
+    Robots of a team share one. `changes`: how often something was done about the hazard.
+    """
+
+    changes = 0
+
+    def __init__(self, env: Played) -> None:
         self._env = env
         self._told: Timeline | None = None
         self._free: NDArray[np.bool_] = np.zeros(0, bool)  # the things that were free when the future was predicted
@@ -57,17 +88,21 @@ class Future:
     def forget(self) -> None:
         """Predict anew when it is asked next: something was done about the hazard."""
         self._told = None
+        self.changes += 1
 
 
 class Truth:
     """The true state and future of a running episode, and how it gets into the map."""
 
-    def __init__(self, env: SkillEnv, only_known: bool) -> None:
-        """Enter where things are into the map of `env` after every look; `only_known`: only those that it knows."""
+    def __init__(self, env: Played, only_known: bool, future: Future | None = None) -> None:
+        """Enter where things are into the map of `env` after every look; `only_known`: only those that it knows.
+
+        `future`: that of the episode, where another robot's truth has one.
+        """
         self.env, self._only_known = env, only_known
         self.aim: dict[int, NDArray[np.float32]] = {}  # where the map is to place some things instead [m], by index
         self.also: set[int] = set()  # things that are entered beside targets and containers, by index
-        self._future = Future(env)
+        self._future = Future(env) if future is None else future
         self._record: Timeline | None = None
         self.furniture = False  # whether the map is told where all furniture is, as it is of containers
         look = env.stage.look
@@ -95,6 +130,11 @@ class Truth:
         """Predict the future anew when it is asked for next: something was done about the hazard."""
         self._future.forget()
 
+    @property
+    def changes(self) -> int:
+        """Number of times that something was done about the hazard."""
+        return self._future.changes
+
     def record(self) -> Timeline:
         """The timeline of the whole episode if nobody acts from its start on."""
         if self._record is None:
@@ -105,7 +145,7 @@ class Truth:
     def detours(self, decision: Decision, scene: RescueScene, targets: Sequence[int]) -> NDArray[np.float64]:
         """Frames by which the walk to each of `targets`, [T], is longer now, past what floats or was pushed about."""
         goals, edges = np.stack([self.position(i)[:2] for i in targets]), scene.edges[list(targets)]
-        here, radius = decision.agent_position, self.env.base.agent.build.radius
+        here, radius = decision.agent_position, scene.ways.radius
         plain = scene.ways.frames(np.array([here]), goals, edge=edges)
         return detours(decision.map, here, goals.astype(float), ARRIVED + edges, radius, plain)
 

@@ -45,7 +45,7 @@ def attempt(job: Job, say: Say) -> Outcome:
 def _played(job: Job, watchers: list[Watcher]) -> EpisodeResult:
     """The episode of a job, of one robot or of a team."""
     if job.options.team:
-        team = None if job.actions is None else RecordedTeam(job.actions, job.robots)
+        team = None if job.actions is None else RecordedTeam(job.actions, job.robots, job.options.agent)
         return play_team(job.options, watchers, team)
     return play(
         job.options, watchers, None if job.actions is None else Recorded(job.actions, job.options.agent, job.waits)

@@ -222,14 +222,16 @@ def _copied(env: Running, copies: int) -> Episode:
     real = env.world
     world = building.make_world(env.specs * copies, real.device)
     world.agent_build = real.agent_build
+    if real.team is not None:
+        world.team = dataclasses.replace(real.team, places=real.team.places.expand(copies, -1, -1).clone())
     if real.equipment is not None and real.equipment.board.any():  # those that stand go on to hold water back
         world.equip(real.equipment.of)
     episode, rows = Episode(world, env.task.hazards, env.task.safe_place), torch.arange(copies, device=real.device)
     saved = {
         name: {k: v.expand(copies, -1) for k, v in part.items()} for name, part in snapshot.save(env.episode).items()
     }
-    snapshot.restore(episode, saved, rows)
-    for name in ("position", "rotation", "velocity", "angular_velocity", "agent_position", "agent_heading"):
+    snapshot.restore(episode, saved, rows)  # of a team, with the first hand alone
+    for name in ("position", "rotation", "velocity", "angular_velocity", "agent_position", "agent_heading", "held"):
         getattr(world, name).copy_(getattr(real, name))
     return episode
 

@@ -125,7 +125,7 @@ def test_the_oracle_alone_of_all_agents_can_know_the_future() -> None:
     gale = {"agents.gale.truth"}
     judge = {"agents.aims", "agents.courses", "agents.hindsight"}  # of decisions, which regret asks
     privileged = {module for module in modules() if room(module) == "agents" and used(module, set()) & future}
-    assert privileged == {"agents.oracle", "agents.truth", *judge, *mitigating, *gale}
+    assert privileged == {"agents.oracle", "agents.teams.oracle", "agents.truth", *judge, *mitigating, *gale}
 
 
 def test_nobody_reaches_into_an_environment() -> None:

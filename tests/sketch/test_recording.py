@@ -141,6 +141,22 @@ def test_what_is_ahead_of_a_running_fire_comes_true_and_is_only_foretold(fire: H
     assert np.array_equal(damage(fire), line.damaged_at) and (damage(fire) > 300).any()
 
 
+def test_what_is_ahead_of_a_team_comes_true() -> None:
+    """Each robot is a body that exchanges heat."""
+    env = parked(robot_uids=("fetch", "fetch"))
+    still = {m.name: m.agent.action(0.0, 0.0, m.agent.tucked, True) for m in env.members}
+    try:
+        env.reset(seed=1)
+        for _ in range(300):
+            env.advance(still)
+        line = ahead(env, 130)
+        for _ in range(130):
+            env.advance(still)
+        assert np.array_equal(damage(env), line.damaged_at) and (damage(env) > 300).any()
+    finally:
+        env.close()
+
+
 def same(a: Any, b: Any) -> bool:
     return all(same(a[k], b[k]) for k in a) if isinstance(a, dict) else bool(torch.equal(a, b))
 

@@ -65,6 +65,7 @@ class GaleTruth:
         self._state = base.episode.states[hazard.name]
         self._seconds = float(base.control_timestep)
         self.note = ""  # on what `put_away` chose
+        self.idle = False  # whether it leaves measures alone for now
         self._course = course_of(hazard, self._state, base.world, scene.limit * self._seconds)
         self._withstands = withstands(self._state, base.world)
         self._pushing = Pushing() if mitigate else None
@@ -151,6 +152,8 @@ class GaleTruth:
 
         `problem` is the one that `problem` gave last; `carts`, [M], and the rest are as for `put_away`.
         """
+        if self.idle:
+            return None
         if decision.held is not None:
             return self.put_away(decision, carts, failures)
         return None if self._pushing is None else self._push(decision, problem, self._pushing)
@@ -191,7 +194,7 @@ class GaleTruth:
             raised = np.hstack([points, np.full((len(points), 1), LOW)])
             return kept(self._pressure(raised), self._withstands[index])
 
-        found = put_away(decision, self._base.agent.build.radius, keeps, nearest)
+        found = put_away(decision, self._scene.ways.radius, keeps, nearest)
         if found is None:
             return None
         self.note = f"into the lee by {found.action}, {found.frames:.0f} frames"

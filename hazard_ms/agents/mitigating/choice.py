@@ -17,6 +17,7 @@ from hazard_ms.agents.mitigating.prospects import (
     FETCH,
     MOST_FUTURES,
     Array,
+    Part,
     Prospect,
     blocks,
     doors,
@@ -55,6 +56,7 @@ class Chooser:
 
     def __init__(self, base: Home) -> None:
         self._base = base
+        self.others: frozenset[Part] = frozenset()  # what the other robots of a team are at
         self.forget()
 
     def forget(self) -> None:
@@ -86,9 +88,9 @@ class Chooser:
         edges, start = scene.edges[list(targets)], np.array(here)
         # a fire that is out also saves the time of rescues
         fires = fights(self._base, scene, goals[self._risky(problem)], start)
-        ends = [*fires, *blocks(self._base, scene, start), *doors(self._base, goals[lost])]
-        ends = [p for p in ends if (p.kind, p.numbers) not in failed][:MOST_FUTURES]
-        tools = [t for t in tools_of(self._base, scene) if (t.kind, t.numbers) not in failed]
+        ends = [*fires, *blocks(self._base, scene, start, self.others), *doors(self._base, goals[lost])]
+        ends = self._open(ends, failed)[:MOST_FUTURES]
+        tools = self._open(tools_of(self._base, scene), failed)
         ends = [p for p in ends if tools or p.kind != OUT]
         if not ends:
             return None, []
@@ -109,6 +111,10 @@ class Chooser:
         chosen = Measures(measures, **ways, in_hand=held[0] if held else None, put_down=costs.PUT_DOWN, changed=barred)
         course = best_course(problem, chosen, most_labels=EFFORT[0], beam=EFFORT[1])
         return (course if self._is_worth_it(course, problem) else None), made
+
+    def _open(self, made: Sequence[Prospect], failed: Collection[Key]) -> list[Prospect]:
+        """What is neither among `failed` nor among what others are at."""
+        return [p for p in made if (p.kind, p.numbers) not in failed and not p.parts & self.others]
 
     def _delayed(self, problem: Problem) -> Problem:
         """The problem with what delays rescues; in water a course must avert more instead (LEAST_IN_WATER)."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import torch
 
 from hazard_ms.agents.mitigating.choice import Chooser, Key
-from hazard_ms.agents.mitigating.prospects import FETCH, Array, Prospect, as_now, seats_of
+from hazard_ms.agents.mitigating.prospects import FETCH, Array, Part, Prospect, as_now, seats_of
 from hazard_ms.agents.truth import Truth
 from hazard_ms.planning.problem import Problem
 from hazard_ms.sketch.futures import seats
@@ -41,7 +41,17 @@ class Mitigator:
         self._weighed = -AGAIN  # frame at which it last weighed measures
         self._shares: tuple[float, ...] = ()
         self._scene: RescueScene | None = None
+        self._changes = truth.changes
         self.note = ""
+
+    @property
+    def begun(self) -> frozenset[Part]:
+        """All parts of what was chosen and is not yet done."""
+        return frozenset(part for prospect in self._queue for part in prospect.parts)
+
+    def leave(self, others: Iterable[Part]) -> None:
+        """Leave what `others` are at, the other robots of a team, alone from now on."""
+        self._chooser.others = frozenset(others)
 
     def scene(self, now: RescueScene, here: tuple[float, float]) -> RescueScene:
         """The scene as a planner sees it with its doors as they are: `now`, unless one of them has moved."""
@@ -52,7 +62,7 @@ class Mitigator:
         if not moved:
             return now
         spec = as_now(now.spec, shares, here)
-        return RescueScene(spec, self._brief.robot, self._base.agent.build.radius, self._brief.max_frames)
+        return RescueScene(spec, self._brief.robot, self._brief.radius, self._brief.max_frames)
 
     def took(self, decision: Decision) -> bool:
         """Whether the last action was its own; counts its failure."""
@@ -128,6 +138,9 @@ class Mitigator:
         return self._last
 
     def _choose(self, decision: Decision, problem: Problem, targets: Sequence[int], scene: RescueScene) -> None:
+        if self._truth.changes != self._changes:
+            self._chooser.forget()
+            self._changes = self._truth.changes
         failed = {key for key, times in self._failures.items() if times >= TRIES}
         failed |= {key for key, frame in self._put_off.items() if decision.frame < frame}
         failed |= self._out_of_reach(decision)
@@ -144,14 +157,13 @@ class Mitigator:
         inner = inner_doors(self._base.world)
         if not inner:
             return set()
-        places, radius = np.stack(list(inner.values())), self._base.agent.build.radius
-        found = reached(self._truth.env.seen, self._base.world, decision.agent_position, places, radius)
+        places, seen = np.stack(list(inner.values())), self._truth.env.seen
+        found = reached(seen, self._base.world, decision.agent_position, places, self._brief.radius)
         return {(SHUT, (number,)) for number, there in zip(inner, found, strict=True) if not there}
 
     def _end(self) -> None:
         """Give up what was chosen, or be done with it."""
         self._queue, self._weighed = [], -AGAIN
-        self._chooser.forget()
         self._truth.forget()
         self._truth.also = set()
 
@@ -194,7 +206,7 @@ class Mitigator:
         world = self._base.world
         open_ = inlets_of(world)
         left = [number for number in numbers if number in open_]
-        boards = free_boards(world)
+        boards = [board for board in free_boards(world) if (FETCH, board) not in self._chooser.others]
         if not left or not boards:
             return None
         held = -1 if decision.held is None else decision.index(decision.held)

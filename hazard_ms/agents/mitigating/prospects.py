@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +20,7 @@ from hazard_ms.skills.mitigations.views import facing
 from hazard_ms.spec import SceneSpec
 
 Array = NDArray[np.float64]
+Part = tuple[str, int]  # of a prospect: its kind, and one of its numbers
 FETCH = "fetch"
 THREAT = 3.0  # distance from a target that would be lost within which a fire is fought [m] [ours]
 MOST_FUTURES = 11  # beside that in which nobody acts [ours]
@@ -49,6 +50,11 @@ class Prospect(NamedTuple):
     jet: float = 0.0  # frames of discharge among these
     charge: float = 0.0  # frames that a tool lasts
     between: float = 0.0  # frames of ways from seat to seat among these
+
+    @property
+    def parts(self) -> frozenset[Part]:
+        """All of it that only one robot at a time should be at."""
+        return frozenset((self.kind, number) for number in self.numbers)
 
 
 def seats_of(base: Home) -> list[Seat]:
@@ -128,12 +134,14 @@ def doors(base: Home, lost: Array) -> list[Prospect]:
     return sorted(made, key=lambda door: _gap(door.first, lost))
 
 
-def blocks(base: Home, scene: RescueScene, start: Array) -> list[Prospect]:
+def blocks(base: Home, scene: RescueScene, start: Array, others: Collection[Part] = ()) -> list[Prospect]:
     """The openings that water comes in through, alone and all together: boards set into them, from `start` [m], [2].
 
     Each has the board that is nearest to it and in no other; those together are set one after another, nearest next.
+    Boards that `others` are at are left out.
     """
-    inlets, boards = inlets_of(base.world), free_boards(base.world)
+    inlets = inlets_of(base.world)
+    boards = [board for board in free_boards(base.world) if (FETCH, board) not in others]
     places = base.world.position[0, :, :2].cpu().numpy().astype(np.float64)
     singly = [one for number in inlets if (one := _set_into({number: inlets[number]}, boards, places, scene, start))]
     both = _set_into(inlets, boards, places, scene, start) if len(inlets) > 1 else None

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 from hazard_ms.agents.base import counters_of, shown_note, staying
-from hazard_ms.agents.team import TeamAgent, team_agent
+from hazard_ms.agents.team import TEAM_AGENTS, PrivilegedTeam, TeamAgent, team_agent
 from hazard_ms.evaluation.averted.account import Account
 from hazard_ms.evaluation.hashes import EVERY, extended
 from hazard_ms.evaluation.metrics import Tally
@@ -20,6 +20,7 @@ from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import BROKEN, DecisionRecord, EpisodeResult, Link, Played
 from hazard_ms.evaluation.runner import RUNNING, fates, result_of
 from hazard_ms.evaluation.watchers import Watcher
+from hazard_ms.registry import load
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import STOP, Action, Decision, Result
@@ -54,6 +55,8 @@ class TeamRunner:
         looks = self._looked()
         begun = time.perf_counter()
         with staying("reset of the agent"):
+            if isinstance(self.agent, PrivilegedTeam):
+                self.agent.attach(self.env)
             self.agent.reset({name: self.env.brief(name) for name in self.env.names})
         self._seconds = {"build": begun - start - looks, "agent": time.perf_counter() - begun, "physics": 0.0}
         self.env.watch = self._frame
@@ -183,20 +186,40 @@ def play(
         env.close()
 
 
-class RecordedTeam(TeamAgent):
-    """Takes the actions that the robots of a team took earlier, each its own, in their order."""
+class RecordedTeam(PrivilegedTeam):
+    """Takes the actions that the robots of a team took earlier, each its own, in their order.
 
-    def __init__(self, actions: Sequence[tuple[str, str | None]], robots: Sequence[str]) -> None:
-        """`robots`: which of them took each of the `actions`, (verb, target)."""
+    Where their agent, one of ours, is privileged, it is asked, too, since it tells their maps what it knows. Its
+    answers do not matter.
+    """
+
+    def __init__(self, actions: Sequence[tuple[str, str | None]], robots: Sequence[str], name: str = "") -> None:
+        """`robots`: which of them took each of the `actions`, (verb, target); `name`: of their agent."""
+        self._source = privileged_team(name)
         self._left: dict[str, list[Action]] = {}
         for robot, (verb, target) in zip(robots, actions, strict=True):
             self._left.setdefault(robot, []).insert(0, Action(verb, target))
 
+    def attach(self, env: TeamSkills) -> None:
+        """Show the environment to the agent of the record if that is privileged."""
+        if self._source is not None:
+            self._source.attach(env)
+
     def reset(self, briefs: Mapping[str, Brief]) -> None:
         """Begin an episode."""
+        if self._source is not None:
+            self._source.reset(briefs)
 
     def act(self, decisions: Mapping[str, Decision]) -> dict[str, Action]:
         """The next action of each robot. Raises EndOfRecordError where one has none left."""
+        if self._source is not None:
+            self._source.act(decisions)
         if not all(self._left.get(name) for name in decisions):
             raise EndOfRecordError
         return {name: self._left[name].pop() for name in decisions}
+
+
+def privileged_team(name: str) -> PrivilegedTeam | None:
+    """A new agent of teams if `name` is that of one of ours that sees what is hidden; None for all others."""
+    made = load(TEAM_AGENTS[name]) if name in TEAM_AGENTS else None
+    return made() if made is not None and issubclass(made, PrivilegedTeam) else None

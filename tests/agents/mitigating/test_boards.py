@@ -9,10 +9,15 @@ import numpy as np
 import pytest
 
 from hazard_ms.agents.base import agent
+from hazard_ms.agents.mitigating.choice import Chooser
+from hazard_ms.agents.mitigating.prospects import FETCH, blocks
+from hazard_ms.agents.teams.oracle import TeamOracle
 from hazard_ms.evaluation.runner import Runner
 from hazard_ms.sketch.futures.interventions import BLOCK, Intervention, foresee
 from hazard_ms.sketch.futures.surroundings import free_boards, inlets_of
+from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.skills.team import TeamSkills
 from hazard_ms.spec import AgentStart, Body, Opening, Room, SceneSpec, Task
 from hazard_ms.tasks.house import hazard_house_flood
 from tests.worlds.registering import registered_task
@@ -96,3 +101,41 @@ def test_the_oracle_sets_boards_into_both_doors_before_it_rescues(env: SkillEnv)
         assert decision.last_result is not None
         done += [action.verb] if decision.last_result.ok else []
     assert done.count("block") == 2 and not inlets_of(env.base.world)
+
+
+@pytest.mark.render
+def test_what_another_robot_is_at_is_left_to_it(env: SkillEnv) -> None:
+    env.reset(seed=0)
+    base, brief = env.base, env.brief()
+    scene = RescueScene(base.specs[0], brief.robot, brief.radius, brief.max_frames)
+    here, boards, doors = np.array([2.5, 2.5]), free_boards(base.world), sorted(inlets_of(base.world))
+    every = blocks(base, scene, here)
+    assert sorted(len(one.numbers) for one in every) == [1, 1, 2]
+    left = blocks(base, scene, here, {(FETCH, boards[0])})  # one board, for either door
+    assert [one.numbers for one in left] == [(door,) for door in doors]
+    assert {tuple(one.first) for one in left} == {tuple(base.world.position[0, boards[1], :2].tolist())}
+    chooser = Chooser(base)
+    chooser.others = frozenset({(BLOCK, doors[0])})
+    assert [one.numbers for one in chooser._open(every, ())] == [(doors[1],)]
+    assert chooser._open(every, {(BLOCK, (doors[1],))}) == []
+
+
+@pytest.mark.long
+@pytest.mark.render
+def test_two_oracles_set_both_boards(env: SkillEnv) -> None:
+    """Never two at one door, nor with one board."""
+    pair = TeamSkills.make(TASK, ("fetch", "fetch"), sensor_configs={"width": 128, "height": 128}, effects="off")
+    decisions, _ = pair.reset(seed=0)
+    team = TeamOracle()
+    team.attach(pair)
+    team.reset({name: pair.brief(name) for name in pair.names})
+    done: set[str | None] = set()
+    while len(done) < 2 and pair.frame < 1200:
+        decisions, _, _, info = pair.step(team.act(decisions))
+        begun = [seer.begun for seer in team._seers.values()]
+        held = [int(member.hand.held[0]) for member in pair.base.members]
+        assert not begun[0] & begun[1] and (held[0] != held[1] or held[0] < 0)
+        ended = {pair.decision(name).last_action for name, result in info["results"].items() if result.ok}
+        done |= {action.target for action in ended if action is not None and action.verb == BLOCK}
+    pair.close()
+    assert len(done) == 2 and not inlets_of(pair.base.world)

@@ -24,10 +24,10 @@ KEY = (SHUT, (0,))
 
 
 def mitigator(of: World) -> Mitigator:
-    base = SimpleNamespace(world=of, agent=SimpleNamespace(build=SimpleNamespace(radius=0.29)))
+    base = SimpleNamespace(world=of)
     env = SimpleNamespace(base=base, seen=seen(), stage=SimpleNamespace(doors=SimpleNamespace(names=["door_0"])))
-    truth: Any = SimpleNamespace(env=env, forget=lambda: None, reveal=lambda: None, also=set())
-    brief: Any = None
+    truth: Any = SimpleNamespace(env=env, forget=lambda: None, reveal=lambda: None, also=set(), changes=0)
+    brief: Any = SimpleNamespace(radius=0.29)
     return Mitigator(truth, brief)
 
 

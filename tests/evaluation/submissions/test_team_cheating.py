@@ -68,9 +68,12 @@ def test_a_truncated_file_is_named(share: float, of_team: bytes, tmp_path: Path)
     assert [fault.kind for fault in verify(path, TRIAL_TEAMS).faults] == [faults.DAMAGED]
 
 
-def test_a_team_that_says_it_is_honest_is_named(pairs: list[EpisodeResult]) -> None:
-    asked = [replace(result, agent="independent:oracle") for result in pairs]
+@pytest.mark.parametrize("name", ["oracle", "independent:oracle"])
+def test_a_team_that_says_it_is_honest_is_named(name: str, pairs: list[EpisodeResult]) -> None:
+    asked = [replace(result, agent=name) for result in pairs]
     assert kinds(honest(asked, track=TRIAL_TEAMS), TRIAL_TEAMS) == [faults.CARD]
+    told = honest(asked, replace(CARD, privileged=True), TRIAL_TEAMS)
+    assert kinds(told, TRIAL_TEAMS) == []
 
 
 def test_one_robot_and_a_team_are_not_taken_for_each_other(of_team: bytes, submission: bytes) -> None:

@@ -58,16 +58,19 @@ def test_what_is_missing_is_played_by_evaluate_and_nothing_twice(
     monkeypatch.setattr(teams, "machine", lambda: "a machine")
     teams.play(HOME, 2)
     teams.play(HOME, 2)
-    assert len(asked) == 2 * len(teams.SETUPS)
+    assert len(asked) == 2 * (len(teams.SETUPS) - 1)
     assert [words[words.index("--agents") + 1 :] for words in asked[:3]] == [
         ("greedy", "-s", "0", "--episodes", "1", "-r", "fetch"),
         ("planner", "-s", "0", "--episodes", "1", "-r", "fetch"),
         ("independent", "-s", "0", "--episodes", "1", "-r", "fetch", "fetch"),
     ]
+    teams.main(["oracle", "house fire", "1"])
+    assert [words[words.index("--agents") + 1] for words in asked[-2:]] == ["joint", "oracle"]
     text = (tmp_path / "teams.csv").read_text()
     teams.write(teams.episodes())
     assert (tmp_path / "teams.csv").read_text() == text and text.count("\n") == 1 + len(asked)
-    assert "| house fire | 2 joint |" in (tmp_path / "teams.md").read_text()
+    for name in ("2 joint", "2 oracle"):
+        assert f"| house fire | {name} |" in (tmp_path / "teams.md").read_text()
 
 
 def test_the_table_in_the_repository_is_that_of_its_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -95,8 +95,8 @@ class PlanarRobot(Robot):
         """Length of an action in `control_mode`, one of the robot's. The present mode stays."""
         if control_mode not in self.controllers:
             parts = self._controller_configs[control_mode]  # type: ignore[attr-defined]  # ManiSkill's agents have it
-            made = CombinedController(parts, self.robot, self._control_freq, scene=self.scene)
-            self.controllers[control_mode] = made
+            told = {"articulation": self.robot, "control_freq": self._control_freq, "scene": self.scene}
+            self.controllers[control_mode] = CombinedController(parts, **told)
         return int(self.controllers[control_mode].single_action_space.shape[0])
 
     def base_controller(self, damping: float, force: float) -> PDBaseForwardVelControllerConfig:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import gymnasium as gym
+import numpy as np
 
 from hazard_ms.machine.diagnosis import installed_version
 from hazard_ms.registry import ROBOTS, TASKS
@@ -25,19 +26,21 @@ ROOM = "HazardFire-v1"  # in which robots are tried
 
 def play(env_id: str) -> None:
     """Reset a task and play some frames of it."""
-    step(gym.make(env_id, obs_mode="state", render_backend="none"))
-
-
-def drive(told: str) -> None:
-    """The same with a robot and a control mode, "fetch pd_joint_pos"."""
-    robot, mode = told.split()
-    step(gym.make(ROOM, robot_uids=robot, control_mode=mode, obs_mode="state", render_backend="none"))
-
-
-def step(env: gym.Env[Any, Any]) -> None:
+    env = gym.make(env_id, obs_mode="state", render_backend="none")
     env.reset(seed=0)
     for _ in range(FRAMES):
         env.step(env.action_space.sample())
+    env.close()
+
+
+def drive(told: str) -> None:
+    """Switch a robot to one of its control modes, told as "fetch pd_joint_pos", and play some frames."""
+    robot, mode = told.split()
+    env: Any = gym.make(ROOM, robot_uids=robot, obs_mode="state", render_backend="none")
+    env.reset(seed=0)
+    still = np.zeros(env.unwrapped.agent.action_size(mode), np.float32)
+    for _ in range(FRAMES):
+        env.step({"control_mode": mode, "action": still})
     env.close()
 
 

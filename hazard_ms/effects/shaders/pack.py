@@ -77,8 +77,7 @@ def register() -> None:
 
 def pack_folder(mode: str) -> str:
     """The pack of effects `mode` (full, fast, off) as SAPIEN's cameras take it: its folder."""
-    # an absolute path stays as it is
-    return str(stock_packs() / PREBUILT_SHADER_CONFIGS[shader_config(mode)].shader_pack)
+    return str(stock_packs() / PREBUILT_SHADER_CONFIGS[shader_config(mode)].shader_pack)  # absolute stays as it is
 
 
 def keep_warm(mode: str, device: sapien.Device) -> None:

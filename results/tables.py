@@ -14,6 +14,7 @@ from hazard_ms.evaluation.result import ALONE, REGRET, EpisodeResult
 
 HERE = Path(__file__).parent
 TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
+CODE = ("hazard_ms", "examples", ":(glob)results/*.py")
 COMMAND = [sys.executable, "-m", "hazard_ms.cli"]
 
 
@@ -50,7 +51,10 @@ def words(score: Score) -> str:
 
 
 def machine() -> str:
-    """The commit and the machine."""
-    commit = subprocess.run(["git", "-C", str(HERE), "describe", "--always", "--dirty"], capture_output=True, text=True)
+    """The commit and the machine; `-dirty` if code differs from the commit, whatever tables do."""
+    git = ["git", "-C", str(HERE.parent)]
+    commit = subprocess.run([*git, "rev-parse", "--short=7", "HEAD"], capture_output=True, text=True).stdout.strip()
+    if subprocess.run([*git, "diff", "--quiet", "HEAD", "--", *CODE], capture_output=True).returncode:
+        commit += "-dirty"
     version = subprocess.run([*COMMAND, "version"], capture_output=True, text=True, check=True).stdout.strip()
-    return f"commit {commit.stdout.strip()}; {version.splitlines()[0]}; {platform.machine()}, {os.cpu_count()} cores"
+    return f"commit {commit}; {version.splitlines()[0]}; {platform.machine()}, {os.cpu_count()} cores"

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib.metadata
 import json
 import os
 import platform
@@ -20,6 +19,7 @@ from hazard_ms.agents.thinking import OFF
 from hazard_ms.evaluation.averted.loss import Loads, Loss, averted, averted_of_all
 from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
 from hazard_ms.evaluation.teams.fields import TEAM_FORMAT, check, told
+from hazard_ms.machine.diagnosis import installed_version
 from hazard_ms.machine.files import write
 from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.registry.version import __version__
@@ -217,10 +217,7 @@ def versions() -> dict[str, str]:
     """Versions of this package and of those that can change an episode; "absent" where one is not installed."""
     found = {"hazard-ms": __version__, "python": platform.python_version()}
     for name in PACKAGES:
-        try:
-            found[name] = importlib.metadata.version(name)
-        except importlib.metadata.PackageNotFoundError:
-            found[name] = "absent"
+        found[name] = installed_version(name) or "absent"
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,9 +24,20 @@ PACKAGES = (
     "trimesh",
     "opencv-python-headless",
 )
+NIGHTLY = "-nightly"  # end of the name under which ManiSkill's daily builds are installed
 OPENCVS = ("opencv-python", "opencv-contrib-python", "opencv-python-headless", "opencv-contrib-python-headless")
 PYTHONS = ((3, 10), (3, 12))  # first and last; mani-skill's mplib has no later build
 LEAST_FREE = 1.0  # [GB] a video, a result and the caches of one run need less
+
+
+def installed_version(package: str) -> str | None:
+    """The version of a package, or of its nightly build; None if neither is installed."""
+    for name in (package, f"{package}{NIGHTLY}"):
+        try:
+            return importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            continue
+    return None
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ any other. `examine(facts)` in diagnosis.py judges them and changes nothing.
 
 from __future__ import annotations
 
-import importlib.metadata
 import json
 import os
 import shutil
@@ -18,7 +17,7 @@ from pathlib import Path
 
 from hazard_ms.machine import render_backend
 from hazard_ms.machine.cache import home
-from hazard_ms.machine.diagnosis import OPENCVS, PACKAGES, Facts, chosen_backend, examine
+from hazard_ms.machine.diagnosis import OPENCVS, PACKAGES, Facts, chosen_backend, examine, installed_version
 from hazard_ms.machine.processes import environment
 from hazard_ms.machine.survey import read_machine
 from hazard_ms.machine.vulkan import ask_vulkan, last_line
@@ -50,13 +49,8 @@ def collect(
 
 def installed() -> dict[str, str]:
     """Versions of the installed packages that matter."""
-    versions = {}
-    for name in {*PACKAGES, *OPENCVS}:
-        try:
-            versions[name] = importlib.metadata.version(name)
-        except importlib.metadata.PackageNotFoundError:
-            continue
-    return versions
+    found = {name: installed_version(name) for name in {*PACKAGES, *OPENCVS}}
+    return {name: version for name, version in found.items() if version}
 
 
 def python_fault(code: str, environ: Mapping[str, str]) -> str:

@@ -102,7 +102,7 @@ def importable(spec: Any) -> Any:
 
 def tell_maniskill_of_tasks() -> None:
     """Put every task, present and future, into ManiSkill's REGISTERED_ENVS; the environment is imported on demand."""
-    from mani_skill.utils.registration import REGISTERED_ENVS, EnvSpec
+    from hazard_ms.spec.undocumented import REGISTERED_ENVS, EnvSpec
 
     class Spec(EnvSpec):
         """Knows the class of the environment, which must not be imported yet, only when it is asked for it."""
@@ -126,7 +126,7 @@ def tell_maniskill_of_tasks() -> None:
 
 def tell_maniskill_of_robots() -> None:
     """Put every robot, present and future, into ManiSkill's REGISTERED_AGENTS; its class is imported on demand."""
-    from mani_skill.agents.registration import REGISTERED_AGENTS, AgentSpec
+    from hazard_ms.spec.undocumented import REGISTERED_AGENTS, AgentSpec
 
     class Spec(AgentSpec):
         """Knows the class of the robot, which must not be imported yet, only when it is asked for it."""

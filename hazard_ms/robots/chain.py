@@ -14,9 +14,9 @@ import numpy as np
 import torch
 import warp as wp
 from numpy.typing import NDArray
-from sapien.wrapper.urdf_exporter import export_kinematic_chain_xml
 
 from hazard_ms.kernels.launch import OPTIONS, Launches
+from hazard_ms.spec.undocumented import export_kinematic_chain_xml
 
 wp.set_module_options(OPTIONS)
 

@@ -17,11 +17,11 @@ from mani_skill.agents.controllers import (
     PDJointPosMimicController,
     PDJointVelController,
 )
-from mani_skill.agents.controllers.base_controller import BaseController, CombinedController
 from numpy.typing import NDArray
 from torch import Tensor
 
 from hazard_ms.spec import rounding
+from hazard_ms.spec.undocumented import BaseController, CombinedController
 
 Floats = NDArray[np.float32]
 ONE, MINUS_ONE = np.float32(1.0), np.float32(-1.0)  # numbers of Python would be converted each time

@@ -14,7 +14,6 @@ import numpy as np
 import sapien
 import torch
 from mani_skill.agents.controllers import PDBaseForwardVelControllerConfig
-from mani_skill.agents.controllers.base_controller import CombinedController
 from numpy.typing import NDArray
 from torch import Tensor
 
@@ -23,6 +22,7 @@ from hazard_ms.robots.direct import Part, going_on, parts_of
 from hazard_ms.robots.robot import Robot
 from hazard_ms.spec import rounding
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.undocumented import CombinedController
 
 FORWARD_STEP = 1.0 / 62.0  # walking speed of the benchmark [m per frame]
 TURN_STEP = float(np.deg2rad(6.0))  # turning speed of the benchmark [rad per frame]
@@ -95,8 +95,8 @@ class PlanarRobot(Robot):
         """Length of an action in `control_mode`, one of the robot's. The present mode stays."""
         if control_mode not in self.controllers:
             parts = self._controller_configs[control_mode]  # type: ignore[attr-defined]  # ManiSkill's agents have it
-            made = CombinedController(parts, self.robot, self._control_freq, scene=self.scene)
-            self.controllers[control_mode] = made
+            told = {"articulation": self.robot, "control_freq": self._control_freq, "scene": self.scene}
+            self.controllers[control_mode] = CombinedController(parts, **told)
         return int(self.controllers[control_mode].single_action_space.shape[0])
 
     def base_controller(self, damping: float, force: float) -> PDBaseForwardVelControllerConfig:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import sapien
-from mani_skill.render import PREBUILT_SHADER_CONFIGS
 from mani_skill.sensors.camera import Camera
 from mani_skill.utils.common import to_tensor
 from torch import Tensor
 
 from hazard_ms.effects.shaders.glance import TEXTURES, glance_pack
+from hazard_ms.spec.undocumented import PREBUILT_SHADER_CONFIGS
 
 
 class LabelCamera:

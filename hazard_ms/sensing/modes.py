@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import torch
-from mani_skill.envs.utils.observations import parse_obs_mode_to_struct
 
 from hazard_ms.sensing.senses.senses import DEGRADED, SENSES, THERMAL
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.undocumented import parse_obs_mode_to_struct
 
 # names of modes, of which the first three need no renderer, and of textures, which can be joined by "+"
 PLAIN_MODES = ("state", "state_dict", "none", "sensor_data", "pointcloud")

@@ -8,7 +8,6 @@ from typing import Any
 import sapien
 import torch
 from mani_skill.envs.scene import ManiSkillScene
-from mani_skill.envs.utils.system.backend import parse_sim_and_render_backend
 from mani_skill.utils.structs.types import SimConfig
 
 from hazard_ms.machine.render_backend import backend
@@ -16,6 +15,7 @@ from hazard_ms.simulation import building
 from hazard_ms.simulation.drawing.lighting import Lighting
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec
+from hazard_ms.spec.undocumented import parse_sim_and_render_backend
 
 PHYSICS_RATE = 120  # [Hz] as in the preset `paper`
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import hashlib
-import importlib.metadata
 import json
 import platform
 import subprocess
@@ -22,6 +21,7 @@ import torch
 
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.machine.cores import maker
+from hazard_ms.machine.diagnosis import installed_version
 from tests.worlds.episodes import actions
 
 RECORD = Path(__file__).with_name("episode_hashes.json")
@@ -31,13 +31,13 @@ SEEDS = (0, 1, 2)
 STEPS = 300
 
 
-def machine() -> dict[str, str]:
+def machine() -> dict[str, str | None]:
     """What the bits of an episode depend on besides the project's own code: not on the processor, if it has AVX2."""
     names = ("sapien", "mani-skill", "torch", "warp-lang", "numpy")
     return {
         "processor": "AVX2" if torch.backends.cpu.get_cpu_capability().startswith("AVX") else "without AVX2",
         "C library": " ".join(platform.libc_ver()),
-        **{name: importlib.metadata.version(name) for name in names},
+        **{name: installed_version(name) for name in names},
     }
 
 

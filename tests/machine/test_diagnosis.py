@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 from pathlib import Path
 
 import pytest
 
-from hazard_ms.machine.diagnosis import OPENCVS, PACKAGES, Facts, Finding, examine
+from hazard_ms.machine.diagnosis import OPENCVS, PACKAGES, Facts, Finding, examine, installed_version
 from hazard_ms.machine.survey import read_machine
 from hazard_ms.machine.vulkan import Answer
 from tests.worlds.files.machines import ALL_LIBRARIES, NO_DRIVER, facts_of, lavapipe, ldconfig, machine_at
@@ -113,3 +114,17 @@ def test_mig_slices_and_containers_without_graphics_leave_drawing_to_the_cpu(tmp
         found = {finding.name: finding for finding in examine(facts)}
         assert found["gpu"].state == "warning" and said in found["gpu"].detail
         assert found["rendering"].detail.endswith("CPU") and first_fault(facts) is None
+
+
+def test_a_nightly_build_counts_as_its_package(monkeypatch: pytest.MonkeyPatch) -> None:
+    there = {"mani-skill-nightly": "2026.8.2", "sapien": "3.0.3"}
+
+    def version(name: str) -> str:
+        if name not in there:
+            raise importlib.metadata.PackageNotFoundError(name)
+        return there[name]
+
+    monkeypatch.setattr(importlib.metadata, "version", version)
+    assert [installed_version(name) for name in ("mani-skill", "sapien", "torch")] == ["2026.8.2", "3.0.3", None]
+    there["mani-skill"] = "3.0.1"
+    assert installed_version("mani-skill") == "3.0.1"

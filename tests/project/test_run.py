@@ -17,7 +17,7 @@ import pytest
 from tests.worlds.files.checkout import ROOT, THIS_PYTHON, installed_uv, locked, pins, run, small_checkout
 
 pytestmark = pytest.mark.setup
-COMMANDS = ("demo", "demos", "test", "gpu-check", "docs", "python", "hazard-ms", "pip")
+COMMANDS = ("demo", "demos", "test", "results", "gpu-check", "docs", "python", "hazard-ms", "pip")
 
 
 @pytest.fixture
@@ -31,7 +31,10 @@ def started_by_run() -> Path:
 def test_run_refuses_what_it_does_not_know_before_any_set_up(tmp_path: Path) -> None:
     done = run("dance", HAZARD_MS_HOME=str(tmp_path / "home"))
     assert done.returncode == 1
-    assert "must be demo, demos, serve, test, gpu-check, docs, python, hazard-ms or pip, got 'dance'" in done.stderr
+    assert (
+        "must be demo, demos, serve, test, results, gpu-check, docs, python, hazard-ms or pip, got 'dance'"
+        in done.stderr
+    )
     assert not (tmp_path / "home").exists()
 
 

@@ -14,7 +14,7 @@ from dataclasses import replace
 from typing import Any
 
 import sapien
-from mani_skill.render import PREBUILT_SHADER_CONFIGS, ShaderConfig
+from mani_skill.render import ShaderConfig
 from mani_skill.sensors.camera import Camera
 from mani_skill.utils.common import to_tensor
 from torch import Tensor
@@ -26,6 +26,7 @@ from hazard_ms.effects.raytracing.pack import STOCK, ray_pack
 from hazard_ms.effects.raytracing.sparks import lit_by, sparks
 from hazard_ms.effects.shaders.pack import colour, pack_folder
 from hazard_ms.effects.streets.street import at_rest
+from hazard_ms.spec.undocumented import PREBUILT_SHADER_CONFIGS
 
 SAMPLES, DEPTH = "ray_tracing_samples_per_pixel", "ray_tracing_path_depth"
 

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import sapien
 import torch
-from mani_skill.render import PREBUILT_SHADER_CONFIGS, ShaderConfig
+from mani_skill.render import ShaderConfig
 from torch import Tensor
 
 from hazard_ms.effects.shaders.char import CHAR, CHAR_DEFERRED, CHAR_FORWARD
@@ -31,6 +31,7 @@ from hazard_ms.effects.shaders.sway import STILL, SWAY_FRAG, SWAY_VERT
 from hazard_ms.effects.shaders.water import IMMERSE, IMMERSE_DEFERRED, IMMERSE_FORWARD
 from hazard_ms.machine.cache import kept_folder
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.undocumented import PREBUILT_SHADER_CONFIGS
 
 NAMES = {"full": "hazard", "fast": "hazard-fast", "off": "default"}  # effects mode -> shader pack of the cameras
 DRESS_PASS = 2  # shading mode of the town around a street: no stock pack has this pass, so none draws it
@@ -76,8 +77,7 @@ def register() -> None:
 
 def pack_folder(mode: str) -> str:
     """The pack of effects `mode` (full, fast, off) as SAPIEN's cameras take it: its folder."""
-    # an absolute path stays as it is
-    return str(stock_packs() / PREBUILT_SHADER_CONFIGS[shader_config(mode)].shader_pack)
+    return str(stock_packs() / PREBUILT_SHADER_CONFIGS[shader_config(mode)].shader_pack)  # absolute stays as it is
 
 
 def keep_warm(mode: str, device: sapien.Device) -> None:

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 import pytest
 
 from hazard_ms.agents.team import TEAM_AGENTS, team_agent
-from hazard_ms.agents.teams.joint import Joint
 from hazard_ms.agents.teams.oracle import TeamOracle
 from hazard_ms.agents.teams.sharing import Sharing
 from hazard_ms.evaluation.attempts import attempt
@@ -18,7 +17,7 @@ from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.evaluation.teams.player import privileged_team
 from hazard_ms.evaluation.workers import Job, Word
 from hazard_ms.registry import AGENTS, load
-from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action
+from hazard_ms.skills.decision import EXPLORE, WALK_TO
 from hazard_ms.skills.team import TeamSkills
 from hazard_ms.spec import AgentStart, Body, Room, SceneSpec, Task
 from hazard_ms.tasks.fire import hazard_fire
@@ -151,11 +150,9 @@ def test_the_second_robot_plans_without_what_the_first_goes_for(room: TeamSkills
     assert aims[0] not in left and aims[1] in left
 
 
-def test_a_robot_that_is_still_far_keeps_nobody_away() -> None:
-    """Walks to what is 5 and 2 m away, and a robot that stands: within 0.8 m none begins."""
+def test_what_is_far_may_be_done_before_a_robot_is_there() -> None:
+    """Work at a thing that is 5 m away bars no way to it; within 0.8 m of a robot that stands none begins."""
     team, told = TeamOracle(), decision((0.0, 0.0), {"a": (5.0, 0.0), "b": (2.0, 0.0)})
-    assert [team.keeps_away(told, Action(WALK_TO, name)) for name in "abc"] == [False, True, True]  # nobody saw c
-    assert team.keeps_away(told, Action(PICK_UP, "a")) and Joint().keeps_away(told, Action(WALK_TO, "a"))
     team._work, team._stands = {"r1": [(5.5, 0.0)]}, {}  # there it may be done before this robot comes
     assert team.crowded_things("r0", told) == set() and Sharing.crowded_things(team, "r0", told) == {"a"}
     team._work, team._stands = {}, {"r1": (1.3, 0.0)}

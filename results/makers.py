@@ -117,6 +117,8 @@ MAKERS = (
           kept="the training of the weights of the package; results/eyes.md and results/perceived.md score these"),
     Maker("scenes", ("python -m results.scenes search 600",), ("results/scenes.md", "results/scenes.csv"), 10.0,
           kept="the search that chose the homes of `test` and `held_out`: they are as they are"),
+    Maker("hidden", ("hazard-ms commitments winter.json --draw 25 --secret winter.secret.json",),
+          ("results/hidden/*.json",), 0.1, kept="scenes that were drawn once, by chance"),
     Maker("leaderboard", ("hazard-ms leaderboard results/leaderboard -o site",), ("results/leaderboard/**/*",), 5.0,
           kept="submissions and signed reports, each of the version that it names"),
     Maker("killed_recordings", ("python results/killed_recordings.py DATASET -o FOLDER",), hours=1.0,

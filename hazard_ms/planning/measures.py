@@ -7,13 +7,14 @@ away, and afterwards targets stay whole for longer. `hazard_ms.planning.beginnin
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.travel import refuse_unless_frames
+from hazard_ms.planning.problem import Problem
+from hazard_ms.planning.travel import StaticTravel, refuse_unless_frames
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,3 +85,23 @@ class Measures:
         for tool in (self.in_hand, *(measure.needs for measure in self.measures)):
             if tool is not None and tool not in fetches:
                 raise ValueError(f"a tool must be that of a measure that fetches one, of {sorted(fetches)}, got {tool}")
+
+
+def with_unseen(problem: Problem, frames: NDArray[np.float64], unseen: Sequence[tuple[float, float]]) -> Problem:
+    """The same problem with targets that nobody gets to: their values and the frames of their loss, `unseen`.
+
+    `frames`: of the ways between the G targets of the problem and the start, which comes last, [G + 1, G + 1].
+    """
+    goals, more = len(problem.values), len(unseen)
+    table = np.full((goals + more + 1,) * 2, np.inf)
+    kept = [*range(goals), goals + more]
+    table[np.ix_(kept, kept)] = frames
+    return replace(
+        problem,
+        travel=StaticTravel(table),
+        values=[*problem.values, *(value for value, _ in unseen)],
+        damaged_at=[*problem.damaged_at, *(at for _, at in unseen)],
+        gone_at=None if problem.gone_at is None else [*problem.gone_at, *[np.inf] * more],
+        pick=[*problem.pick, *[1.0] * more],
+        drop=[*problem.drop, *[1.0] * more],
+    )

@@ -8,10 +8,8 @@ it averts anything, whatever else would avert more. What is shut is opened only 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hazard_ms.agents.search.candidates import EXTINGUISH, TRIES, Candidate, candidates
 from hazard_ms.agents.search.forecast import WATER
@@ -20,9 +18,7 @@ from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.search.walks import frames_between
 from hazard_ms.planning.averting import kept
 from hazard_ms.planning.beginning import Course, best_course
-from hazard_ms.planning.measures import Measure, Measures
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.planning.measures import Measure, Measures, with_unseen
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision, Tool
@@ -36,9 +32,8 @@ PUT_DOWN = 80.0  # frames of putting down a tool [measured: 66 to 112]
 # share of the value of targets by which rescues alone must be better for a charged tool to be put down: it is often
 # wanted again a little later, which takes 250 frames [ours]
 HOLDS_ON = 0.01
-# share of what would be lost that measures must avert beyond rescues alone to be begun where things drift: they take
-# longer than planned, and rescues wait meanwhile [measured: in house_flood_test_1/03 two boards that were to avert 2 %
-# more took 1,000 frames, and less was averted than by rescues alone]
+# share of what would be lost that measures must avert to be begun in water: rescues wait meanwhile [measured: boards
+# that were to avert 2 % in house_flood_test_1/03 took 1,000 frames, and less was averted]
 LEAST_IN_WATER = 0.1
 ENOUGH = 0.3  # distance from where a fire is fought at which a walk there ends [hazard_ms.skills.mitigations.views]
 SAME_PLACE = 1.5  # distance within which a fire, or a door, is the one that was there [m] [ours]
@@ -50,6 +45,7 @@ class Mitigator:
     def __init__(self, brief: Brief, memory: Memory) -> None:
         """Begin an episode; `memory` is that of the agent."""
         self._brief, self._memory = brief, memory
+        self._water = any(hazard.name == WATER for hazard in brief.hazards)
         self._put_down: dict[str, int] = {}  # how often each tool was put down
         self._opened: set[str] = set()
         self._barred = False  # whether it puts down a tool to open a door
@@ -140,11 +136,11 @@ class Mitigator:
         rows = {
             (one.guards, at): one.unseen / len(one.unseen_at) for one in found for at in one.unseen_at if one.unseen > 0
         }
-        problem = _with_unseen(ahead.plain, ahead.frames, [(value, at) for (_, at), value in rows.items()])
+        problem = with_unseen(ahead.plain, ahead.frames, [(value, at) for (_, at), value in rows.items()])
         guarded = [name for name, _ in rows]
         measures = _measures(decision, ahead, found, guarded, held, self._brief.radius)
         margin = 0.0 if held is None else HOLDS_ON * sum(t.value for t in decision.targets if not t.rescued)
-        if held is None and self._begun is None and any(hazard.name == WATER for hazard in self._brief.hazards):
+        if held is None and self._begun is None and self._water:
             margin = -LEAST_IN_WATER * (sum(problem.values) - kept(problem))
         course = best_course(problem, measures, most_labels=MOST_LABELS, beam=BEAM, margin=margin)
         return course if course.steps and course.before is None else None
@@ -165,8 +161,8 @@ class Mitigator:
 
     def opening(self, decision: Decision) -> Action | None:
         """A door to open where nothing else is left to do, each once; None where there is none."""
-        if any(hazard.name == WATER for hazard in self._brief.hazards):
-            return None  # it would let water in
+        if self._water:
+            return None  # it would come in
         return self._door(decision, "there may be more behind it")
 
     def _door(self, decision: Decision, why: str) -> Action | None:
@@ -192,26 +188,6 @@ class Mitigator:
         return min(doors, key=order).name if doors else None
 
 
-def _with_unseen(problem: Problem, frames: NDArray[np.float64], unseen: Sequence[tuple[float, float]]) -> Problem:
-    """The same problem with targets more that nobody gets to: the value of what is `unseen`, and when it is lost.
-
-    `frames`: of the ways between the goals of the problem and the start, [G + 1, G + 1].
-    """
-    goals, more = len(problem.values), len(unseen)
-    table = np.full((goals + more + 1,) * 2, np.inf)
-    kept = [*range(goals), goals + more]
-    table[np.ix_(kept, kept)] = frames
-    return replace(
-        problem,
-        travel=StaticTravel(table),
-        values=[*problem.values, *(value for value, _ in unseen)],
-        damaged_at=[*problem.damaged_at, *(at for _, at in unseen)],
-        gone_at=None if problem.gone_at is None else [*problem.gone_at, *[np.inf] * more],
-        pick=[*problem.pick, *[1.0] * more],
-        drop=[*problem.drop, *[1.0] * more],
-    )
-
-
 def _measures(
     decision: Decision,
     ahead: Outlook,
@@ -220,7 +196,7 @@ def _measures(
     held: Tool | None,
     radius: float,
 ) -> Measures:
-    """The candidates as measures of the problem `_with_unseen`."""
+    """The candidates as measures of the problem `with_unseen`."""
     goals = len(ahead.targets) + len(ahead.lookouts)
     seen = [decision.map.objects.get(decision.index(ahead.name(goal))) for goal in range(goals)]
     here = np.asarray(decision.agent_position, np.float64)

@@ -50,7 +50,6 @@ SIDES = tuple(np.deg2rad([75.0, 45.0, 15.0, -15.0]).tolist())  # how far down th
 class Basket:
     """The basket of a cart as the robot stands before it."""
 
-    cart: int
     spots: tuple[NDArray[np.float64], ...]  # where the held thing may go, near the robot [m], each [3], world frame
     place: Place  # keeps the hand above the rim
 
@@ -231,18 +230,15 @@ def _inside(stage: Stage, cart: int, held: int, falling: bool = False) -> bool:
 
 def _basket(stage: Stage, cart: int) -> Basket:
     """The basket of the `cart`, and the places in it that are nearest to the robot."""
-    world = stage.world
-    low, high = _hollow(stage, cart)
-    x, y, _ = stage.robot.base()
-    here, spots = _local(stage, cart, np.array([x, y, 0.0])), []
+    world, (low, high) = stage.world, _hollow(stage, cart)
+    here, spots = _local(stage, cart, np.array([*stage.robot.base()[:2], 0.0])), []
     for inset in INSETS:
         half = np.maximum((high - low) / 2 - inset, 0.0)
         place = np.clip(here, (low + high) / 2 - half, (low + high) / 2 + half)
         place[2] = high[2] - SUNK
         turned = rotate(world.rotation[0, cart], world.position.new_tensor(place)).cpu().numpy()
         spots.append(np.asarray(stage.position(cart) + turned, dtype=np.float64))
-    rim = float(stage.position(cart)[2] + high[2])
-    return Basket(cart, tuple(spots), Place(spots[0], 0.0, np.inf, rim))
+    return Basket(tuple(spots), Place(spots[0], 0.0, np.inf, float(stage.position(cart)[2] + high[2])))
 
 
 def _open(stage: Stage, arm: NDArray[np.float64], falling: int = -1) -> Skill:

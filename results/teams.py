@@ -10,6 +10,7 @@ frames that take turns.
 from __future__ import annotations
 
 import csv
+import math
 import os
 import statistics
 import sys
@@ -42,7 +43,7 @@ SETUPS = {  # robots and agent of each team, by its name
     "2 oracle": (PAIR, "oracle"),
 }
 REFERENCE, ASKED = "2 oracle", "oracle"  # it sees what is hidden; played where this word asks for it
-BEST, ALONE, APART, AUCTION = "2 joint", "1 planner", "2 independent", "2 auction"
+BEST, ONES, APART, AUCTION = "2 joint", ("1 planner", "1 greedy"), "2 independent", "2 auction"
 KEYS = ("env_id", "seed", "scene", "robots", "agent")
 BORNE = ("heat", "water")  # columns with a number for each robot, empty where nothing measures it
 COLUMNS = (*KEYS, "value", "rescued", "targets", "frames", "robot_collisions", "averted", *BORNE)
@@ -62,8 +63,8 @@ Written at
 |---|---|---|---|---|---|---|
 """
 COMPARED = """
-| task | Value of `2 joint` over that of `1 planner` | less `2 independent` | less `2 auction` | episodes |
-|---|---|---|---|---|
+| task | Value of `2 joint` over `1 planner` | over `1 greedy` | less `2 independent` | less `2 auction` | episodes |
+|---|---|---|---|---|---|
 """
 
 
@@ -134,11 +135,12 @@ def tables(every: list[Row]) -> str:
                 sum(int(r["robot_collisions"]) for r in mine),
             )
             text += f"| {task} | {name} | {mean} | {kept} | {frames:.0f} | {hits} | {len(mine)} |\n"
-        if {BEST, ALONE, APART, AUCTION} <= values.keys():
-            both = values[BEST].keys() & values[ALONE].keys()
-            one, two = (sum(values[name][e] for e in both) for name in (ALONE, BEST))
+        if {BEST, *ONES, APART, AUCTION} <= values.keys():
+            each = set.intersection(*(set(values[name]) for name in (BEST, *ONES)))
+            sums = {name: sum(values[name][e] for e in each) for name in (BEST, *ONES)}
+            over = " | ".join(f"{sums[BEST] / sums[one] if sums[one] else math.nan:.2f}" for one in ONES)
             less = " | ".join(words(difference(values[BEST], values[name])) for name in (APART, AUCTION))
-            compared += f"| {task} | {two / one if one else float('nan'):.2f} | {less} | {len(both)} |\n"
+            compared += f"| {task} | {over} | {less} | {len(each)} |\n"
     return text + COMPARED + compared
 
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 from hazard_ms.agents.planner import Planner
 from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.search.searcher import First
-from hazard_ms.agents.teams.sharing import TURNS, Sharing, without
+from hazard_ms.agents.teams.sharing import TURNS, WALKS, Sharing, without
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, Action, Decision
 from hazard_ms.skills.telling import LONGEST
@@ -80,8 +80,12 @@ class _Partner(Planner):
             kept, self._mitigator, self._gale = (self._mitigator, self._gale), None, None
             action = super()._choose(decision)
             self._mitigator, self._gale = kept
-        self._waited = self._waited + 1 if action.target in self._crowded and self._waited < TURNS else 0
-        return self._say("another robot is at work there", Action(EXPLORE)) if self._waited else action
+        waits = action.target in self._crowded and self._waited < TURNS
+        if waits:
+            self._waited += 1
+        elif action.verb not in WALKS:  # a walk is followed by what it waited for, or two wait for each other for ever
+            self._waited = 0
+        return self._say("another robot is at work there", Action(EXPLORE)) if waits else action
 
     def _without_plan(self, decision: Decision, ahead: Outlook) -> Action:
         others = self._team.fetched(self._name) | self._crowded

@@ -7,7 +7,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
 
+from hazard_ms.agents.planner import Planner
 from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.teams.auction import Auction
 from hazard_ms.agents.teams.joint import Joint
@@ -142,3 +144,19 @@ def test_nobody_begins_within_reach_of_where_another_robot_works() -> None:
     assert places_of(told, Action("push", "c")) == [(3.4, 0.0), (3.6, 0.0)]
     team._ahead, team._aims, team._rescued = {}, {}, set()
     assert team.shared("r0", lying_ahead(0.0), {"a"}).problem.values == (0.0, 3.0)
+
+
+def test_two_do_not_wait_for_each_other_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Near to where another robot stands it looks around three times, then walks up to the thing and takes it."""
+    walk, take = Action(WALK_TO, "a"), Action(PICK_UP, "a")
+    team = Joint()
+    team.reset({})
+    team._stands = {"r1": (0.5, 0.0)}
+    partner, chosen, done = team._partner("r0"), [walk], list[str]()
+    partner._crowded, partner._waited = set(), 0
+    monkeypatch.setattr(Planner, "_choose", lambda self, decision: chosen[0])
+    for _ in range(9):
+        action = partner._choose(decision((0.0, 0.0), {"a": (1.0, 0.0)}))
+        done.append(action.verb)
+        chosen[0] = take if action == walk else walk if action == take else chosen[0]
+    assert done == [*["explore"] * 3, "walk_to", "pick_up", *["explore"] * 3, "walk_to"]

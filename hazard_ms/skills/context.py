@@ -61,6 +61,7 @@ class Stage:
         self.bumps: list[tuple[float, float, int]] = []  # x, y [m], frame
         self.others: tuple[Robot, ...] = ()  # the other robots of its team, which tell it where they are
         self.on_ground = False  # whether a thing can be rescued by putting it on the ground, where nothing moves it
+        self.last_move = (0.0, 0.0, self.robot.arm())  # forward [m], turn [rad], and where the arm is to get to [rad]
         self._arm = self.robot.arm()  # last commanded joints [rad]
 
     @property
@@ -96,10 +97,15 @@ class Stage:
         if np.abs(actual - self._arm).max() > 1.0:  # [rad]; something else moved the arm or is in its way
             self._arm = actual
         goal = self.robot.tucked if arm is None else arm
+        self.last_move = (forward, turn, goal)
         left = goal - self._arm  # all joints arrive at the same time
         self._arm = self._arm + left * min(1.0, self.robot.build.arm_step / max(float(np.abs(left).max()), 1e-9))
         holding = self.held >= 0 if shut is None else shut
         return self.robot.action(forward, turn, self._arm, not holding)
+
+    def still(self) -> LowLevel:
+        """An action, [A], in which the robot stays as it is; what it was about to do it can do afterwards."""
+        return self.robot.action(0.0, 0.0, self.robot.arm(), self.held < 0)
 
     def arm_gap(self, arm: NDArray[np.float64]) -> float:
         """Largest difference of a joint from `arm`, [..., J] [rad]."""
@@ -161,8 +167,17 @@ class Stage:
         """Heights of obstacles [m], [Y, X]: as seen, where the robot got stuck lately, and where other robots are."""
         height = self.seen.height.copy()
         stuck = [(x, y, BUMP_RADIUS) for x, y, frame in self.bumps if self.frame - frame < BUMP_MEMORY]
-        for bump_x, bump_y, radius in stuck + self.discs():
-            y, x = np.mgrid[0 : height.shape[0], 0 : height.shape[1]]
-            middle_x, middle_y = self.seen.origin[:, None, None] + (np.stack([x, y]) + 0.5) * self.seen.cell
-            height[np.hypot(middle_x - bump_x, middle_y - bump_y) < radius] = 1.0
+        for disc in stuck + self.discs():
+            height[self.covered(disc, height.shape, self.seen.origin)] = 1.0
         return height
+
+    def covered(
+        self, disc: tuple[float, float, float], shape: tuple[int, ...], corner: NDArray[np.floating]
+    ) -> NDArray[np.bool_]:
+        """The cells of a piece of the map, [Y, X] as `shape` says, from `corner` [m], [2], on, that lie in a disc.
+
+        `disc`: the middle's x and y, and the radius [m].
+        """
+        y, x = np.mgrid[0 : shape[0], 0 : shape[1]]
+        middle_x, middle_y = corner[:, None, None] + (np.stack([x, y]) + 0.5) * self.seen.cell
+        return np.asarray(np.hypot(middle_x - disc[0], middle_y - disc[1]) < disc[2])

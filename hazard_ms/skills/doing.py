@@ -32,7 +32,7 @@ class Doing:
             self.move = self._next()
         return None if self._result is None else replace(self._result, frames=frame - self._since)
 
-    def break_off(self, frame: int) -> Result:
-        """End the action at `frame`, where the episode is over."""
+    def break_off(self, frame: int, reason: str = EPISODE_OVER) -> Result:
+        """End the action at `frame` for a `reason`: by default, that the episode is over."""
         self._doing.close()
-        return Result(False, EPISODE_OVER, frame - self._since)
+        return Result(False, reason, frame - self._since)

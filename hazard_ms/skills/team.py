@@ -33,8 +33,10 @@ from hazard_ms.skills.decision import (
     Result,
 )
 from hazard_ms.skills.doing import Doing
+from hazard_ms.skills.failures import BLOCKED
 from hazard_ms.skills.knowledge import Knowledge, OneRobot
 from hazard_ms.skills.mitigations.offers import check
+from hazard_ms.skills.spacing import would_touch
 from hazard_ms.skills.telling import named_in
 
 WALKING, REACHING = (WALK_TO, WALK_ONE_STEP), (PICK_UP, DROP)  # verbs
@@ -157,7 +159,7 @@ class TeamSkills:
             waiting = {name for name in self._running if self._waits(name)}
             info = self._frame({name: self._move(name, name in waiting) for name in self.names})
             for name, doing in [*self._running.items()]:
-                result = None if name in waiting else doing.go_on(self.frame)
+                result = self._go_on(doing, name in waiting)
                 if result is not None:
                     results[name] = self._finish(name, result)
         terminated = bool(info["success"][0] or info["fail"][0]) or not (self._running or self.free)
@@ -171,19 +173,31 @@ class TeamSkills:
         """What a robot does in the coming frame; it stands where nothing runs, and stays as it is while it waits."""
         doing, stage = self._running.get(name), self.knowledge[name].stage
         if waits:
-            return stage.act(arm=stage.robot.arm())
+            return stage.still()
         return stage.act() if doing is None or doing.move is None else doing.move
 
+    def _go_on(self, doing: Doing, waits: bool) -> Result | None:
+        """Let an action decide on its next move, unless it waits; one that has waited for too long is broken off."""
+        if not waits:
+            return doing.go_on(self.frame)
+        return doing.break_off(self.frame, BLOCKED) if doing.waited > PATIENCE else None
+
     def _waits(self, name: str) -> bool:
-        """Whether a robot lets another one pass: its arm may reach out, and that one walks close by."""
+        """Whether a robot lets another one pass: its arm may reach out, and that one walks close by, or they meet.
+
+        It does so for PATIENCE; after that, who would meet another's body has waited for too long, and others go on.
+        """
         doing = self._running[name]
-        if doing.action.verb not in REACHING or doing.waited >= PATIENCE:
-            return False
+        meets = would_touch(self.knowledge[name].stage)
+        waits = meets or (doing.action.verb in REACHING and self._passed_by(name))
+        doing.waited += waits
+        return waits and (meets or doing.waited <= PATIENCE)
+
+    def _passed_by(self, name: str) -> bool:
+        """Whether another robot walks close by."""
         here = self.base.robots[name].base()[:2]
         walkers = (other for other, o in self._running.items() if other != name and o.action.verb in WALKING)
-        waits = any(math.dist(here, self.base.robots[other].base()[:2]) < PASSING for other in walkers)
-        doing.waited += waits
-        return waits
+        return any(math.dist(here, self.base.robots[other].base()[:2]) < PASSING for other in walkers)
 
     def check(self, actions: Mapping[str, Action]) -> None:
         """Check `actions` as `step` does. Raises ValueError for what it refuses."""

@@ -28,6 +28,7 @@ DEEPEST = 0.7  # greatest distance from a thing in furniture to the floor before
 OPENING = 0.1  # room beside a thing in furniture that its opening leaves for the middle of the arm [m] [ours]
 OVERHEAD = 0.05  # room above it that it leaves [m] [ours]
 HEADROOM = 0.16  # and above the board that it stands on: boards are 0.22 m apart, or farther [m] [ours]
+OTHERS_TOP = 1.2  # height of other robots; Fetch is 1.1 m high, the G1 1.3 [m] [ours]
 SLOPE = 0.7  # of the cone around the thing within which the hand comes down to what it stands on [-] [ours]
 
 
@@ -93,7 +94,10 @@ class Surface:
         if explored.any():
             nearest = ndimage.distance_transform_edt(~explored, return_distances=False, return_indices=True)
             height = height[tuple(nearest)]
-        return seen.origin + seen.cell * np.array([low_x, low_y]), height
+        corner = seen.origin + seen.cell * np.array([low_x, low_y])
+        for disc in self._stage.discs():  # of other robots: arms go round them
+            height = np.where(self._stage.covered(disc, height.shape, corner), np.float32(OTHERS_TOP), height)
+        return corner, height
 
     def _around(self) -> Any:
         """What arms keep above, for the kernel that counts what touches."""

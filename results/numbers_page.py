@@ -20,11 +20,11 @@ at which each was made, and whether the code has changed since:
 ./run results --check           # from version 1.0 on: fail if a number is older
 ```
 
-The same command resumes an interrupted run. Results of other code, and rows that would otherwise be reused, are first
-moved to `build/older`. Commit the code first, since tables name the commit that made them; `results/made.csv` has the
-commits of files that name none. Commit tables once they are made: that changes no code. Raw results of a commit are in
-`build/`, each folder with a file `COMMIT`. Rescues of people ([benchmark](benchmark.md)) cannot be played again: put them
-back from `build/older`.
+The same command resumes an interrupted run. Results of other code, and rows that would otherwise be reused, are
+first moved to `build/older`. Commit the code first, since tables name the commit that made them; `results/made.csv`
+has the commits of files that name none. Commit tables once they are made: that changes no code. Raw results of a
+commit are in `build/`, each folder with a file `COMMIT`. Rescues of people ([benchmark](benchmark.md)) cannot be
+played again: put them back from `build/older`.
 
 From version 1.0 on, a release must not have older numbers: first commit the version, then run `./run results all`, then
 tag. Only the results in the last table stay as they are, for the reason given there.

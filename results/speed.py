@@ -16,9 +16,9 @@ from results.tables import COMMAND, HERE
 PAGE = HERE.parent / "docs" / "speed.md"
 HEAD = """# Speed
 
-Made by `./run python results/speed.py`. Times belong to the machine named with them; compare ratios. Things compared are
-measured in turn, in one process. Each part gives the machine's load in the minutes before: only near 0 do its tables
-show an idle machine.
+Made by `./run python results/speed.py`. Times belong to the machine named with them; compare ratios. Things
+compared are measured in turn, in one process. Each part gives the machine's load in the minutes before: only near 0
+do its tables show an idle machine.
 """
 GPU = """## On a GPU
 
@@ -37,20 +37,21 @@ GPU = """## On a GPU
 - `waits`: the lines at which the host waits for the GPU, and how often per frame (`torch.cuda.set_sync_debug_mode`).
 
 The last four need PhysX for GPUs. **They have not been run yet**: the only GPU so far, an H200, was on a machine
-without network. There 4,096 fires of `paper` ran at 4.9 million frames per second in total, floods at 3.8 and winds at
-6.8 million (`realistic`: 267,000, 65,000 and 3.7 million), without the host ever waiting; 64 of each agreed with the CPU
-to within rounding, and repeats agreed bit for bit (page `gpu`). On a machine with a GPU, a single environment is
-simulated on the CPU and drawn on the GPU: its episodes are the same as on any other machine, bit for bit. A look took 6
-to 11 ms there and 34 to 116 ms on its CPU; labels differed in at most 0.002 % of the pixels, at outlines, and depth by
-more than 2 mm in 0.006 %, outdoors in up to 1 %: distant ground at 256 pixels, by up to 0.2 % of its distance.
+without network. There 4,096 fires of `paper` ran at 4.9 million frames per second in total, floods at 3.8 and winds
+at 6.8 million (`realistic`: 267,000, 65,000 and 3.7 million), without the host ever waiting; 64 of each agreed with
+the CPU to within rounding, and repeats agreed bit for bit (page `gpu`). On a machine with a GPU, a single
+environment is simulated on the CPU and drawn on the GPU: its episodes are the same as on any other machine, bit for
+bit. A look took 6 to 11 ms there and 34 to 116 ms on its CPU; labels differed in at most 0.002 % of the pixels, at
+outlines, and depth by more than 2 mm in 0.006 %, outdoors in up to 1 %: distant ground at 256 pixels, by up to 0.2
+% of its distance.
 
 If SAPIEN sees a GPU, it draws on it even with `render_backend="cpu"`. To draw on the CPU there, hide the other drivers:
 `VK_DRIVER_FILES=/usr/share/vulkan/icd.d/lvp_icd.x86_64.json`, or wherever lavapipe's file is.
 
 Each measurement runs in its own process. A table ends, with the reason, when memory runs out or a measurement takes
-longer than `--budget`, 300 seconds. Complaints of PhysX, such as contacts that do not fit its buffers, appear beside the
-numbers, which then belong to another simulation. Without a GPU the command ends at once with status 1. For less at a
-time, and a separate page:
+longer than `--budget`, 300 seconds. Complaints of PhysX, such as contacts that do not fit its buffers, appear
+beside the numbers, which then belong to another simulation. Without a GPU the command ends at once with status 1.
+For less at a time, and a separate page:
 
 ```bash
 ./run gpu-check --parts tests comparison -o first.md

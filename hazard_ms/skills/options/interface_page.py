@@ -36,18 +36,19 @@ breaks gives 0.
 SKILLS = """
 ## Skills
 
-Every task has a skill environment, such as `gym.make("hazard_ms:HazardFireSkills-v1")`. The observation is one vector;
-`[a +b i]` are the numbers a, a + b, a + 2 b, ... of slots 0, 1, 2, ... The unit says what a number of 1 means. Targets and
-carts keep their slots throughout an episode; landmarks are chosen again at every decision. An empty slot is all zeros. A
-hazard's level is 0 and 1 at the ends of its usual range. `action_masks()` marks the valid options.
+Every task has a skill environment, such as `gym.make("hazard_ms:HazardFireSkills-v1")`. The observation is one
+vector; `[a +b i]` are the numbers a, a + b, a + 2 b, ... of slots 0, 1, 2, ... The unit says what a number of 1
+means. Targets and carts keep their slots throughout an episode; landmarks are chosen again at every decision. An
+empty slot is all zeros. A hazard's level is 0 and 1 at the ends of its usual range. `action_masks()` marks the
+valid options.
 """
 MEASURES = f"""
 ### Measures
 
 `HazardHouseFireSkills-v1`, and every task with a fire and the skill `extinguish`, has its own layout, version
 **{MEASURED_VERSION}**: the above followed by these numbers and options, with values of targets in units of 20
-instead of 5. Fires are chosen again at every decision, those with most flames first. An extinguisher in the hand does not
-count as `holding`: it is put down before a target is fetched.
+instead of 5. Fires are chosen again at every decision, those with most flames first. An extinguisher in the hand does
+not count as `holding`: it is put down before a target is fetched.
 
 """
 

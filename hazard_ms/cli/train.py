@@ -102,7 +102,7 @@ def clone(
     from hazard_ms.spec.checks import whole
 
     if measures_of(env_id, physics):
-        raise ValueError(f"env_id must be a task whose options have no measures, which nobody recorded, got {env_id}")
+        raise ValueError(f"env_id must be a task without measures, since recordings have none, got {env_id}")
     student = Student(level_ranges(env_id, physics), whole(seed, 0, 2**31, "seed"))
     whole(passes, 1, 10**6, "passes")
     found = choices(demos, env_id, physics, student.encoder.layout)

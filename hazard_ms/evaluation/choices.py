@@ -133,7 +133,7 @@ class EnvOptions:
         for robot in robots:
             one_of(robot, registry.ROBOTS, "robot_uids")
         if len(robots) > (most := registry.MOST_ROBOTS if teams else 1):
-            many = f"{most} robots" if teams else "one robot here: `play`, `evaluate` and `replay` alone know teams"
+            many = f"{most} robots" if teams else "one robot here: only `play`, `evaluate` and `replay` take teams"
             raise ValueError(f"robot_uids must be at most {many}, got {len(robots)}")
         known = {"env_id": registry.TASKS, "physics": PRESETS}
         for what, names in {**known, "lighting": LIGHTINGS, "effects": EFFECTS}.items():

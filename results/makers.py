@@ -50,7 +50,7 @@ CAPTURE = "python results/detector.py capture"
 UNSEEN = ("pictures", "narrow", "camera", "unseen")  # what it takes
 IMITATION = "build/imitation"
 TEACH = "--load hazard_ms.tasks.practice -a oracle --obs rgb --cameras head+wrist --perturb control:2 --no-verify"
-BY_HAND = "put together by hand; shows things and tells no number"
+BY_HAND = "assembled by hand; has no numbers"
 
 MAKERS = (
     Maker("validation", ("hazard-ms validate -o docs",), ("docs/validation.md", "docs/validation/*.png"), 0.3),
@@ -122,7 +122,7 @@ MAKERS = (
     Maker("leaderboard", ("hazard-ms leaderboard results/leaderboard -o site",), ("results/leaderboard/**/*",), 5.0,
           kept="submissions and signed reports, each of the version that it names"),
     Maker("killed_recordings", ("python results/killed_recordings.py DATASET -o FOLDER",), hours=1.0,
-          kept="prints what docs/demonstrations.md tells"),
+          kept="prints numbers of docs/demonstrations.md"),
     Maker("pickups", ("python results/pickups.py",), hours=2.0, kept="prints why pick-ups fail; quoted nowhere"),
     Maker("labels", ("hazard-ms perception show build/pictures/HazardFire-v1 -o docs/labels_fire.jpg --things 100",),
           ("docs/labels_*.jpg", "docs/perception.jpg"), 0.1, kept=BY_HAND),

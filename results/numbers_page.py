@@ -10,26 +10,26 @@ from results.makers import MAKERS, Maker
 PAGE = "docs/numbers.md"
 HEAD = """# Which command made which number
 
-Made by `./run results --page`; a test compares. Every table and picture has one maker, and `./run results` says of each
-at which commit it was made, and whether the code has changed since:
+Made by `./run results --page`; a test compares. Every table and picture has one maker. `./run results` shows the commit
+at which each was made, and whether the code has changed since:
 
 ```bash
 ./run results                   # the state of each
-./run results homes latency     # make these anew, unless they are of this code
+./run results homes latency     # make these again, unless they are up to date
 ./run results all               # all that this machine can make, one after another
 ./run results --check           # from version 1.0 on: fail if a number is older
 ```
 
-A run that was stopped, by Ctrl-C or with the machine, resumes where it was: the same command goes on. What was played
-with other code is moved to `build/older` first, and so are rows that would otherwise be taken over. The code must be
-committed, for tables name the commit that made them; what names none is in `results/made.csv`. Commit tables when they
-are made: that changes no code. Raw results of a commit lie in `build/`, each folder with a file `COMMIT`. Rescues of
-people ([benchmark](benchmark.md)) cannot be played again: put them back from `build/older`.
+The same command resumes an interrupted run. Results of other code, and rows that would otherwise be reused, are
+first moved to `build/older`. Commit the code first, since tables name the commit that made them; `results/made.csv`
+has the commits of files that name none. Commit tables once they are made: that changes no code. Raw results of a
+commit are in `build/`, each folder with a file `COMMIT`. Rescues of people ([benchmark](benchmark.md)) cannot be
+played again: put them back from `build/older`.
 
-From version 1.0 on a release is refused whose numbers are of before it: the commit that sets the version comes first,
-then `./run results all`, then the tag. Only what the last table names stays as it is, and why.
+From version 1.0 on, a release must not have older numbers: first commit the version, then run `./run results all`, then
+tag. Only the results in the last table stay as they are, for the reason given there.
 
-Hours are of one core, about. A page quotes a table if it names the table, or the command, or shows the picture.
+Hours are for one core, roughly. A page quotes a table if it names the table or its command, or shows its picture.
 
 | name | makes | commands | hours | quoted in |
 |---|---|---|---|---|
@@ -37,7 +37,7 @@ Hours are of one core, about. A page quotes a table if it names the table, or th
 KEPT = """
 ## What is kept
 
-| name | files | made by | why it is not made anew | quoted in |
+| name | files | made by | why it is kept | quoted in |
 |---|---|---|---|---|
 """
 NEEDS = """

@@ -38,9 +38,9 @@ HELP = {"-h", "--help"}  # what is then printed is our own text, in colours
 
 
 def doctor(json: bool = False, draw: bool = True) -> int:
-    """Find out why hazard_ms does not start or draw here; name one cause and one command.
+    """Find out why hazard_ms does not start or render here; print one cause and the command that fixes it.
 
-    Ends with 1 if something is at fault.
+    Ends with 1 if something is wrong.
 
     Args:
         json: Print everything as JSON.
@@ -52,7 +52,7 @@ def doctor(json: bool = False, draw: bool = True) -> int:
 
 
 def version() -> int:
-    """Print the versions of hazard_ms and of what results depend on."""
+    """Print the versions of hazard_ms and of the packages that results depend on."""
     import platform
 
     from hazard_ms.machine.doctor import installed
@@ -70,7 +70,7 @@ def scenes(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[Scen
 
 
 def assets(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[AssetCommand]]) -> int:
-    """Models: add your own, list, remove, draw them all."""
+    """Models: add your own, list, remove, render them all."""
     return int(done)
 
 
@@ -95,7 +95,7 @@ def perception(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[
 
 
 def train(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[TrainCommand]]) -> int:
-    """Policies: train one by cloning or by reinforcement, score one in the sketch."""
+    """Policies: train by cloning or reinforcement learning, score in the sketch."""
     return int(done)
 
 

@@ -87,12 +87,13 @@ def stats(folder: Folder) -> int:
 def show(folder: Folder, output: Annotated[Path, flag("-o")] = Path("demos.html"), films: int = 20) -> int:
     """Write a page about the datasets in a folder: numbers, curves, and episodes with their films and timelines.
 
-    Raises ValueError for a folder without episodes, and for a page that cannot be written.
-
     Args:
         folder: A dataset, or a folder of datasets.
         output: Page to write, NAME.html. Keep it where it is if it links to films: those are not copied.
         films: Episodes of each dataset that are shown with film and timeline; the table and the curves have all.
+
+    Raises:
+        ValueError: for a folder without episodes, and for a page that cannot be written.
     """
     from hazard_ms.demonstrations.show import page
     from hazard_ms.evaluation.options import MOST

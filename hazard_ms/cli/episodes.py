@@ -23,9 +23,12 @@ SUFFIXES = {".mp4": "video", ".json": "result", ".html": "page"}  # of the files
 def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.arg(name="")]) -> int:
     """Play one episode of one agent; with --output, write its film, its result as JSON and its page.
 
-    With --agent human it leads to the page of `hazard-ms serve`, on which you play.
+    With --agent human, opens the page of `hazard-ms serve`, where you play.
 
-    Ends with 1 if the simulation broke. Raises ValueError for an output whose name is too long.
+    Ends with 1 if the simulation broke.
+
+    Raises:
+        ValueError: for an output whose name is too long.
     """
     from hazard_ms.agents.base import user_path
     from hazard_ms.evaluation.report import summary
@@ -85,8 +88,8 @@ def _filmed(episode: EpisodeOptions, path: Path, every: int) -> EpisodeResult:
 def evaluate(options: Annotated[tyro.conf.OmitArgPrefixes[SweepOptions], tyro.conf.arg(name="")]) -> int:
     """Play agents on the scenes of a split or a folder; print the scores with 95 % intervals.
 
-    Resumes an interrupted run: episodes whose files are there are not played again. Ends with 1 if a simulation broke,
-    or an agent failed in an episode.
+    Resumes an interrupted run: finished episodes are not played again. Ends with 1 if a simulation broke, or an agent
+    failed in an episode.
     """
     from hazard_ms.agents.base import user_path
     from hazard_ms.evaluation.sweep import evaluate as run

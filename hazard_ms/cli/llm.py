@@ -54,8 +54,7 @@ def check(
 ) -> int:
     """Ask a model a few small questions in each way of answering; say whether it can play, how fast, and at what cost.
 
-    Ends with 1 if its answers can be read in no way. The key is that of HAZARD_MS_LLM_KEY. Raises ValueError for an
-    address that cannot be used.
+    Ends with 1 if its answers can be read in no way. The key is that of HAZARD_MS_LLM_KEY.
 
     Args:
         base_url: Address of the server, such as http://127.0.0.1:8000/v1; else HAZARD_MS_LLM_BASE_URL.
@@ -65,6 +64,9 @@ def check(
         deadline: Time for an answer [s].
         limit_field: Name under which the greatest length of an answer is sent.
         extra: Further fields of a request, name:value;name:value or a JSON object, such as reasoning_effort:none.
+
+    Raises:
+        ValueError: for an address that cannot be used.
     """
     from hazard_ms.agents.llm.check import report, ways
 
@@ -85,14 +87,15 @@ def page(
 ) -> int:
     """Write a page with all that a model was asked in an episode, what it answered, and what was done.
 
-    Raises ValueError for files that are not a trace and a result, and for pictures without a result.
-
     Args:
         trace: File that the agent llm:trace=FOLDER wrote.
         result: Result of the same episode; what `hazard-ms regret` wrote beside it is shown, too.
         output: Page to write, NAME.html.
         pictures: Play the result again, for a picture of the head camera and a map at each decision.
         load: Modules, or files NAME.py, that register what the episode needs for pictures.
+
+    Raises:
+        ValueError: for files that are not a trace and a result, and for pictures without a result.
     """
     from hazard_ms.evaluation.decision_page import decision_page, read_trace
     from hazard_ms.evaluation.regret.causes import beside

@@ -24,15 +24,17 @@ def report(
 ) -> int:
     """Compare agents over folders of results: scores, differences, regret, and where frames and targets go.
 
-    Prints the scores with 95 % intervals, and writes one page with tables, charts and links to each episode. Raises
-    ValueError for folders without results, and for results that cannot be compared.
+    Prints the scores with 95 % intervals, and writes one page with tables, charts and links to each episode.
 
     Args:
-        folders: Folders that `hazard-ms evaluate` wrote; folders in them are read, too.
+        folders: Folders from `hazard-ms evaluate`, read with their subfolders.
         output: Page to write, NAME.html.
         json: Print everything as JSON instead, and write no page.
         pages: Write the page of each episode, into a folder NAME_episodes beside the page.
         csv: File for one row of numbers for each episode, NAME.csv.
+
+    Raises:
+        ValueError: for folders without results, and for results that cannot be compared.
     """
     from json import dumps
 
@@ -73,15 +75,15 @@ def regret(
 ) -> int:
     """Judge each decision of recorded episodes: how much value it gave away, and why.
 
-    Simulates the episodes again, and writes NAME.regret.json beside each result NAME.json; files that are there and fit
-    their result are kept. Prints what each agent lost, and by what. `hazard-ms report` shows it, too.
+    Simulates the episodes again, and writes NAME.regret.json beside each result NAME.json; existing files that fit
+    their result are kept. Prints what each agent lost, and why. `hazard-ms report` shows it too.
 
     Args:
-        folders: Folders that `hazard-ms evaluate` wrote; folders in them are read, too.
+        folders: Folders from `hazard-ms evaluate`, read with their subfolders.
         output: File for what each agent lost, NAME.json.
-        workers: Processes; 0: one for each core.
+        workers: Processes; 0: one per core.
         backend: Where episodes are simulated: serial, in this process; local processes; a ray cluster.
-        address: Address of the ray cluster, such as auto; this machine alone if not given.
+        address: Address of the ray cluster, such as auto; by default only this machine.
         load: Modules, or files NAME.py, that register what the episodes need.
     """
     from json import dumps
@@ -111,15 +113,16 @@ def submit(
 ) -> int:
     """Pack the episodes of one agent into a file for the leaderboard: decisions, hashes, versions, card, no code.
 
-    Raises ValueError where an episode of the track is missing, or has a fault that `hazard-ms verify` would find.
-
     Args:
-        folders: Folders that `hazard-ms evaluate` wrote; folders in them are read, too.
+        folders: Folders from `hazard-ms evaluate`, read with their subfolders.
         output: Submission to write, NAME.zip.
-        track: Track that it is for.
-        agent: Agent whose episodes are meant, as the results name it; may be left out where there is only one.
+        track: The track.
+        agent: The agent, as the results name it; needed only if there are several.
         card: File with the agent's card, which docs/leaderboard.md describes.
-        hidden: Commitments and published scenes of a hidden set, whose track it is then for.
+        hidden: Commitments and published scenes of a hidden set, for its track.
+
+    Raises:
+        ValueError: if an episode of the track is missing, or has a fault that `hazard-ms verify` would find.
     """
     from hazard_ms.evaluation.submissions.card import read_card
     from hazard_ms.evaluation.submissions.commitments import read_hidden
@@ -152,20 +155,20 @@ def verify(
     known: Path | None = None,
     hidden: Hidden = None,
 ) -> int:
-    """Simulate the episodes of a submission again, compare everything with what it says, and report it.
+    """Simulate the episodes of a submission again, compare everything, and write a report.
 
-    Ends with 1 if anything is not as it must be; each fault has a name, which docs/leaderboard.md explains.
+    Ends with 1 if anything is wrong; docs/leaderboard.md explains each fault by name.
 
     Args:
         file: Submission, NAME.zip.
         output: Report to write, NAME.report.json.
-        episodes: Episodes that are drawn for a quick look; 0: all, as the leaderboard asks for.
-        seed: Seed by which these are drawn.
-        workers: Processes; 0: one for each core.
+        episodes: Number of episodes drawn for a quick look; 0: all, as the leaderboard requires.
+        seed: Seed of that draw.
+        workers: Processes; 0: one per core.
         backend: Where episodes are simulated: serial, in this process; local processes; a ray cluster.
-        address: Address of the ray cluster, such as auto; this machine alone if not given.
-        key: Key of OpenSSH that signs the report; the signature lies beside it.
-        known: Folder of reports on earlier submissions, whose decisions a new one must not have.
+        address: Address of the ray cluster, such as auto; by default only this machine.
+        key: OpenSSH key to sign the report with; the signature is written beside it.
+        known: Folder of reports on earlier submissions, to find copied decisions.
         hidden: Commitments and published scenes of a hidden set.
     """
     from hazard_ms.evaluation.spread import Where
@@ -177,7 +180,7 @@ def verify(
 def leaderboard(
     folder: Annotated[Path, tyro.conf.Positional], output: Annotated[Path, flag("-o")] = Path("leaderboard")
 ) -> int:
-    """Write the leaderboard as a static site: what signed reports of whole submissions cover, and nothing else.
+    """Write the leaderboard as a static site, from signed reports of whole submissions only.
 
     Args:
         folder: Folder with reports, NAME.report.json, their signatures, and the file `signers`; films in NAME.
@@ -205,14 +208,15 @@ def commitments(
 ) -> int:
     """Check published hidden scenes against their commitments; with --draw, draw a new set.
 
-    Raises ValueError that names the first scene that was not committed, and for options that do not go together.
-
     Args:
         file: Commitments: the hashes of a set.
-        published: Scenes that were published; each must be the one that was committed.
+        published: Published scenes; each must match its commitment.
         output: Folder for the published scenes, as `hazard-ms evaluate --scenes` plays them.
         draw: Scenes of each task to draw; the commitments are written to the file, which names the set.
-        secret: File for the drawn scenes, to be kept secret until they are published.
+        secret: File for the drawn scenes; keep it secret until you publish it.
+
+    Raises:
+        ValueError: that names the first scene that was not committed, and for options that do not go together.
     """
     from hazard_ms.evaluation.submissions.commitments import read_hidden, write_drawn, write_scenes
 

@@ -69,13 +69,14 @@ def check(
 ) -> int:
     """Compare the sketch with real episodes of the same agents in the same scenes. Ends with 1 if it is too far off.
 
-    Raises ValueError for unknown agents, and for folders without results of any of them.
-
     Args:
         folders: Folders of results, as `hazard-ms evaluate -o FOLDER` makes them.
         env_id: Only this task.
         agents: Agents to compare, of those that can be played in the sketch.
         trials: Rescues in the sketch for each real episode.
+
+    Raises:
+        ValueError: for unknown agents, and for folders without results of any of them.
     """
     from hazard_ms.sketch import fidelity, skill_times
     from hazard_ms.sketch.policies import POLICIES as KNOWN

@@ -32,18 +32,17 @@ def bc(
 ) -> int:
     """Train the policy of the agent `bc` by behaviour cloning in the sketch, in minutes on one core.
 
-    It learns in generated scenes that belong to no split, and keeps the round that does best in others of that sort.
-    `hazard-ms evaluate --agents bc:weights=FILE` scores it in the real environment.
+    It trains in generated scenes outside all splits, and keeps the best round. Score it by --agents bc:weights=FILE.
 
     Args:
         env_id: Task.
         output: Folder for bc_TASK.safetensors and bc_TASK.json.
-        seed: Seed of everything that is random.
-        scenes: Number of scenes to learn in.
-        rounds: Rounds of labelling and learning.
-        episodes: Rescues that are labelled in each round.
+        seed: Seed of all randomness.
+        scenes: Number of training scenes.
+        rounds: Rounds of labelling and training.
+        episodes: Rescues labelled per round.
         physics: Preset of the hazards.
-        workers: Processes that make scenes; 0: one for each processor.
+        workers: Processes that make scenes; 0: one per processor.
     """
     import torch
 
@@ -82,18 +81,19 @@ def clone(
 ) -> int:
     """Train the policy of the agent `bc` by behaviour cloning of recorded decisions, in a minute on one core.
 
-    It learns to choose what the teacher chose, from what an agent without privileges saw, and prints how often it does,
-    also in every tenth episode, from which it does not learn. `hazard-ms evaluate --agents bc:weights=FILE` scores it.
-
-    Raises ValueError where there are no recorded decisions of the task.
+    It learns to choose as the teacher did, from what an agent without privileges saw, and prints how often it does,
+    also in every tenth episode, which it holds out. `hazard-ms evaluate --agents bc:weights=FILE` scores it.
 
     Args:
-        demos: A dataset of `hazard-ms demos record`, or a folder of datasets, of which those of the task count.
+        demos: A dataset of `hazard-ms demos record`, or a folder of datasets; those of the task are used.
         env_id: Task.
         output: Folder for bc_TASK.safetensors and bc_TASK.json.
-        seed: Seed of everything that is random.
+        seed: Seed of all randomness.
         passes: Passes over all decisions.
-        physics: Preset of the hazards that was recorded.
+        physics: Preset of the recorded hazards.
+
+    Raises:
+        ValueError: without recorded decisions of the task.
     """
     from hazard_ms.learning.cloning import Student, imitate
     from hazard_ms.learning.recorded import choices
@@ -102,7 +102,7 @@ def clone(
     from hazard_ms.spec.checks import whole
 
     if measures_of(env_id, physics):
-        raise ValueError(f"env_id must be a task whose options have no measures, which nobody recorded, got {env_id}")
+        raise ValueError(f"env_id must be a task without measures, since recordings have none, got {env_id}")
     student = Student(level_ranges(env_id, physics), whole(seed, 0, 2**31, "seed"))
     whole(passes, 1, 10**6, "passes")
     found = choices(demos, env_id, physics, student.encoder.layout)
@@ -139,28 +139,28 @@ def ppo(
     physics: Annotated[str, offer(PRESETS)] = "paper",
     workers: int = 0,
 ) -> int:
-    """Train the policy of the agent `rl`, or of `rl_paper`, by reinforcement in the sketch.
+    """Train the policy of the agent `rl`, or of `rl_paper`, by reinforcement learning in the sketch.
 
-    It learns in generated scenes that belong to no split, by sb3-contrib's MaskablePPO, and keeps what does best in
-    others of that sort. The same command resumes an interrupted training; with more --decisions or --minutes it goes on
-    with a finished one. `hazard-ms evaluate --agents rl:weights=FILE` scores it in the real environment.
-
-    Raises ValueError for numbers out of range, and where the extra `rl` is not installed.
+    It trains in generated scenes outside all splits, by sb3-contrib's MaskablePPO, and keeps the best in further ones.
+    The same command resumes training; more --decisions or --minutes continue it. Score it by --agents rl:weights=FILE.
 
     Args:
         env_id: Task.
         output: Folder for rl_TASK.safetensors, .json, .csv (the curve) and .training; rl_paper_TASK with actions paper.
-        seed: Seed of everything that is random.
+        seed: Seed of all randomness.
         actions: options, or paper: the six actions, the map, the network and the settings of the original's learner.
-        decisions: Number of decisions to learn from; by default 1,000,000 of options, 100,000 of the six actions.
-        minutes: Wall time after which learning ends, if it has not ended before.
-        scenes: Number of scenes to learn in.
+        decisions: Training decisions; by default 1,000,000 of options, 100,000 of the six actions.
+        minutes: Wall time after which training ends, if not before.
+        scenes: Number of training scenes.
         reward: value or paper; by default value for options, paper for the six actions.
-        start: File NAME.safetensors of a policy to begin with; by default an untrained one.
-        masked: Of the six actions, only those that can be done are chosen.
-        share: Of the six actions' network: width of its layers, as a share of the original's; by default one half.
+        start: File NAME.safetensors of a policy to start from; by default an untrained one.
+        masked: Choose only possible ones of the six actions.
+        share: Layer width of the six actions' network, as a share of the original's; by default one half.
         physics: Preset of the hazards.
-        workers: Processes that make scenes; 0: one for each processor.
+        workers: Processes that make scenes; 0: one per processor.
+
+    Raises:
+        ValueError: for numbers out of range, and without the extra `rl`.
     """
     from hazard_ms.agents.learned.weights import ENDING, load, load_map
     from hazard_ms.learning.scenes import generated

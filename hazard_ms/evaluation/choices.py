@@ -88,27 +88,27 @@ class EnvOptions:
     env_id: Annotated[str, offer(registry.TASKS), flag("-e")] = "HazardFire-v1"
     """Task."""
     split: Annotated[str, offer(SPLITS)] = "train"
-    """Split from which seeds choose scenes; large and new_objects are for tasks in rooms; in hard, time is shorter."""
+    """Split that seeds choose scenes from; large and new_objects are for tasks in rooms; hard has less time."""
     physics: Annotated[str, offer(PRESETS)] = "paper"
     """Preset of the hazards."""
     severity: Annotated[str, offer(SEVERITIES)] = "severe"
-    """How strong the hazards of the preset realistic are."""
+    """Strength of the hazards in the preset realistic."""
     hazards: tuple[Annotated[str, offer(registry.HAZARDS)], ...] = ()
-    """Hazards of HazardCompound-v1, its usual ones if not given, or of tasks for practice."""
+    """Hazards of HazardCompound-v1 (by default its usual ones) or of practice tasks."""
     robot_uids: Annotated[
         str | tuple[str, ...], offer_several(registry.ROBOTS), flag("-r", "--robot-uids", old="robot")
     ] = "fetch"
-    """Robot that rescues; two to four are a team, for `play` and `evaluate`, whose agents are then those of teams."""
+    """Robot; in `play` and `evaluate` two to four form a team, which needs a team agent."""
     affects_agent: bool = False
-    """Let the hazards act on the robot, as they always do in homes."""
+    """Let hazards act on the robot; in homes and gales they always do."""
     lighting: Annotated[str, offer(LIGHTINGS), flag("--lighting", old="light")] = "day"
-    """Light of the scene; random is drawn by the seed."""
+    """Light of the scene; with random, the seed decides."""
     effects: Annotated[str, offer(EFFECTS)] = "full"
     """Look of the hazards."""
     perturb: str = ""
-    """What differs from training, by kind and level from 1 to 3, such as lighting:2,camera:1."""
+    """How the episode differs from training, by kind and level 1 to 3, such as lighting:2,camera:1."""
     load: tuple[str, ...] = ()
-    """Modules, or files NAME.py, that register tasks, hazards, robots and agents of your own."""
+    """Modules, or files NAME.py, that register your own tasks, hazards, robots and agents."""
 
     def __post_init__(self) -> None:
         """Write perturbation and robots in their one way. Raises ValueError where that cannot be."""
@@ -133,7 +133,7 @@ class EnvOptions:
         for robot in robots:
             one_of(robot, registry.ROBOTS, "robot_uids")
         if len(robots) > (most := registry.MOST_ROBOTS if teams else 1):
-            many = f"{most} robots" if teams else "one robot here: `play`, `evaluate` and `replay` alone know teams"
+            many = f"{most} robots" if teams else "one robot here: only `play`, `evaluate` and `replay` take teams"
             raise ValueError(f"robot_uids must be at most {many}, got {len(robots)}")
         known = {"env_id": registry.TASKS, "physics": PRESETS}
         for what, names in {**known, "lighting": LIGHTINGS, "effects": EFFECTS}.items():

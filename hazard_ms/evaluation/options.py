@@ -35,9 +35,9 @@ class EpisodeOptions(EnvOptions):
     scene: str | None = None
     """Scene, a name or a file NAME.json; chosen by the seed if not given."""
     clock: Annotated[str, offer(CLOCKS)] = OFF
-    """Clock by which hazards go on while the agent thinks: tokens of its model, wall time, or none."""
+    """Clock that lets hazards go on while the agent thinks: tokens of its model, wall time, or off."""
     perception: Annotated[str, offer((TRUTH, *DETECTORS))] = TRUTH
-    """What tells the agent of things: truth, or a detector; its file and parameters follow, NAME:FILE,key=value."""
+    """Source of the agent's labels: truth, or a detector; its file and parameters follow, NAME:FILE,key=value."""
 
     def check(self, teams: bool = False) -> None:
         """Check environment, agent, clock and perception; `teams`: whether several robots can be played here.
@@ -99,7 +99,7 @@ class PlayOptions:
     output: Annotated[Path | None, flag("-o", "--output", old="video")] = None
     """Film to write, NAME.mp4; the result (.json) and a page (.html) are written beside it."""
     every: int = 6
-    """Frames of the episode from one picture of the film to the next; the film runs that much faster."""
+    """Episode frames per picture of the film; the film runs that much faster."""
 
     def check(self) -> None:
         """Check all options. Raises ValueError for what cannot be played."""
@@ -120,7 +120,7 @@ class ReplayOptions:
     workers: int = 0
     """Processes; 0: one for each core."""
     load: tuple[str, ...] = ()
-    """Modules, or files NAME.py, that register what the episodes need; none is loaded because a result names it."""
+    """Modules, or files NAME.py, that register what the episodes need; results never load any themselves."""
 
 
 @dataclass(frozen=True)
@@ -131,27 +131,27 @@ class SweepOptions:
     agents: tuple[Annotated[str, offer(registry.AGENTS, "MODULE:CLASS")], ...] = ("greedy", "random")
     """Agents, each as `hazard-ms play --agent` takes it."""
     scenes: Path | None = None
-    """Folder of scene files to play in place of those of the split; seed s plays file s in the order of their names."""
+    """Folder of scene files to play instead of a split; seed s plays file s in the order of their names."""
     episodes: int = 0
-    """Episodes of every agent, one for each seed; 0: 25, or one for each file of --scenes."""
+    """Episodes per agent, one per seed; 0: 25, or one per file of --scenes."""
     seed: Annotated[int, flag("-s", "--seed", old="first")] = 0
-    """First seed. Seed s plays the split's scene s, and begins again after the last scene."""
+    """First seed. Seed s plays the split's scene s, starting over after the last scene."""
     workers: int = 0
     """Processes; 0: one for each core."""
     backend: Annotated[str, offer(BACKENDS)] = "local"
-    """Where episodes are played: serial, in this process, without limits on agents; local processes; a ray cluster."""
+    """Where to play: serial, in this process, without limits on agents; local processes; a ray cluster."""
     address: str | None = None
     """Address of the ray cluster, such as auto; this machine alone if not given."""
     shard: str | None = None
-    """Part i/N of the episodes that is played here, such as 2/3; by default that of the Slurm array job."""
+    """Part i/N of the episodes to play, such as 2/3; by default the Slurm array job's."""
     averted: Annotated[str, offer(AVERTED)] = "task"
-    """Tell what agents avert, and the loads on the robot, which takes longer; task: where the task declares it."""
+    """Report what agents avert, and the loads on the robot, which takes longer; task: if the task declares it."""
     clock: Annotated[str, offer(CLOCKS)] = OFF
-    """Clock by which hazards go on while an agent thinks: tokens of its model, wall time, or none."""
+    """Clock that lets hazards go on while an agent thinks: tokens of its model, wall time, or off."""
     perception: Annotated[str, offer((TRUTH, *DETECTORS))] = TRUTH
-    """What tells agents of things: truth, or a detector; its file and parameters follow, NAME:FILE,key=value."""
+    """Source of the agents' labels: truth, or a detector; its file and parameters follow, NAME:FILE,key=value."""
     timeout: float = 60.0
-    """Wall time that an agent has for a decision [s]; one that takes longer loses the rest of its episode."""
+    """Wall time for a decision [s]; an agent that takes longer loses the rest of its episode."""
     output: Annotated[Path, flag("-o", "--output", old="out")] = Path("evaluation")
     """Folder for the results, one file for each episode."""
 

@@ -43,7 +43,7 @@ class Run:
             before = told(self.path)["command"]
         except (ValueError, KeyError) as error:
             raise ValueError(
-                f"{kept} must have its NAME.json beside it, got {error}: delete both to begin anew"
+                f"{kept} must have its NAME.json beside it, got {error}: delete both to start over"
             ) from None
         if before != self._facts["command"]:
             raise ValueError(

@@ -213,7 +213,7 @@ class RemoteEnv(gym.Env[dict[str, Any], NDArray[np.float32]]):
     def _ask(self, **question: Any) -> dict[str, Any]:
         """The answer to a question. What breaks the connection off ends it, so that no answer comes one too late."""
         if self._link is None:
-            raise ConnectionError("the connection must be open, got one that was closed: make the environment anew")
+            raise ConnectionError("the connection must be open, got one that was closed: make a new environment")
         message = packed(question)
         try:
             send(self._link, message)

@@ -50,7 +50,7 @@ def check_senses(senses: Sequence[str], mode: str | None) -> tuple[str, ...]:
     if THERMAL in senses and not needs_pictures(mode):
         raise ValueError(f"obs_mode must be one with pictures for the sense {THERMAL}, got {shown!r}")
     if DEGRADED in senses and (wrong := UNCHANGED.intersection(shown.split("+"))):
-        raise ValueError(f"obs_mode must have colour and depth alone for the sense {DEGRADED}, got {min(wrong)!r}")
+        raise ValueError(f"obs_mode must have only colour and depth for the sense {DEGRADED}, got {min(wrong)!r}")
     return tuple(dict.fromkeys(senses))
 
 

@@ -41,7 +41,7 @@ def from_bytes(what: str, version: int, content: bytes) -> dict[str, NDArray[Any
     number = columns.pop("format", np.asarray(-1))
     found = int(number.item()) if number.size == 1 and number.dtype.kind in "iu" else -1
     if found != version:
-        raise ValueError(f"format of {what} must be {version}, got {found}: make it anew")
+        raise ValueError(f"format of {what} must be {version}, got {found}: make it again")
     return columns
 
 

@@ -1,6 +1,6 @@
 """Gale rescue: bring the targets into carts, or where the wind leaves them, before a gust front turns and doubles it.
 
-What the wind has not moved when time is up counts as rescued, wherever it lies (docs/benchmark.md 1.1): in the lee of a
+What the wind has not moved when time is up counts as rescued, wherever it lies (docs/benchmark.md 1.2): in the lee of a
 house, a wall or a car of the wind that blows then. A thing in a cart is safe for good.
 """
 

@@ -15,15 +15,15 @@ class ServeOptions:
     """Options of `hazard-ms serve`."""
 
     port: int = 0
-    """Port on this machine; 0: one that is free, another one at each start."""
+    """Port on this machine; 0: any free one, new at each start."""
     folder: tuple[Path, ...] = ()
-    """Folders of results; rescues are written to the first one. By default `rescues`."""
+    """Folders of results; rescues go to the first. By default `rescues`."""
     sessions: int = MOST_SESSIONS
-    """Rescues at once, at most: each is a process of 1 to 2 GB."""
+    """Most rescues at once, each a process of 1 to 2 GB."""
     idle: float = IDLE_MINUTES
-    """Time after which a rescue that no page shows gives its process back; it can be gone on with later [min]."""
+    """Time after which a rescue that no page shows gives up its process; it can be resumed later [min]."""
     load: tuple[str, ...] = ()
-    """Modules, or files NAME.py, that register tasks, hazards, robots and agents of your own."""
+    """Modules, or files NAME.py, that register your own tasks, hazards, robots and agents."""
 
     @property
     def folders(self) -> tuple[Path, ...]:

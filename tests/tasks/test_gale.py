@@ -61,7 +61,7 @@ def test_what_lies_where_it_was_put_when_time_is_up_is_rescued() -> None:
 
 
 def test_carts_stand_in_a_bay() -> None:
-    """Three in a row, 1.6 m from each other and 2 m from an edge (docs/benchmark.md 1.1)."""
+    """Three in a row, 1.6 m from each other and 2 m from an edge (docs/benchmark.md 1.2)."""
     for name in splits.all_scene_names("gale")[::14]:
         places = np.array([cart.position[:2] for cart in splits.scene(name).containers])
         assert np.hypot(*np.diff(places, axis=0).T) == pytest.approx([1.6, 1.6], abs=1e-3), name

@@ -39,7 +39,7 @@ def weights_file(given: str, name: str, task: str, made_by: str) -> Path:
     path = SHIPPED / f"{name}_{task}{ENDING}"
     if not path.exists():
         raise ValueError(
-            f"weights of the agent {name} must be a file where the package brings none for {task}, got none: "
+            f"weights of the agent {name} must be a file, since the package has none for {task}, got none: "
             f"make one with `hazard-ms {made_by} -e {task} -o FOLDER`, and play {name}:weights=FILE"
         )
     return path

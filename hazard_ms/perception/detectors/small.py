@@ -49,7 +49,7 @@ class Small(Detector):
         file = Path(path) if path else SHIPPED
         if not path and not file.is_file():
             raise ValueError(
-                f"perception small must find the package's weights, got none at {SHIPPED}: install hazard_ms anew, or "
+                f"perception small must find the package's weights, got none at {SHIPPED}: reinstall hazard_ms, or "
                 "train others with `hazard-ms perception train DATA -o FOLDER --model small` and give small:FILE"
             )
         self.classes = read_recipe(file.with_suffix(".json"), (NETWORK,))["classes"]

@@ -91,7 +91,7 @@ def _check_names(content: bytes) -> None:
         for code, told, place in pickletools.genops(pickles):
             named = code.name in ("GLOBAL", "INST", "STACK_GLOBAL") or code.name.startswith("EXT")
             if (named and str(told) not in NAMED) or (count > 1 and place is not None and place > len(content)):
-                raise ValueError(f"tensors alone may be in it, got {printable(str(told or code.name))[:100]}")
+                raise ValueError(f"only tensors may be in it, got {printable(str(told or code.name))[:100]}")
 
 
 def _check(weights: Any, what: str) -> None:

@@ -14,15 +14,14 @@ from hazard_ms.skills.options.interface import describe
 
 HEAD = f"""# What a learner sees, does and gets
 
-This page is generated: `hazard-ms describe --markdown > docs/observations.md`. A test compares the two. What one
-environment has in one mode, `hazard-ms describe -e ENV --obs-mode MODE --robot-uids ROBOT` prints, with `--json` for
-programs.
+`hazard-ms describe --markdown > docs/observations.md` generates this page, and a test compares the two. For a single
+environment and mode, run `hazard-ms describe -e ENV --obs-mode MODE --robot-uids ROBOT`, with `--json` for programs.
 
 Version of the layout of observations: **{OBSERVATION_VERSION}**; of the features of skills: **{FEATURES_VERSION}**.
-A key that is added or moved, or changes its shape, type or range, changes the version.
+Adding or moving a key, or changing its shape, type or range, changes the version.
 
-Shapes are those of one environment; ManiSkill puts the number of environments in front. Ranges are those of the
-observation space. Positions and velocities have no bounds. Joints may be {JOINT_MARGIN} rad or m beyond their limits.
+Shapes are for one environment; ManiSkill puts the number of environments in front. Ranges are the observation space's.
+Positions and velocities have no bounds. Joints may be {JOINT_MARGIN} rad or m beyond their limits.
 """
 FEW = 7  # numbers of a key that are told in its own line
 REWARD = f"""
@@ -37,18 +36,19 @@ breaks gives 0.
 SKILLS = """
 ## Skills
 
-`gym.make("hazard_ms:HazardFireSkills-v1")`, and likewise for every task. The observation is one vector; `[a +b i]` are
-the numbers a, a + b, a + 2 b, ... of slots 0, 1, 2, ... The unit says what a number of 1 stands for. Targets and carts
-keep their slots throughout an episode; landmarks are chosen anew at every decision. An empty slot is all zeros. The
-level of a hazard is 0 and 1 at the ends of its usual range. `action_masks()` tells which options can be chosen.
+Every task has a skill environment, such as `gym.make("hazard_ms:HazardFireSkills-v1")`. The observation is one
+vector; `[a +b i]` are the numbers a, a + b, a + 2 b, ... of slots 0, 1, 2, ... The unit says what a number of 1
+means. Targets and carts keep their slots throughout an episode; landmarks are chosen again at every decision. An
+empty slot is all zeros. A hazard's level is 0 and 1 at the ends of its usual range. `action_masks()` marks the
+valid options.
 """
 MEASURES = f"""
 ### Measures
 
-`HazardHouseFireSkills-v1`, and every task with a fire and the skill `extinguish`, has a layout of its own, version
-**{MEASURED_VERSION}**: the above with these numbers and options behind it, and values of targets in units of 20,
-not 5. Fires are chosen anew at every decision, those with most flames first. An extinguisher in the hand does not count
-as `holding` anything: it is put down before a target is fetched.
+`HazardHouseFireSkills-v1`, and every task with a fire and the skill `extinguish`, has its own layout, version
+**{MEASURED_VERSION}**: the above followed by these numbers and options, with values of targets in units of 20
+instead of 5. Fires are chosen again at every decision, those with most flames first. An extinguisher in the hand does
+not count as `holding`: it is put down before a target is fetched.
 
 """
 
@@ -60,10 +60,10 @@ def page(env_ids: Sequence[str], robot_names: Sequence[str]) -> str:
     parts = [HEAD, "\n## The robot\n\nIn all modes.\n"]
     for robot, sections in robots.items():
         parts += [f"\n### {robot}\n\n", _table([r for r in sections["observation"] if r.key.startswith("agent/")])]
-    parts.append("\n## The task\n\nIn all modes; those of a target's place, damage and hazards in state modes only.\n")
+    parts.append("\n## The task\n\nIn all modes; a target's place, damage and hazards only in state modes.\n")
     tasks = {t: robots["fetch"] if t == first else sections_of(t, "state_dict", "fetch") for t in env_ids}
     parts += ["\n", _table(_of_tasks(tasks))]
-    parts += ["\n## Cameras\n\nIn image modes, for each camera; here for 256 x 256 pixels.\n\n", _table(_images())]
+    parts += ["\n## Cameras\n\nIn image modes, per camera; here for 256 x 256 pixels.\n\n", _table(_images())]
     parts += [_flat(env_ids, robot_names), "\n## Actions\n"]
     for robot, sections in robots.items():
         parts += [f"\n### {robot}, default control mode\n\n", _table(sections["action"])]
@@ -106,7 +106,7 @@ def _images() -> list[Row]:
 
 def _flat(env_ids: Sequence[str], robot_names: Sequence[str]) -> str:
     """Where the parts of the flat observation are, for each task and robot."""
-    made = '\n## The vector of `obs_mode="state"`\n\nFrom index to index, the last one excluded.\n'
+    made = '\n## The vector of `obs_mode="state"`\n\nFrom index to index, the last excluded.\n'
     for robot in robot_names:
         columns = {task: sections_of(task, "state", robot)["observation"] for task in env_ids}
         made += f"\n### {robot}\n\n| task | part | from | to |\n|---|---|---|---|\n"

@@ -20,7 +20,7 @@ export class Timelines {
     this.lanes = element("div", { class: "compare-lanes" })
     this.said = element("div", { class: "card compare-said" })
     this.place = element("section", { hidden: true, "aria-labelledby": "compare-timelines" },
-      element("h2", { id: "compare-timelines" }, "Decisions over one another"),
+      element("h2", { id: "compare-timelines" }, "Decisions compared"),
       element("p", { class: "row" },
         element("button", { type: "button", onclick: () => this.zoomed(2) }, "Wider"),
         element("button", { type: "button", onclick: () => this.zoomed(0.5) }, "Narrower"),

@@ -5,7 +5,7 @@ import { Rescue } from "./rescue.js"
 import { form, listed } from "./setup.js"
 
 const KEPT = "hazard_ms play" // in sessionStorage: the rescue that this tab shows
-const KEYS = [["1–9", "do the choice of that number"], ["m", "go to the list of things"], ["c", "go to the choices"],
+const KEYS = [["1–9", "take the choice with that number"], ["m", "go to the list of things"], ["c", "go to the choices"],
   ["+ −", "faster, slower"], ["w", "let the world wait, or run on"], ["Tab, Enter", "go on, choose"]]
 const PACES = [1, 2, 4, 8, 16]
 
@@ -32,7 +32,7 @@ export async function mount(part, api) {
     const at = PACES.indexOf(rescue.every || (rescue.state && rescue.state.every) || 4)
     rescue.every = PACES[Math.min(Math.max(at + step, 0), PACES.length - 1)]
     rescue.ask({ do: "pace", every: rescue.every })
-    rescue.now.textContent = `${rescue.every} frames from one picture to the next.`
+    rescue.now.textContent = `One picture every ${rescue.every} frames.`
   }
 
   async function leave() {

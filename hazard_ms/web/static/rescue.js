@@ -22,7 +22,7 @@ export class Rescue {
       if (key !== "z") image.addEventListener("click", event => this.point(key, event))
       return element("figure", { class: `picture picture-${key}` }, image, element("figcaption", {}, title))
     })
-    this.title = element("h2", { class: "title" }, "The rescue is being built …")
+    this.title = element("h2", { class: "title" }, "Setting up the rescue …")
     this.text = element("p", { class: "soft" })
     this.clock = element("b", { class: "large" }, "–")
     this.value = element("b", { class: "large" }, "–")
@@ -69,7 +69,7 @@ export class Rescue {
     })
     this.socket.addEventListener("close", () => {
       if (this.ended) return
-      this.say("The server does not answer: it has ended, or was killed. To go on, start hazard-ms serve with the same folder and open the address that it prints.", true)
+      this.say("The server does not answer: it has stopped or was killed. To continue, start hazard-ms serve with the same folder and open the address it prints.", true)
       this.timer = setTimeout(() => this.connect(), RETRY)
     })
   }
@@ -109,7 +109,7 @@ export class Rescue {
     this.report(message, this)
   }
 
-  on_building() { this.now.textContent = "The scene is being built; the first one takes about half a minute." }
+  on_building() { this.now.textContent = "Building the scene; the first takes about half a minute." }
 
   on_again() {
     this.rows = []
@@ -130,7 +130,7 @@ export class Rescue {
   }
 
   on_replaying(message) {
-    this.now.textContent = `The decisions so far are simulated again: ${message.done} of ${message.of}.`
+    this.now.textContent = `Simulating the decisions so far again: ${message.done} of ${message.of}.`
   }
 
   on_tick(message) {
@@ -158,7 +158,7 @@ export class Rescue {
     const tools = (message.tools || []).map(tool => this.chip(tool.name, `${Math.round(100 * tool.left)} % left`, tool.held ? "is-held" : ""))
     this.doors.replaceChildren(...doors, ...tools)
     if (doors.length) this.pictures.m.closest("figure").querySelector("figcaption").textContent = `${PICTURES.m}: squares are doors, filled while shut, red bars are extinguishers`
-    const words = { asking: "It is your turn.", doing: `The robot is at it: ${message.intent}.`, thinking: "The agent is thinking.",
+    const words = { asking: "It is your turn.", doing: `The robot is busy: ${message.intent}.`, thinking: "The agent is thinking.",
       paused: `Paused. The agent would: ${message.intent}.`, over: `The rescue is over: ${message.ended}.` }
     const last = message.last && !message.last.ok ? `${message.last.action} was not done: ${message.last.reason.replaceAll("_", " ")}. ` : ""
     this.now.textContent = last + (words[message.phase] || "")
@@ -241,7 +241,7 @@ export class Rescue {
     this.avertedCard.hidden = false
   }
 
-  on_filming(message) { this.progress(`The film is being made, by simulating the rescue again: frame ${message.frame} of ${message.of}.`) }
+  on_filming(message) { this.progress(`Making the film by simulating the rescue again: frame ${message.frame} of ${message.of}.`) }
 
   on_kept(message) {
     this.link(message.files)
@@ -265,12 +265,12 @@ export class Rescue {
   }
 
   on_failed(message) {
-    this.say(`The rescue cannot go on: ${message.why}. `, true,
+    this.say(`The rescue cannot continue: ${message.why}. `, true,
       element("button", { onclick: () => this.again() }, "Try again with the decisions so far"))
   }
 
   on_gone(message) {
-    this.say(`This rescue cannot be gone on with: ${message.why}.`, true)
+    this.say(`This rescue cannot be resumed: ${message.why}.`, true)
     this.ended = true
   }
 

@@ -57,7 +57,7 @@ def test_an_episode_is_the_same_as_without_a_bridge() -> None:
         assert not np.shares_memory(seen["agent_pos"], kept["agent_pos"])
         env.close()
         env.close()
-        with pytest.raises(ConnectionError, match="make the environment anew"):
+        with pytest.raises(ConnectionError, match="make a new environment"):
             env.reset()
     assert len(StandIn.closed) == 1
 
@@ -176,7 +176,7 @@ def test_a_late_answer_is_not_taken_for_the_next_one() -> None:
         with pytest.raises(TimeoutError, match="must be there in time"):
             env.step([0, 0])
         time.sleep(0.5)  # the answer is there now
-        with pytest.raises(ConnectionError, match="make the environment anew"):
+        with pytest.raises(ConnectionError, match="make a new environment"):
             env.reset(seed=2)
 
 

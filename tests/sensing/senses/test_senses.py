@@ -34,8 +34,8 @@ def played(
         (("infrared",), "rgb", "senses"),
         (("thermal",), "state", "obs_mode must be one with pictures"),
         (("thermal",), None, "obs_mode must be one with pictures"),
-        (("degraded",), "rgb+position", "obs_mode must have colour and depth alone"),
-        (("degraded",), "pointcloud", "obs_mode must have colour and depth alone"),
+        (("degraded",), "rgb+position", "obs_mode must have only colour and depth"),
+        (("degraded",), "pointcloud", "obs_mode must have only colour and depth"),
     ],
 )
 def test_senses_that_cannot_be_are_refused(senses: Any, mode: str | None, words: str) -> None:

@@ -24,7 +24,7 @@ HANDLING = 1.0  # what picking up costs, as a distance [m]
 RULE_GIVES_UP = 2  # failures with one thing
 LARGE = 12  # flames from which a fire is left alone (hazard_ms.agents.fighter)
 
-Policy = Callable[[Options, np.random.Generator], Ints]
+Policy = Callable[[Sketch, np.random.Generator], Ints]
 
 
 def greedy(sketch: Options, chance: np.random.Generator) -> Ints:
@@ -46,14 +46,14 @@ def greedy_without(sketch: Options, left_out: Bools) -> Ints:
     return _chosen(sketch, np.where(left_out, np.inf, cost), _cart_costs(sketch), (state.frame == 0))
 
 
-def nearest(sketch: Options, chance: np.random.Generator) -> Ints:
+def nearest(sketch: Sketch, chance: np.random.Generator) -> Ints:
     """The nearest known target in each rescue, whatever its worth, else as `greedy`: [N]."""
     del chance
     state = sketch.state
     return _chosen(sketch, distances(sketch.stack, state, state.seen_site), _cart_costs(sketch), state.frame == 0)
 
 
-def rule(sketch: Options, chance: np.random.Generator) -> Ints:
+def rule(sketch: Sketch, chance: np.random.Generator) -> Ints:
     """A random known target in each rescue, a random cart for it, else a random landmark, else a look around: [N]."""
     state = sketch.state
     targets = state.value.shape[1]
@@ -68,7 +68,7 @@ def rule(sketch: Options, chance: np.random.Generator) -> Ints:
     return np.where((found == FIRST[END]) & ~done.all(axis=1), FIRST[LOOK], found)
 
 
-def fighter(sketch: Options, chance: np.random.Generator) -> Ints:
+def fighter(sketch: Sketch, chance: np.random.Generator) -> Ints:
     """The known fire with the fewest flames in each rescue, if it can be put out; else as `greedy`: [N]."""
     made = greedy(sketch, chance)
     if not sketch.stack.measures:

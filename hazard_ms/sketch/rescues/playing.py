@@ -67,12 +67,12 @@ class Options(Robots):
             trying = trying[again]
             if not len(trying):
                 break
-        self._take(rows, target, here)
+        self._grasp(rows, target, here)
 
     def _approach(self, rows: Ints, target: Ints, goal: Ints) -> tuple[Ints, Bools]:
         """Walk to where a target in sight can be met, else to `goal`: the site, and whether the robot arrived, [R]."""
         stack, state = self.stack, self.state
-        site = np.where(self._in_sight(rows, target), meeting(stack, state, rows, target), goal)
+        site = np.where(self._sees(rows, target), meeting(stack, state, rows, target), goal)
         return site, self._walk(rows, site)
 
     def _arrive(self, rows: Ints, target: Ints, goal: Ints, arrived: Bools) -> tuple[Bools, Bools]:
@@ -80,9 +80,9 @@ class Options(Robots):
         stack, state = self.stack, self.state
         actual = target_site(stack, state, rows, target, state.frame[rows])
         here = arrived & (apart(stack, state, rows, actual, goal) < NEAR) & self._lies(rows, target)
-        return here, arrived & ~here & self._in_sight(rows, target)
+        return here, arrived & ~here & self._sees(rows, target)
 
-    def _in_sight(self, rows: Ints, target: Ints) -> Bools:
+    def _sees(self, rows: Ints, target: Ints) -> Bools:
         """Whether the `target` [R] can be seen now where it lies, [R]."""
         return in_sight(self.stack, self.state, rows, target) & self._lies(rows, target)
 
@@ -90,7 +90,7 @@ class Options(Robots):
         """Whether the `target` [R] is in the hand of no other robot, nor was rescued by one, [R]."""
         return np.ones(len(rows), bool)
 
-    def _take(self, rows: Ints, target: Ints, here: Bools) -> None:
+    def _grasp(self, rows: Ints, target: Ints, here: Bools) -> None:
         """Pick up the `target` [R] where it is `here` [R]; with a bag, put it in."""
         stack, state = self.stack, self.state
         worked = np.zeros(len(rows), bool)

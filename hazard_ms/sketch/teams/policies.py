@@ -5,14 +5,16 @@ They choose for the robot of each rescue that is asked, from what that robot has
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from hazard_ms.sketch.policies import HANDLING, greedy, greedy_without
-from hazard_ms.sketch.rescues.scene import Bools, Floats, Ints
+from hazard_ms.sketch.rescues.scene import Bools, Floats, Ints, SketchScene
+from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.sketch.teams.world import TeamSketch
 from hazard_ms.skills.options.options import END, FIRST, GIVE_UP, LOOK
+from hazard_ms.spec.checks import one_of
 
 Policy = Callable[[TeamSketch, np.random.Generator], Ints]
 
@@ -98,3 +100,18 @@ def play(sketch: TeamSketch, policy: Policy, seed: int = 0) -> None:
     chance = np.random.default_rng(seed)
     while not sketch.over.all():
         sketch.step(policy(sketch, chance))
+
+
+def mean_values(
+    team: str, scenes: Sequence[SketchScene], seeds: Sequence[int], times: SkillTimes, robots: int, trials: int
+) -> Floats:
+    """The mean Value of `trials` rescues by a team of POLICIES in each of W `scenes`, [W], 0 to 1.
+
+    `seeds` [W] are of these. Raises ValueError for an unknown team, and as `TeamSketch` does.
+    """
+    policy = POLICIES[one_of(team, POLICIES, "team")]
+    rows = np.repeat(np.arange(len(scenes)), trials)
+    sketch = TeamSketch(scenes, times, len(rows), robots)
+    sketch.reset(rows, np.asarray(seeds)[rows] * trials + np.tile(np.arange(trials), len(scenes)))
+    play(sketch, policy)
+    return np.asarray(sketch.score.reshape(len(scenes), trials).mean(axis=1))

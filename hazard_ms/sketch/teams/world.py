@@ -107,7 +107,7 @@ class TeamSketch(Options):
         self._taken_at[teams], self._left_at[teams], self._taker[teams] = NEVER, NEVER, -1
         self.aim[rows], self._walks[rows], self._stopped[rows] = -1, False, False
         self._look(rows, state.place[rows][:, None], state.heading[rows][:, None], state.frame[rows][:, None])
-        self._ask(rows)
+        self._note(rows)
         self._go_on()
 
     def step(self, option: ArrayLike) -> tuple[Floats, Bools]:
@@ -145,10 +145,11 @@ class TeamSketch(Options):
             if not len(due):
                 break
             self._handle(due)
-        self._ask(rows)
+        now = np.repeat(state.frame[rows], self.robots)
+        self._note(np.flatnonzero((state.frame == now) & ~self._walks))  # others whose options end now look up, too
 
-    def _ask(self, rows: Ints) -> None:
-        """Ask the robots of `rows` [K] for their options."""
+    def _note(self, rows: Ints) -> None:
+        """Note what the robots of `rows` [K] know, whose options are over."""
         state = self.state
         self.aim[rows], self.asked_place[rows] = state.held[rows], state.place[rows]
         lies = state.known[rows, : self._targets] & (state.held[rows][:, None] != np.arange(self._targets))
@@ -172,7 +173,7 @@ class TeamSketch(Options):
         again &= self._tries[rows] < TRIES
         self._walks[rows] = False
         self._set_off(rows[again])
-        self._take(rows[~again], target[~again], here[~again])
+        self._grasp(rows[~again], target[~again], here[~again])
         self._end(rows[~again])
 
     def _pick_up(self, rows: Ints, target: Ints) -> Bools:
@@ -201,10 +202,10 @@ class TeamSketch(Options):
         return missed
 
     def _elsewhere(self, rows: Ints, frame: Ints) -> Bools:
-        """The targets that another robot holds at `frame` [K], or has rescued, [K, T]."""
+        """The targets that another robot holds at `frame` [K], and those that are safe by then, [K, T]."""
         team, now = rows // self.robots, frame[:, None]
-        away = (self._taken_at[team] <= now) & (now < self._left_at[team])
-        return np.asarray(away & (self._taker[team] != rows[:, None]))
+        away = (self._taken_at[team] <= now) & (now < self._left_at[team]) & (self._taker[team] != rows[:, None])
+        return np.asarray(away | ((self.saved_at[team] >= 0) & (self.saved_at[team] <= now)))
 
     def _end(self, rows: Ints) -> None:
         """End options of `rows` [K], one of a rescue at most; what took no time takes IDLE, unless it was a stop."""

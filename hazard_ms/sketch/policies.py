@@ -37,7 +37,7 @@ def greedy(sketch: Options, chance: np.random.Generator) -> Ints:
 
 
 def greedy_without(sketch: Options, left_out: Bools) -> Ints:
-    """As `greedy`, but that the targets `left_out` [N, T] are left to others: [N]."""
+    """The options of `greedy` where the targets `left_out` [N, T] are left to others, [N]."""
     state = sketch.state
     targets = state.value.shape[1]
     away = distances(sketch.stack, state, state.seen_site) + HANDLING

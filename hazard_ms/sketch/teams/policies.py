@@ -20,12 +20,12 @@ Policy = Callable[[TeamSketch, np.random.Generator], Ints]
 
 
 def independent(sketch: TeamSketch, chance: np.random.Generator) -> Ints:
-    """As `greedy`, each robot on its own: the option of the one that is asked in each rescue, [N]. Nothing is drawn."""
+    """The option of the robot that is asked in each rescue, as `greedy` on its own, [N]. Nothing is drawn."""
     return greedy(sketch, chance)[sketch.rows]
 
 
 def auction(sketch: TeamSketch, chance: np.random.Generator) -> Ints:
-    """As `greedy` among the targets that an auction leaves to the robot that is asked in each rescue, [N].
+    """The option of the robot that is asked in each rescue, as `greedy` among what an auction leaves to it, [N].
 
     A robot looks around rather than stop while others have targets to fetch. Nothing is drawn.
     """

@@ -89,7 +89,7 @@ class TeamSketch(Options):
         return np.asarray(self.state.score.reshape(-1, self.robots).sum(axis=1), np.float64)
 
     def reset(self, scene: ArrayLike, seeds: ArrayLike, which: ArrayLike | None = None) -> None:
-        """Begin the episodes of `seeds` [K] in the scenes with the numbers `scene` [K] in the rescues `which` [K].
+        """Begin the episodes of `seeds` [B] in the scenes with the numbers `scene` [B] in the rescues `which` [B].
 
         None: in all. Raises ValueError for numbers of another shape, and for scene numbers out of range.
         """
@@ -111,7 +111,7 @@ class TeamSketch(Options):
         self._go_on()
 
     def step(self, option: ArrayLike) -> tuple[Floats, Bools]:
-        """Play `option` [N], of `mask[rows]`: what that rescued, as shares of all, and whether each episode is over.
+        """Play `option` [N], of `mask[rows]` [N, A]: the share of all that was rescued, and whether each episode is over.
 
         [N] each. An option that cannot be chosen costs a few frames; what is over stays as it is. What a robot fetches
         counts in the step in which all that begins before it gets there is played. Raises ValueError for anything but

@@ -111,7 +111,7 @@ class TeamSketch(Options):
         self._go_on()
 
     def step(self, option: ArrayLike) -> tuple[Floats, Bools]:
-        """Play `option` [N], of `mask[rows]` [N, A]: the share of all that was rescued, and whether each episode is over.
+        """Play `option` [N], of `mask[rows]` [N, A]: the share of all that it saved, and whether each episode is over.
 
         [N] each. An option that cannot be chosen costs a few frames; what is over stays as it is. What a robot fetches
         counts in the step in which all that begins before it gets there is played. Raises ValueError for anything but

@@ -64,6 +64,7 @@ MAKERS = (
     table("splits", 6.0, "splits", rows=("results/splits.csv",)),
     table("homes", 2.5, "homes", rows=("results/homes.csv",)),
     table("teams", 4.0, "teams", rows=("results/teams.csv",)),
+    table("team_sketch", 0.5),
     Maker("original", (f"python results/original.py {ORIGINAL}",), ("results/original.md",), 10.0, ("original",),
           needs=ORIGINAL),
     Maker("latency", ("python results/latency.py",), ("results/latency.csv", "docs/latency.svg"), 4.0, ("latency",)),

@@ -47,31 +47,36 @@ def bound(
     worth = np.asarray(values, np.float64)
     targets = np.array([timeline.index(target.name) for target in spec.targets], np.int64)
     alone = timeline.safe_at[targets] >= 0  # it becomes safe by itself
-    problem = _easiest(timeline, spec, build, targets[~alone], worth[~alone], limit)
+    start = spec.agent_start.position
+    problem = easiest(timeline, spec, build, targets[~alone], worth[~alone], limit, start)
     plan = solve(never_damaged(problem) if strict else problem)
     return float(min(1.0, (worth[alone].sum() + plan.value + plan.gap) / max(worth.sum(), 1e-9)))
 
 
-def _easiest(
+def easiest(
     timeline: Timeline,
     spec: SceneSpec,
     build: Build,
     targets: NDArray[np.int64],
     values: NDArray[np.float64],
     limit: int,
+    start: tuple[float, float],
 ) -> Problem:
-    """The problem of rescuing `targets`, indices [T] along B, in times that nobody can beat."""
+    """The problem of rescuing `targets`, indices [T] along B, from `start` [m] on, in times that nobody can beat.
+
+    Other arguments as for `bound`, with `values` [T].
+    """
     carts = np.array([timeline.index(cart.name) for cart in spec.containers], np.int64)
     reach = _reach(spec, build)
     frames = np.minimum(timeline.frames, limit)
     ways = timeline.positions(targets)[..., :2].astype(np.float64)
-    rest, start = timeline.start[carts, :2].astype(np.float64), np.asarray(spec.agent_start.position)
+    rest, begin = timeline.start[carts, :2].astype(np.float64), np.asarray(start)
     per_metre = 1.0 / build.forward_step
     travel: Travel
     if len(carts):
-        travel = _Chase(frames, ways, rest, start, reach[targets], reach[carts], per_metre)
+        travel = _Chase(frames, ways, rest, begin, reach[targets], reach[carts], per_metre)
     else:
-        travel = StaticTravel(_nearest(ways, start, reach[targets]) * per_metre)
+        travel = StaticTravel(_nearest(ways, begin, reach[targets]) * per_metre)
     return Problem(
         travel,
         values=values.tolist(),

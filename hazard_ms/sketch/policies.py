@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hazard_ms.sketch.rescues.menu import distances
+from hazard_ms.sketch.rescues.playing import Options
 from hazard_ms.sketch.rescues.scene import Bools, Floats, Ints
 from hazard_ms.sketch.world import Sketch
 from hazard_ms.skills.options.options import CART, END, FIRE, FIRST, LANDMARK, LOOK
@@ -26,18 +27,23 @@ LARGE = 12  # flames from which a fire is left alone (hazard_ms.agents.fighter)
 Policy = Callable[[Sketch, np.random.Generator], Ints]
 
 
-def greedy(sketch: Sketch, chance: np.random.Generator) -> Ints:
+def greedy(sketch: Options, chance: np.random.Generator) -> Ints:
     """The known target of the lowest cost in each rescue, else the best landmark, else stop; [N].
 
     It looks around first. Nothing is drawn.
     """
     del chance
+    return greedy_without(sketch, np.zeros(sketch.state.value.shape, bool))
+
+
+def greedy_without(sketch: Options, left_out: Bools) -> Ints:
+    """The options of `greedy` where the targets `left_out` [N, T] are left to others, [N]."""
     state = sketch.state
     targets = state.value.shape[1]
     away = distances(sketch.stack, state, state.seen_site) + HANDLING
     worth = state.value * np.where(state.seen_damaged | threatened(sketch, away), DAMAGED_SHARE, 1.0)
     cost = away * (1 + state.failures[:, :targets]) ** 2 / np.maximum(worth, 1e-9)
-    return _chosen(sketch, cost, _cart_costs(sketch), (state.frame == 0))
+    return _chosen(sketch, np.where(left_out, np.inf, cost), _cart_costs(sketch), (state.frame == 0))
 
 
 def nearest(sketch: Sketch, chance: np.random.Generator) -> Ints:
@@ -77,7 +83,7 @@ def fighter(sketch: Sketch, chance: np.random.Generator) -> Ints:
 POLICIES: dict[str, Policy] = {"greedy": greedy, "nearest": nearest, "rule": rule}
 
 
-def threatened(sketch: Sketch, away: Floats) -> Bools:
+def threatened(sketch: Options, away: Floats) -> Bools:
     """Whether each target would be damaged after a walk of `away` [N, T] [m], by the line through its last sightings.
 
     [N, T].
@@ -91,14 +97,14 @@ def threatened(sketch: Sketch, away: Floats) -> Bools:
     return np.asarray((level + rise * later[..., None] >= sketch.stack.limit[state.scene]).any(axis=-1))
 
 
-def _cart_costs(sketch: Sketch) -> Floats:
+def _cart_costs(sketch: Options) -> Floats:
     """Distance to each cart, longer for each failure there, [N, C] [m]."""
     state = sketch.state
     failures = state.failures[:, state.value.shape[1] :]
     return distances(sketch.stack, state, sketch.stack.cart_site[state.scene]) * (1 + failures)
 
 
-def _chosen(sketch: Sketch, targets: Floats, carts: Floats, look: Bools) -> Ints:
+def _chosen(sketch: Options, targets: Floats, carts: Floats, look: Bools) -> Ints:
     """The option of the lowest cost among `targets` [N, T] and `carts` [N, C], else the first landmark, else stop: [N].
 
     `look` [N]: where to look around before anything else.

@@ -25,35 +25,18 @@ import torch
 from numpy.typing import ArrayLike
 
 from hazard_ms.simulation.chance import Chance
-from hazard_ms.sketch.fires.fates import averted, damaged_at
-from hazard_ms.sketch.fires.robots import Robots
+from hazard_ms.sketch.fires.fates import averted
 from hazard_ms.sketch.rescues import menu
-from hazard_ms.sketch.rescues.looking import stands, target_site
-from hazard_ms.sketch.rescues.pursuit import ahead, apart, in_sight, meeting
+from hazard_ms.sketch.rescues.looking import stands
+from hazard_ms.sketch.rescues.playing import DRAWS, Options
 from hazard_ms.sketch.rescues.scene import Bools, Floats, Ints, SketchScene, Stack
 from hazard_ms.sketch.rescues.state import AS_MEASURED, Domain, Rescues
-from hazard_ms.sketch.skill_times import BAG, EXPLORE, PICK_UP, SkillTimes
-from hazard_ms.sketch.skill_times import CART as OVER_CART
+from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.skills.options.environment import IDLE
-from hazard_ms.skills.options.macros import NEAR
-from hazard_ms.skills.options.options import (
-    CART,
-    END,
-    FIRE,
-    FIRST,
-    LANDMARK,
-    LOOK,
-    MEASURED_COUNT,
-    TARGET,
-    TARGET_SLOTS,
-    TOOL,
-)
-
-TRIES = 2  # walks to a thing that moves: the second when it is seen from where it was expected [ours]
-DRAWS = 6  # uniform numbers of a step: two each for the pick-up, the drop, and a walk without a path
+from hazard_ms.skills.options.options import END, FIRST, TARGET_SLOTS
 
 
-class Sketch(Robots):
+class Sketch(Options):
     """Many rescues at once: `state` tells all about them, `mask` [N, A] what can be chosen, `step` plays an option."""
 
     def __init__(
@@ -108,17 +91,8 @@ class Sketch(Robots):
         allowed = self.mask[np.arange(len(chosen)), chosen]
         self._chance.tick()
         self._luck = self._draw("sketch.skill", DRAWS)
-        for play, first, end in (
-            (self._fetch, FIRST[TARGET], FIRST[CART]),
-            (self._stow, FIRST[CART], FIRST[LANDMARK]),
-            (self._search, FIRST[LANDMARK], FIRST[LOOK]),
-            (self._explore, FIRST[LOOK], FIRST[END]),
-            (self._put_out, FIRST[FIRE], FIRST[TOOL]),
-            (self._arm, FIRST[TOOL], MEASURED_COUNT),
-        ):
-            rows = np.flatnonzero(allowed & (chosen >= first) & (chosen < end))
-            if len(rows):
-                play(rows, chosen[rows] - first)
+        rows = np.flatnonzero(allowed)
+        self._play(rows, chosen[rows])
         self._settle(started, allowed & (chosen == FIRST[END]))
         return state.score - before, state.over.copy()
 
@@ -134,52 +108,6 @@ class Sketch(Robots):
         state.over |= (state.frame >= limit) | done | stopped
         self._menu()
 
-    def _fetch(self, rows: Ints, target: Ints) -> None:
-        """Walk to a target and pick it up; with a bag, put it in. A tool in the hand is put down before."""
-        stack, state = self.stack, self.state
-        self._lay_down(rows)
-        goal, here, trying = state.seen_site[rows, target], np.zeros(len(rows), bool), np.arange(len(rows))
-        for _ in range(TRIES):
-            some, wanted = rows[trying], target[trying]
-            seen = in_sight(stack, state, some, wanted)
-            goal[trying] = np.where(seen, meeting(stack, state, some, wanted), goal[trying])
-            arrived = self._walk(some, goal[trying])
-            actual = target_site(stack, state, some, wanted, state.frame[some])
-            here[trying] = arrived & (apart(stack, state, some, actual, goal[trying]) < NEAR)
-            trying = trying[arrived & ~here[trying] & in_sight(stack, state, some, wanted)]
-            if not len(trying):
-                break
-        worked = np.zeros(len(rows), bool)
-        worked[here] = self._pick_up(rows[here], target[here])
-        bag = worked & ~stack.cart_there[state.scene[rows]].any(axis=1)
-        worked[bag] = self._let_go(rows[bag], BAG)
-        state.failures[rows, target] += ~worked
-        state.looked[rows] = False
-
-    def _pick_up(self, rows: Ints, target: Ints) -> Bools:
-        """Pick up what is near; whether that worked, [R]."""
-        stack, state, scene = self.stack, self.state, self.state.scene[rows]
-        place = stack.height[scene, target], stack.clearance[scene, target]
-        ease = state.ease_of(rows, target, self.domain.again)
-        worked, frames = self.times.draw(PICK_UP, self._luck[rows, :2], *place, ease)
-        worked &= self._pass(rows, frames)
-        state.missed[rows] = np.where(worked, -1, target)
-        damaged = damaged_at(stack, state, rows)[np.arange(len(rows)), target]
-        state.spoiled[rows, target] |= worked & (damaged >= 0) & (damaged <= state.frame[rows])
-        state.held[rows[worked]] = target[worked]
-        return worked
-
-    def _let_go(self, rows: Ints, skill: str) -> Bools:
-        """Drop what is in the hand; whether it is safe now, [R]. Where it is not, it lies where the robot is."""
-        state, target, nowhere = self.state, self.state.held[rows], np.zeros(len(rows))
-        safe, frames = self.times.draw(skill, self._luck[rows, 2:4], nowhere, nowhere, state.ease[rows])
-        safe &= self._pass(rows, frames)
-        state.held[rows] = -1
-        lost = rows[~safe], target[~safe]
-        state.laid[lost] = state.seen_site[lost] = state.site[rows[~safe]]
-        state.rescue(rows[safe], target[safe], state.frame[rows[safe]])
-        return safe
-
     def _drift_in(self) -> None:
         """Count the targets that the hazard itself brought to a safe place, if nobody took them before."""
         state, safe_at = self.state, self.stack.safe_at[self.state.scene]
@@ -190,37 +118,3 @@ class Sketch(Robots):
             damaged = self.stack.damaged_at[state.scene[rows], target]
             state.spoiled[rows, target] = (damaged >= 0) & (damaged <= safe_at[rows, target])
             state.rescue(rows, target, safe_at[rows, target])
-
-    def _stow(self, rows: Ints, cart: Ints) -> None:
-        """Walk to a cart and let go of what is in the hand over it."""
-        state = self.state
-        arrived = self._walk(rows, self.stack.cart_site[state.scene[rows], cart])
-        safe = np.zeros(len(rows), bool)
-        safe[arrived] = self._let_go(rows[arrived], OVER_CART)
-        state.failures[rows, self._targets + cart] += ~safe
-        state.looked[rows] = False
-
-    def _search(self, rows: Ints, slot: Ints) -> None:
-        """Walk to a landmark, or as far as it goes, and look around there."""
-        state, mark = self.state, self.slots[rows, slot]
-        goal = self.stack.landmark_site[state.scene[rows], mark]
-        state.visits[rows, mark] += 1
-        state.looked[rows] = False
-        reachable = np.isfinite(ahead(self.stack, state, rows, goal))
-        self._walk(rows, goal)
-        self._explore(rows[reachable])
-
-    def _explore(self, rows: Ints, _: Ints | None = None) -> None:
-        """Turn once around, with looks."""
-        state, nothing = self.state, np.zeros(len(rows))
-        frames = self.times.draw(EXPLORE, self._luck[rows, :2], nothing, nothing, np.ones(len(rows)))[1]
-        whole = self._pass(rows, frames)
-        self._look(rows, state.place[rows][:, None], None, state.frame[rows][:, None])
-        state.looked[rows] = whole
-
-    def _menu(self) -> None:
-        self.slots = menu.landmark_slots(self.stack, self.state)
-        self.tool = self.nearest_tool()
-        self.mask = menu.mask(self.stack, self.state, self.slots, self._stop)
-        if self.stack.measures:
-            menu.offer_measures(self.mask, self.stack, self.state, self.tool)

@@ -9,7 +9,7 @@ import pytest
 from tests.worlds.files.checkout import ROOT
 
 FOLDERS = {".ci", ".github", "assets", "docs", "examples", "hazard_ms", "results", "tests"}
-LARGEST = 46_000_000  # of all files together [bytes]; they have 42 million, 7 of them weights of a detector [ours]
+LARGEST = 47_000_000  # of all files together [bytes]; they have 46 million, 7 of them weights of a detector [ours]
 
 
 def test_only_known_folders_are_tracked_and_they_stay_small() -> None:

@@ -80,14 +80,20 @@ class Robots:
         self.state.stand[rows] = stands(self.stack, self.state.scene[rows], points[:, -1])
 
     def _look(self, rows: Ints, points: Floats, facing: Floats | None, frame: Ints) -> None:
-        missed = None
-        if self.domain.missed > 0.0:
-            targets, carts, marks = self._targets, self.stack.cart_site.shape[1], self.stack.landmark_site.shape[1]
-            columns = np.r_[:targets, TARGET_SLOTS : TARGET_SLOTS + carts, THINGS : THINGS + marks]
-            missed = self._draw("sketch.sight", THINGS + marks)[rows][:, columns] < self.domain.missed
-        look(self.stack, self.state, rows, points, facing, frame, missed)
+        look(self.stack, self.state, rows, points, facing, frame, self._overlooked(rows, frame))
         if self.stack.measures:
             look_for_fires(self.stack, self.state, rows, points, facing, frame)
+
+    def _overlooked(self, rows: Ints, frame: Ints) -> Bools | None:
+        """The things that looks at `frame` [R, Q] do not show although they are in sight, [R, J]; None: there are none.
+
+        They do so by chance, as `domain` says.
+        """
+        if self.domain.missed == 0.0:
+            return None
+        targets, carts, marks = self._targets, self.stack.cart_site.shape[1], self.stack.landmark_site.shape[1]
+        columns = np.r_[:targets, TARGET_SLOTS : TARGET_SLOTS + carts, THINGS : THINGS + marks]
+        return np.asarray(self._draw("sketch.sight", THINGS + marks)[rows][:, columns] < self.domain.missed)
 
     def _draw(self, stream: str, count: int) -> Floats:
         return self._chance.uniform(stream, count).numpy().astype(np.float64)

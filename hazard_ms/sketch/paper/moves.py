@@ -14,13 +14,14 @@ from hazard_ms.sensing.sighting import SEEN_PIXELS
 from hazard_ms.sketch.fires.robots import THINGS
 from hazard_ms.sketch.rescues.looking import HALF_VIEW, NO_DISTANCE, target_site
 from hazard_ms.sketch.rescues.menu import distances
+from hazard_ms.sketch.rescues.playing import DRAWS
 from hazard_ms.sketch.rescues.pursuit import ahead, apart
 from hazard_ms.sketch.rescues.scene import Bools, Floats, Ints
 from hazard_ms.sketch.skill_times import BAG
 from hazard_ms.sketch.skill_times import CART as OVER_CART
 from hazard_ms.sketch.travel.geodesic import on_the_spot
 from hazard_ms.sketch.travel.ways import SETTLE, TURN, WALK
-from hazard_ms.sketch.world import DRAWS, Sketch
+from hazard_ms.sketch.world import Sketch
 from hazard_ms.skills.motor.walking import MIDPOINT, SLACK, WALK_FRAMES
 from hazard_ms.skills.options.macros import NEAR
 from hazard_ms.skills.options.options import TARGET_SLOTS

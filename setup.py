@@ -11,10 +11,10 @@ ASSETS = "hazard_ms._assets"
 
 def version() -> str:
     """`__version__` of hazard_ms, read without importing it."""
-    for node in ast.parse((ROOT / "hazard_ms/registry/version.py").read_text(encoding="utf-8")).body:
+    for node in ast.parse((ROOT / "hazard_ms/spec/registry/version.py").read_text(encoding="utf-8")).body:
         if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__version__":
             return str(ast.literal_eval(node.value))
-    raise ValueError("hazard_ms/registry/version.py has no __version__")
+    raise ValueError("hazard_ms/spec/registry/version.py has no __version__")
 
 
 def asset_files() -> list[str]:

@@ -7,7 +7,7 @@ nothing heavy:
     env = gym.make("HazardFire-v1")
 
 Third parties add tasks, hazards, robots, agents, detectors and mitigations with `register_task`, `register_hazard`,
-`register_robot`, `register_agent`, `register_detector` and `register_mitigation`; see `hazard_ms.registry`.
+`register_robot`, `register_agent`, `register_detector` and `register_mitigation`; see `hazard_ms.spec.registry`.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from hazard_ms.registry import load, register_agent, register_hazard, register_robot, register_task
-from hazard_ms.registry.announce import announce
-from hazard_ms.registry.detectors import register_detector
-from hazard_ms.registry.instructions import agree
-from hazard_ms.registry.mitigations import register_mitigation
-from hazard_ms.registry.version import __version__
+from hazard_ms.spec.registry import load, register_agent, register_hazard, register_robot, register_task
+from hazard_ms.spec.registry.announce import announce
+from hazard_ms.spec.registry.detectors import register_detector
+from hazard_ms.spec.registry.instructions import agree
+from hazard_ms.spec.registry.mitigations import register_mitigation
+from hazard_ms.spec.registry.version import __version__
 
 _LAZY = {  # imported when they are first asked for: they need torch, SAPIEN and ManiSkill
     "Action": "hazard_ms.skills.decision:Action",

@@ -16,7 +16,7 @@ import runpy
 import sys
 from collections.abc import Sequence
 
-from hazard_ms.registry import find, load_plugin
+from hazard_ms.spec.registry import find, load_plugin
 
 PACKAGES = ("mani_skill.trajectory", "mani_skill.examples", "mani_skill.utils")  # where short names are looked up
 

@@ -11,7 +11,6 @@ from hazard_ms.agents.aims import Aim
 from hazard_ms.agents.courses import Courses, Notion, Place, Reach, State
 from hazard_ms.agents.truth import Future
 from hazard_ms.planning.problem import Problem
-from hazard_ms.registry.mitigations import MITIGATIONS
 from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.recording import pushes
 from hazard_ms.sketch.rescue_problem import RescueScene
@@ -21,6 +20,7 @@ from hazard_ms.skills.decision import Action, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.failures import BLOCKED, NO_PATH, UNREACHABLE
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
+from hazard_ms.spec.registry.mitigations import MITIGATIONS
 
 FAILED = {UNREACHABLE: 2, NO_PATH: 1, BLOCKED: 1}  # how much each failure tells of a target's being out of reach [ours]
 OUT_OF_REACH = 2  # of that in a row, from which a target counts as out of reach [ours]

@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 from typing import Annotated
 
-from hazard_ms import registry
 from hazard_ms.evaluation.choices import PRESETS, SEVERITIES, SPLITS, flag, offer
+from hazard_ms.spec import registry
 
 PICTURES_SHARE = 10  # frames for one picture: pictures take that much longer [ours]
 FEWEST_PICTURES = 3  # of which a median is taken [ours]

@@ -92,8 +92,8 @@ def print_reach(names: Sequence[str], robots: Sequence[str]) -> None:
 
     Raises ValueError for an unknown scene or robot, and for a file that holds no scene.
     """
-    from hazard_ms import registry
     from hazard_ms.scenes.reach import reachable, share
+    from hazard_ms.spec import registry
 
     builds: dict[str, Build] = {
         r: registry.load(registry.find(registry.ROBOTS, r, "robot").robot).build for r in robots

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import tyro
 
-from hazard_ms import registry
 from hazard_ms.evaluation.choices import SPLITS, flag, offer
+from hazard_ms.spec import registry
 
 FAMILIES = ("indoor", "outdoor", "house", "house_flood", "gale")
 MOST_WORKERS = 64  # processes [ours]

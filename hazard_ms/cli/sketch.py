@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from hazard_ms import registry
 from hazard_ms.evaluation.choices import PRESETS, flag, offer
+from hazard_ms.spec import registry
 
 if TYPE_CHECKING:
     from hazard_ms.evaluation.result import EpisodeResult

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from hazard_ms import registry
 from hazard_ms.evaluation.choices import PRESETS, flag, offer
-from hazard_ms.registry.version import __version__
+from hazard_ms.spec import registry
+from hazard_ms.spec.registry.version import __version__
 
 if TYPE_CHECKING:
     from hazard_ms.learning.cloning import Student

@@ -24,7 +24,6 @@ from hazard_ms.episode.members import Members
 from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.base import loosened
 from hazard_ms.hazards.presets import FREQUENCIES
-from hazard_ms.registry.mitigations import tools_of
 from hazard_ms.robots import MOST_ROBOTS
 from hazard_ms.robots.mounting import mounted
 from hazard_ms.robots.team import team_of
@@ -39,6 +38,7 @@ from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec, Task, checks
 from hazard_ms.spec.perturbation import Perturbation
+from hazard_ms.spec.registry.mitigations import tools_of
 
 SPACING = 60.0  # between the scenes of a batch: nothing reaches a neighbour [m] [ours]
 

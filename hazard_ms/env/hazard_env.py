@@ -21,9 +21,6 @@ from hazard_ms.env.spaces import bounded
 from hazard_ms.episode import snapshot
 from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
-from hazard_ms.registry import TASKS
-from hazard_ms.registry import affects_agent as acts_on_agent
-from hazard_ms.registry.announce import importable
 from hazard_ms.robots import robot_names
 from hazard_ms.robots.mounting import check_cameras
 from hazard_ms.scenes.choice import SceneChoice, SceneTurns
@@ -33,6 +30,9 @@ from hazard_ms.sensing.observation_table import ObservationTable
 from hazard_ms.simulation.drawing.lighting import LIGHTINGS
 from hazard_ms.spec import checks
 from hazard_ms.spec.perturbation import Perturbation
+from hazard_ms.spec.registry import TASKS
+from hazard_ms.spec.registry import affects_agent as acts_on_agent
+from hazard_ms.spec.registry.announce import importable
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import perturbing, task_of
 

@@ -1,12 +1,12 @@
-"""The robots that can play: `hazard_ms.registry.ROBOTS` names them, `robot_class` finds the class of each."""
+"""The robots that can play: `hazard_ms.spec.registry.ROBOTS` names them, `robot_class` finds the class of each."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from hazard_ms.registry import MOST_ROBOTS as MOST_ROBOTS
-from hazard_ms.registry import ROBOTS, load
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.registry import MOST_ROBOTS as MOST_ROBOTS
+from hazard_ms.spec.registry import ROBOTS, load
 
 
 def robot_name(value: Any) -> str:

@@ -83,7 +83,7 @@ class Task:
     several_rooms: bool = False
     # (Situation, environments that begin, [R]) -> None: puts robots elsewhere than their scenes say; None: it does not
     arrange: Callable[[Any, Any], None] | None = None
-    # verbs of `hazard_ms.registry.mitigations` that its agents have, beyond the six of the benchmark
+    # verbs of `hazard_ms.spec.registry.mitigations` that its agents have, beyond the six of the benchmark
     mitigations: tuple[str, ...] = ()
     # a hand that shuts at the handle of a door holds it, and the leaf follows the hand; False: skills alone turn leaves
     doors_by_hand: bool = False

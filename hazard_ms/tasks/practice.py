@@ -19,9 +19,9 @@ from torch import Tensor
 from hazard_ms.episode.safe_places import BAG
 from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.presets import PRESETS
-from hazard_ms.registry import register_task
 from hazard_ms.spec import AgentStart, Body, Fixture, Goal, Room, SceneSpec, Task, Term, rounding
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.registry import register_task
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import practice_doors as doors
 from hazard_ms.tasks import practice_rewards as rewards

@@ -9,8 +9,8 @@ import gymnasium as gym
 from gymnasium.vector import AutoresetMode, VectorEnv
 
 from hazard_ms.machine.cores import cores
-from hazard_ms.registry.announce import ENVIRONMENT, SKILLS
 from hazard_ms.spec.checks import one_of, whole
+from hazard_ms.spec.registry.announce import ENVIRONMENT, SKILLS
 from hazard_ms.vector.processes import PATIENCE, ProcessVectorEnv
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from hazard_ms.evaluation.choices import LIGHTINGS, PRESETS, SEVERITIES
-from hazard_ms.registry import AGENTS, ROBOTS, TASKS, load
+from hazard_ms.spec.registry import AGENTS, ROBOTS, TASKS, load
 from hazard_ms.web.guard import PROTOCOL
 from hazard_ms.web.playing.link import LONGEST
 from hazard_ms.web.rescue import PACES, asked_for

@@ -166,8 +166,8 @@ def test_tests_that_hang_are_ended_with_all_that_they_started(
 def test_a_name_that_is_not_listed_is_refused() -> None:
     with pytest.raises(ValueError, match=r"one of \d+ names such as walls-north-inside-out.*list.txt has all"):
         runner.chosen(["wals-north-inside-out"])
-    assert {m.file for m in runner.chosen(["hazard_ms/registry"])} == {
-        "hazard_ms/registry/__init__.py",
-        "hazard_ms/registry/announce.py",
-        "hazard_ms/registry/loading.py",
+    assert {m.file for m in runner.chosen(["hazard_ms/spec/registry"])} == {
+        "hazard_ms/spec/registry/__init__.py",
+        "hazard_ms/spec/registry/announce.py",
+        "hazard_ms/spec/registry/loading.py",
     }

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms.registry.version import __version__
+from hazard_ms.spec.registry.version import __version__
 from tests.worlds.files.checkout import PYTHONS, ROOT, build, installed_uv, source_copy
 
 pytestmark = pytest.mark.setup

@@ -17,7 +17,7 @@ from hazard_ms.tasks import task_of
 from tests.worlds.same import same_fields
 
 # rooms that are loaded, too, and do not decide what a scene of the sketch is
-ELSEWHERE = {"effects", "machine", "registry"}
+ELSEWHERE = {"effects", "machine"}
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
-from hazard_ms import registry
 from hazard_ms.evaluation.result import EpisodeResult
+from hazard_ms.spec import registry
 from hazard_ms.web.compare.shelf import Librarian, film_of
 from hazard_ms.web.playing import keeping
 from hazard_ms.web.playing.link import PICTURES, Link

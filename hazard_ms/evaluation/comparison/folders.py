@@ -11,8 +11,8 @@ from hazard_ms.evaluation.comparison.pairing import Episode
 from hazard_ms.evaluation.metrics import value
 from hazard_ms.evaluation.regret.causes import EpisodeRegret, beside
 from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult, result_files
-from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.sensing.detection.eyes import EYES
+from hazard_ms.spec.registry.detectors import TRUTH
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms.registry.instructions import CHOICES, agree
+from hazard_ms.spec.registry.instructions import CHOICES, agree
 
 ASK = (
     "{}import os, numpy, torch\n"

@@ -11,19 +11,24 @@ import numpy as np
 import pytest
 
 import hazard_ms
-from hazard_ms import registry
 from hazard_ms.hazards.fire.fire_state import BURNING, BURNT, NORMAL
-from hazard_ms.registry.mitigations import MITIGATIONS, PUBLISHED, register_mitigation, tools_of, unregister_mitigation
 from hazard_ms.skills import failures
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.decision import PICK_UP, VERBS, WALK_TO, Action, Decision
 from hazard_ms.skills.mitigations.offers import check, offered
-from hazard_ms.spec import Body
+from hazard_ms.spec import Body, registry
+from hazard_ms.spec.registry.mitigations import (
+    MITIGATIONS,
+    PUBLISHED,
+    register_mitigation,
+    tools_of,
+    unregister_mitigation,
+)
 from hazard_ms.tasks import task_of
 from tests.worlds.registering import loaded
 from tests.worlds.two_rooms import TwoRooms, spec, two_rooms
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "own_tool.py"
+EXAMPLE = Path(__file__).parents[3] / "examples" / "own_tool.py"
 
 
 @pytest.fixture

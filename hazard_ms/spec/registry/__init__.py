@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, TypeVar
 
-from hazard_ms.registry.loading import load as load
-from hazard_ms.registry.loading import load_plugin as load_plugin
+from hazard_ms.spec.registry.loading import load as load
+from hazard_ms.spec.registry.loading import load_plugin as load_plugin
 
 MOST_ROBOTS = 4  # of one environment [ours]
 FRAMES = 1500  # of an episode [docs/benchmark.md 1]

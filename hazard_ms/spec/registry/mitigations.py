@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from hazard_ms.registry import find
 from hazard_ms.spec.catalogue import FLOOD_BOARD
+from hazard_ms.spec.registry import find
 
 VERB = re.compile(r"[a-z]+(_[a-z]+)*")
 PUBLISHED = ("walk_to", "walk_one_step", "pick_up", "drop", "explore", "stop")  # verbs that every task has

@@ -11,12 +11,12 @@ import gymnasium as gym
 import pytest
 
 import hazard_ms
-from hazard_ms import registry
+from hazard_ms.spec import registry
 from hazard_ms.spec.checks import one_of
 from hazard_ms.tasks import task_of
 from tests.worlds.registering import loaded, registered_task
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 PLUGIN = """
 import hazard_ms
 hazard_ms.register_task("HazardPlugin-v7", "hazard_ms.tasks.flood:hazard_flood", max_frames=70)
@@ -144,7 +144,7 @@ def test_a_plugin_is_a_file_that_runs_once_or_a_module(tmp_path: Path) -> None:
         assert registry.load_plugin(str(file)) is module
         assert registry.TASKS["HazardPlugin-v7"].max_frames == 70 and "plugged" in registry.AGENTS
     assert "HazardPlugin-v7" not in registry.TASKS and "plugged" not in registry.AGENTS
-    assert registry.load_plugin("hazard_ms.registry") is registry
+    assert registry.load_plugin("hazard_ms.spec.registry") is registry
     for wrong in (str(tmp_path / "absent.py"), "no_such_module", "no/such/path"):
         with pytest.raises(ValueError, match="load must be"):
             registry.load_plugin(wrong)

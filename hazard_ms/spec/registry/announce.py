@@ -14,8 +14,8 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any
 
-from hazard_ms import registry
-from hazard_ms.registry import Entry, RobotEntry, TaskEntry
+from hazard_ms.spec import registry
+from hazard_ms.spec.registry import Entry, RobotEntry, TaskEntry
 
 ENVIRONMENT = "hazard_ms.env:HazardEnv"
 SKILLS = "hazard_ms.sketch.environments.making:make"

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from hazard_ms.registry import NAME
+from hazard_ms.spec.registry import NAME
 
 TRUTH = "truth"  # no detector: the simulator's own labels
 _detectors: dict[str, Any] = {}

@@ -25,7 +25,7 @@ from hazard_ms.spec.registry.version import __version__
 _LAZY = {  # imported when they are first asked for: they need torch, SAPIEN and ManiSkill
     "Action": "hazard_ms.skills.decision:Action",
     "Agent": "hazard_ms.agents.base:Agent",
-    "NumpyEnv": "hazard_ms.wrappers:NumpyEnv",
+    "NumpyEnv": "hazard_ms.env.wrappers:NumpyEnv",
     "SkillEnv": "hazard_ms.skills.executor:SkillEnv",
     "main": "hazard_ms.cli.__main__:main",  # the command hazard-ms
     "render_backend": "hazard_ms.machine.render_backend:backend",

@@ -1,1 +1,3 @@
-"""The cases of docs/physics.md with their expected numbers, `hazard-ms validate`; it says which are tests only."""
+"""Checks of the package itself: the cases of docs/physics.md, `hazard-ms validate`, which says what only tests check, and
+faults of scenes, `hazard-ms scenes check`.
+"""

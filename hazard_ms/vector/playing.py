@@ -55,7 +55,7 @@ def single(env_id: str, keywords: Mapping[str, Any]) -> gym.Env[Any, Any]:
     simulator = sys.modules.get("mani_skill.envs.sapien_env")  # takes seconds to import, which others need not wait for
     if simulator is None or not isinstance(env.unwrapped, simulator.BaseEnv):
         return env
-    from hazard_ms.wrappers import NumpyEnv
+    from hazard_ms.env.wrappers import NumpyEnv
 
     return NumpyEnv(env)
 

@@ -21,7 +21,7 @@ LAYERS = (  # a room may import only from rooms to its left, or from those besid
     ("episode", "effects"),
     ("tasks",),
     ("sensing",),
-    ("env", "wrappers", "maniskill"),
+    ("env",),
     ("skills", "planning", "lerobot"),
     ("sketch", "vector"),
     ("agents",),

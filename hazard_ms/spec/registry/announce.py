@@ -70,7 +70,7 @@ def tell_gymnasium() -> None:
                 id=entry.name,
                 entry_point=ENVIRONMENT,
                 max_episode_steps=entry.max_frames,
-                disable_env_checker=True,  # it is written for unbatched numpy: see hazard_ms.wrappers.NumpyEnv
+                disable_env_checker=True,  # it is written for unbatched numpy: see hazard_ms.NumpyEnv
                 kwargs={"task": entry.name},
                 additional_wrappers=(WrapperSpec("TimeLimit", "hazard_ms.env.time_limit:TimeLimit", kwargs={}),),
             )

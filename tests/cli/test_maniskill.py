@@ -16,7 +16,7 @@ import torch
 from mani_skill.utils.wrappers.record import RecordEpisode
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.maniskill import full_name
+from hazard_ms.cli.maniskill import full_name
 from tests.worlds.episodes import actions
 
 ROOT = Path(__file__).parents[2]
@@ -75,7 +75,7 @@ def test_replay_by_states_gives_the_recorded_states(recording: Path, tmp_path: P
     for suffix in (".h5", ".json"):
         copied.with_suffix(suffix).write_bytes(recording.with_suffix(suffix).read_bytes())
     options = ("--traj-path", str(copied), "--use-env-states", "--save-traj", "--allow-failure", "--obs-mode", "state")
-    shown = module("hazard_ms.maniskill", "replay_trajectory", *options)
+    shown = module("hazard_ms.cli.maniskill", "replay_trajectory", *options)
     assert "Replayed 1 episodes, 1/1" in shown
     (replayed,) = tmp_path.glob("copied.state.*.h5")
     with h5py.File(replayed) as new, h5py.File(recording) as old:

@@ -1,8 +1,8 @@
 """ManiSkill's own command-line tools, with our tasks and robots known to them.
 
-    python -m hazard_ms.maniskill replay_trajectory --traj-path trajectory.h5 --use-env-states
-    python -m hazard_ms.maniskill demo_random_action -e HazardFlood-v1 --render-backend cpu
-    python -m hazard_ms.maniskill --load my_tasks.py demo_random_action -e MyTask-v1
+    python -m hazard_ms.cli.maniskill replay_trajectory --traj-path trajectory.h5 --use-env-states
+    python -m hazard_ms.cli.maniskill demo_random_action -e HazardFlood-v1 --render-backend cpu
+    python -m hazard_ms.cli.maniskill --load my_tasks.py demo_random_action -e MyTask-v1
 
 The first argument that is not ours names a module of ManiSkill, by its last part or in full; all others are its own.
 """
@@ -44,7 +44,7 @@ def full_name(module: str) -> str:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run a module of ManiSkill as its own command would."""
     parser = argparse.ArgumentParser(
-        prog="python -m hazard_ms.maniskill",
+        prog="python -m hazard_ms.cli.maniskill",
         description="Run a command-line tool of ManiSkill with hazard_ms imported.",
     )
     parser.add_argument("--load", action="append", default=[], help="file or module that registers tasks or robots")

@@ -8,8 +8,8 @@ import numpy as np
 
 from hazard_ms.agents.oracle import BEAM, MOST_LABELS
 from hazard_ms.evaluation.result import EpisodeResult
-from hazard_ms.planning.orienteering import solve
 from hazard_ms.robots import robot_class
+from hazard_ms.sketch.planning.orienteering import solve
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.decision import PICK_UP

@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 
 from hazard_ms.agents.aims import VALUE, Aim
 from hazard_ms.agents.mitigating.costs import PUT_DOWN
-from hazard_ms.planning.committed import committed
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
 from hazard_ms.sketch import skill_times
+from hazard_ms.sketch.planning.committed import committed
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.sketch.timeline import Timeline

@@ -16,11 +16,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.bound import never_damaged
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import Spot, StaticTravel, Travel
 from hazard_ms.simulation import building
+from hazard_ms.sketch.planning.bound import never_damaged
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import Spot, StaticTravel, Travel
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.spec import Build, SceneSpec
 from hazard_ms.spec.robot import GRASP_REACH

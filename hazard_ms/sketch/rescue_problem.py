@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.hazards.places import MOVED
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import MovingTravel, StaticTravel, Travel, straight_line
 from hazard_ms.simulation import building
 from hazard_ms.sketch import skill_times
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import MovingTravel, StaticTravel, Travel, straight_line
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.sketch.travel.ways import SETTLE, TURN, WALK, Ways
 from hazard_ms.skills.motor.walking import ARRIVED

@@ -1,3 +1,4 @@
-"""Checks of the package itself: the cases of docs/physics.md, `hazard-ms validate`, which says what only tests check, and
-faults of scenes, `hazard-ms scenes check`.
+"""Checks of laws and scenes: the cases of docs/physics.md with their expected numbers, and faults of scenes.
+
+`hazard-ms validate` also says which cases are tests only.
 """

@@ -22,7 +22,7 @@ LAYERS = (  # a room may import only from rooms to its left, or from those besid
     ("tasks",),
     ("sensing",),
     ("env",),
-    ("skills", "planning", "lerobot"),
+    ("skills", "lerobot"),
     ("sketch", "vector"),
     ("agents",),
     ("evaluation",),

@@ -20,8 +20,8 @@ import numpy as np
 from hazard_ms.agents.base import Agent
 from hazard_ms.agents.planner import BEAM
 from hazard_ms.agents.team import APPROACH, TeamAgent
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Plan, Problem
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Plan, Problem
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import UNFINISHED

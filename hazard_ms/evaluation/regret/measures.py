@@ -1,6 +1,6 @@
 """The worth of measures about the hazard of a home beyond rescues, with the true future: for judging decisions.
 
-Limits: those of `hazard_ms.planning.beginning`; a measure that is done later than foreseen (offers.py) spares as much.
+Limits: those of `sketch/planning/beginning.py`; a measure that is done later than foreseen (offers.py) spares as much.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from hazard_ms.agents.hindsight import Hindsight
 from hazard_ms.agents.mitigating import costs
 from hazard_ms.agents.mitigating.prospects import FETCH, Prospect, seats_of
 from hazard_ms.evaluation.regret.offers import Offers
-from hazard_ms.planning.beginning import best_course
-from hazard_ms.planning.begun import begun
-from hazard_ms.planning.measures import Measures
-from hazard_ms.planning.problem import Problem
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, fire_of
+from hazard_ms.sketch.planning.beginning import best_course
+from hazard_ms.sketch.planning.begun import begun
+from hazard_ms.sketch.planning.measures import Measures
+from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.mitigations.extinguish import AROUND

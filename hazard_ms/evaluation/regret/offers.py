@@ -26,10 +26,10 @@ from hazard_ms.agents.mitigating.prospects import (
     tools_of,
     ways_between,
 )
-from hazard_ms.planning.measures import Measure, Measures
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, Foreseen, Intervention, foresee
+from hazard_ms.sketch.planning.measures import Measure, Measures
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 from hazard_ms.skills.executor import SkillEnv
 
 KEPT = 600  # frames for which futures are kept [ours]

@@ -1,6 +1,6 @@
 """The problem that is left once a certain measure is done first: what it is worth to begin with that one.
 
-Limits: those of `hazard_ms.planning.beginning`.
+Limits: those of `hazard_ms.sketch.planning.beginning`.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from hazard_ms.planning.measures import Measures
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.measures import Measures
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 
 
 def begun(problem: Problem, measures: Measures, number: int) -> tuple[Problem, Measures] | None:

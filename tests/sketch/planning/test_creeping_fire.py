@@ -9,8 +9,17 @@ import torch
 from hazard_ms.hazards.fire import spread
 from hazard_ms.hazards.fire.fire import Fire
 from hazard_ms.hazards.fire.fire_state import lit
-from hazard_ms.planning import creeping_fire
-from hazard_ms.planning.creeping_fire import FLAME, ROOM, Flames, Things, burning_from, flame_weight, found, weights
+from hazard_ms.sketch.planning import creeping_fire
+from hazard_ms.sketch.planning.creeping_fire import (
+    FLAME,
+    ROOM,
+    Flames,
+    Things,
+    burning_from,
+    flame_weight,
+    found,
+    weights,
+)
 from hazard_ms.spec.catalogue import CATEGORIES
 from tests.worlds.fire_worlds import begin, room_world, run
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hazard_ms.planning.problem import Problem
+from hazard_ms.sketch.planning.problem import Problem
 
 SLACK = 1e-6  # for rounding in comparisons of frames [frames]
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import MovingTravel, StaticTravel, straight_line
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import MovingTravel, StaticTravel, straight_line
 from tests.worlds.rescue_plans import PER_METRE, random_problem
 
 WALK = straight_line(PER_METRE)

@@ -7,7 +7,16 @@ import math
 import numpy as np
 import pytest
 
-from hazard_ms.planning.belief import CAP, LONGEST_DRIFT, RISE, WaterPlane, drifted, extended, last_whole, speed_of
+from hazard_ms.sketch.planning.belief import (
+    CAP,
+    LONGEST_DRIFT,
+    RISE,
+    WaterPlane,
+    drifted,
+    extended,
+    last_whole,
+    speed_of,
+)
 
 
 def test_a_thing_drifts_on_as_it_was_seen_to() -> None:

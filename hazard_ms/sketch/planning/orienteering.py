@@ -12,9 +12,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from hazard_ms.planning.bound import Completion
-from hazard_ms.planning.problem import Plan, PlannedRescue, Problem
-from hazard_ms.planning.travel import Spot
+from hazard_ms.sketch.planning.bound import Completion
+from hazard_ms.sketch.planning.problem import Plan, PlannedRescue, Problem
+from hazard_ms.sketch.planning.travel import Spot
 
 FIRST_BEAM = 30  # labels of a layer in the search for a first plan [ours]
 MOST_LABELS = 200_000  # kept by the exact search; no scene of ours came near [ours]

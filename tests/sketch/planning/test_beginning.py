@@ -8,10 +8,10 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from hazard_ms.planning.beginning import Course, best_course
-from hazard_ms.planning.measures import Measure, Measures
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import MovingTravel, StaticTravel, straight_line
+from hazard_ms.sketch.planning.beginning import Course, best_course
+from hazard_ms.sketch.planning.measures import Measure, Measures
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import MovingTravel, StaticTravel, straight_line
 
 LIMIT = 1000.0
 INF = np.inf

@@ -7,11 +7,11 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from hazard_ms.planning.beginning import best_course
-from hazard_ms.planning.begun import begun
-from hazard_ms.planning.measures import Measure, Measures
-from hazard_ms.planning.travel import MovingTravel, straight_line
-from tests.planning.test_beginning import INF, drawn, on_a_line, problem, worth
+from hazard_ms.sketch.planning.beginning import best_course
+from hazard_ms.sketch.planning.begun import begun
+from hazard_ms.sketch.planning.measures import Measure, Measures
+from hazard_ms.sketch.planning.travel import MovingTravel, straight_line
+from tests.sketch.planning.test_beginning import INF, drawn, on_a_line, problem, worth
 
 
 def test_what_is_left_after_a_door_is_what_it_spares_and_less_time() -> None:

@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hazard_ms.planning import orienteering
-from hazard_ms.planning.bound import never_damaged, upper_bound
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import MovingTravel, StaticTravel, straight_line
+from hazard_ms.sketch.planning import orienteering
+from hazard_ms.sketch.planning.bound import never_damaged, upper_bound
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import MovingTravel, StaticTravel, straight_line
 from tests.worlds.rescue_plans import PER_METRE, Drift, best_by_trial, random_problem
 
 # Whether targets move, and the most targets and carts

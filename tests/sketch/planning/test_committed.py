@@ -7,10 +7,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hazard_ms.planning.committed import committed
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.committed import committed
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 from tests.worlds.rescue_plans import PER_METRE
 
 LABELS = (10_000, 1_000)  # of a search

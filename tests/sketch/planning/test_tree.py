@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from hazard_ms.planning.tree import Choice, Node, backed_up, chosen, exploration, exploration_rate, search
+from hazard_ms.sketch.planning.tree import Choice, Node, backed_up, chosen, exploration, exploration_rate, search
 
 Where = tuple[int, int]  # place, and bits of what was fetched
 

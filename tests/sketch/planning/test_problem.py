@@ -7,9 +7,9 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 
 
 def problem(

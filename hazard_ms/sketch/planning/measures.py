@@ -1,7 +1,7 @@
 """Measures: what an agent does about a hazard itself, beside the rescues of a problem.
 
 A measure is a door shut, an extinguisher fetched, a fire put out. It takes frames, at a place that is frames of ways
-away, and afterwards targets stay whole for longer. `hazard_ms.planning.beginning` chooses among measures.
+away, and afterwards targets stay whole for longer. `hazard_ms.sketch.planning.beginning` chooses among measures.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel, refuse_unless_frames
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel, refuse_unless_frames
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import Spot, Travel
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import Spot, Travel
 
 
 def committed(problem: Problem, target: int, cart: int | None, most_labels: int, beam: int) -> float:

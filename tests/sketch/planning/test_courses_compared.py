@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hazard_ms.planning.beginning import best_course
-from hazard_ms.planning.measures import Changed, Measure, Measures
-from tests.planning.test_beginning import INF, names, on_a_line, problem
+from hazard_ms.sketch.planning.beginning import best_course
+from hazard_ms.sketch.planning.measures import Changed, Measure, Measures
+from tests.sketch.planning.test_beginning import INF, names, on_a_line, problem
 
 
 def test_rescues_alone_must_be_better_by_the_margin() -> None:

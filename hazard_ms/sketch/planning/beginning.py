@@ -2,7 +2,7 @@
 
 `best_course` chooses measures (measures.py), and their order, by forward selection: it appends the measure that gains
 most, while one gains anything; it does so from where the agent is, and from where the first rescue of the plan without
-measures ends. The rescues after them are planned by `hazard_ms.planning.orienteering`. The aim is `averted`
+measures ends. The rescues after them are planned by `hazard_ms.sketch.planning.orienteering`. The aim is `averted`
 (averting.py).
 
 Limits: of several measures, each target has the time that the best of them gives it, although together they may give it
@@ -19,12 +19,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.averting import BESIDE, averting, kept
-from hazard_ms.planning.bound import upper_bound
-from hazard_ms.planning.measures import Measures
-from hazard_ms.planning.orienteering import ROUNDING, solve
-from hazard_ms.planning.problem import Plan, PlannedRescue, Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.averting import BESIDE, averting, kept
+from hazard_ms.sketch.planning.bound import upper_bound
+from hazard_ms.sketch.planning.measures import Measures
+from hazard_ms.sketch.planning.orienteering import ROUNDING, solve
+from hazard_ms.sketch.planning.problem import Plan, PlannedRescue, Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 
 MOST_MEASURES = 4  # before the rescues, fetched tools not counted [ours]
 MOST_LABELS, BEAM = 2_000, 60  # of the search for the rescues that follow a beginning [ours]

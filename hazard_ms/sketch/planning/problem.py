@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hazard_ms.planning.travel import Spot, Travel, refuse_unless_frames
+from hazard_ms.sketch.planning.travel import Spot, Travel, refuse_unless_frames
 
 
 class Stow(NamedTuple):

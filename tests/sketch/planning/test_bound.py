@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hazard_ms.planning.bound import Completion, never_damaged, upper_bound
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.bound import Completion, never_damaged, upper_bound
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 from tests.worlds.rescue_plans import PER_METRE
 
 

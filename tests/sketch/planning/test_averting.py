@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from hazard_ms.evaluation.averted.loss import Loss
-from hazard_ms.planning.averting import averting, kept
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.averting import averting, kept
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 
 
 def small(seed: int) -> Problem:

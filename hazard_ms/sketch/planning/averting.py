@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.problem import Problem
+from hazard_ms.sketch.planning.problem import Problem
 
 BESIDE = 0.1  # share of its Value that a rescue counts beside what it averts [ours]
 

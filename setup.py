@@ -58,7 +58,7 @@ setup(
         "gymnasium>=1.2",
         "torch>=2.10",  # earlier ones have known holes in torch.load
         "torchvision>=0.25",
-        "warp-lang>=1.19",  # compiles the laws of the hazards for CPUs and GPUs: hazard_ms/kernels/launch.py
+        "warp-lang>=1.19",  # compiles the laws of the hazards for CPUs and GPUs: hazard_ms/simulation/kernels/launch.py
         "opencv-python-headless>=4.10",
         "numpy>=2.0",
         "trimesh>=4.5",

@@ -19,9 +19,9 @@ from hazard_ms.episode.records import Damage, Rescue
 from hazard_ms.episode.safe_places import BAG, Drop
 from hazard_ms.episode.watchdog import FlightRecorder, Limits
 from hazard_ms.hazards.base import Flames, Hazard, Push, State, none_set
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.pushing import free_only
 from hazard_ms.robots.robot import Robot
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.pushing import free_only
 from hazard_ms.simulation.openings import EVERY
 from hazard_ms.simulation.walls import leaves
 from hazard_ms.simulation.world import World

@@ -13,8 +13,8 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.base import State, none_set, quantity
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.reaching import nearest
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.reaching import nearest
 from hazard_ms.simulation.world import World, rotate
 from hazard_ms.spec.robot import GRASP_REACH
 

@@ -9,9 +9,9 @@ import torch
 from torch import Tensor
 
 from hazard_ms.episode.situation import Situation
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.counting import count
-from hazard_ms.kernels.reaching import hint
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.counting import count
+from hazard_ms.simulation.kernels.reaching import hint
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Goal
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
@@ -23,7 +23,7 @@ LARGEST = PER_RESCUE + FOR_HOLDING + FOR_NEARNESS  # reward of one frame with on
 
 
 class Counts(NamedTuple):
-    """The fate of the targets by now, [E] each, as hazard_ms.kernels.counting tells it."""
+    """The fate of the targets by now, [E] each, as hazard_ms.simulation.kernels.counting tells it."""
 
     targets: Tensor  # int64
     saved: Tensor  # int64: those that are safe

@@ -17,8 +17,8 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.watching import broken
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.watching import broken
 from hazard_ms.simulation.world import World
 
 MAX_TURN = 2.0  # largest number of a rotation: that of a unit quaternion is 1 [ours]

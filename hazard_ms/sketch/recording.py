@@ -34,7 +34,7 @@ from hazard_ms.spec import SceneSpec, Task
 
 STILL = 0.01  # what never gets farther than this from its start is at rest [m] [ours]
 NOWHERE = 1e3  # where the hand is put when nobody acts [m]
-LAWS = ("hazards", "kernels", "simulation", "episode")  # folders whose code decides what happens
+LAWS = ("hazards", "simulation", "episode")  # folders whose code decides what happens
 PACKAGE = Path(__file__).parents[1]
 
 

@@ -8,8 +8,8 @@ import torch
 import warp as wp
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.kernels.launch import OPTIONS
-from hazard_ms.kernels.rows import at, put
+from hazard_ms.simulation.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.rows import at, put
 from hazard_ms.tasks import task_of
 from tests.worlds.flood_worlds import Thing, begin, room
 

@@ -13,7 +13,7 @@ import pytest
 LONG = pytest.mark.long  # each process takes seconds to start
 CHILD = """
 import torch, warp as wp
-from hazard_ms.kernels.launch import OPTIONS, Launches
+from hazard_ms.simulation.kernels.launch import OPTIONS, Launches
 wp.set_module_options(OPTIONS)
 
 @wp.kernel

@@ -16,9 +16,9 @@ import torch
 import warp as wp
 
 from hazard_ms.hazards.presets import flood
-from hazard_ms.kernels import draws
-from hazard_ms.kernels.launch import OPTIONS, Launches, of_environments
 from hazard_ms.simulation.chance import Chance
+from hazard_ms.simulation.kernels import draws
+from hazard_ms.simulation.kernels.launch import OPTIONS, Launches, of_environments
 from tests.worlds.flood_worlds import Thing, begin, frames, room
 
 wp.set_module_options(OPTIONS)
@@ -164,7 +164,7 @@ def test_random_numbers_of_kernels_are_those_of_chance_bit_for_bit(count: int) -
 
 def test_a_machine_without_a_gpu_is_not_scolded() -> None:
     made = subprocess.run(
-        [sys.executable, "-c", "import hazard_ms.kernels.launch"],
+        [sys.executable, "-c", "import hazard_ms.simulation.kernels.launch"],
         capture_output=True,
         text=True,
         timeout=120,
@@ -175,7 +175,7 @@ def test_a_machine_without_a_gpu_is_not_scolded() -> None:
 
 def test_kernels_are_kept_where_hazard_ms_keeps_everything(tmp_path: Path) -> None:
     """And a process goes on where nothing can be kept, and without a standard error."""
-    code = "import hazard_ms.kernels.launch, warp; print(warp.config.kernel_cache_dir)"
+    code = "import hazard_ms.simulation.kernels.launch, warp; print(warp.config.kernel_cache_dir)"
     for home, inside in ((tmp_path, True), (Path("/proc/nowhere"), False)):
         environ = {k: v for k, v in os.environ.items() if k != "WARP_CACHE_PATH"} | {"HAZARD_MS_HOME": str(home)}
         command = f"exec {shlex.quote(sys.executable)} -c {shlex.quote(code)} 2>&-"

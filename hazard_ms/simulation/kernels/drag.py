@@ -8,15 +8,15 @@ drag over a step of constant flow: no step is too long and no body too light, an
 other forces at work, s_i (not |s_i|) is the slip that they would leave at the end of the step. T is the box form of
 MuJoCo's inertia model (its documentation, "Fluid forces"). Limits: no lift, no shading of one body by another.
 
-The functions are for one body; `axes` is explained in hazard_ms.kernels.boxes.
+The functions are for one body; `axes` is explained in hazard_ms.simulation.kernels.boxes.
 """
 
 from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.kernels.boxes import to_body
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.boxes import to_body
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

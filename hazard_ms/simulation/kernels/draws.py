@@ -9,7 +9,7 @@ import zlib
 
 import warp as wp
 
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from hazard_ms.assets.index import asset, asset_ids, asset_path
 from hazard_ms.assets.rows import Asset
-from hazard_ms.machine.files import write
 from hazard_ms.machine.render_backend import DEVICES, backend
+from hazard_ms.spec.storage.files import write
 
 TILE = 220  # edge of a picture [pixels]
 CAPTION = 30  # height of the words below it [pixels]

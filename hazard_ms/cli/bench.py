@@ -159,7 +159,7 @@ def _pickups(env_id: str, robot: str, count: int, seed: int, output: Path | None
     from tqdm import tqdm
 
     from hazard_ms.bench.pickups import handlings, lines, report
-    from hazard_ms.machine.files import drafts, make_folder
+    from hazard_ms.spec.storage.files import drafts, make_folder
 
     made = list(tqdm(handlings(env_id, robot, count, seed), desc=robot, mininterval=5.0))
     print(report(made))

@@ -65,10 +65,10 @@ def _filmed(episode: EpisodeOptions, path: Path, every: int) -> EpisodeResult:
     """Play and film the episode; its film, result and page appear together at its end."""
     from hazard_ms.evaluation.page import address, page
     from hazard_ms.evaluation.watchers import Progress
-    from hazard_ms.machine.files import drafts, make_folder
     from hazard_ms.pictures.compositor import RENDERED
     from hazard_ms.pictures.film import Film
     from hazard_ms.pictures.team_film import TeamFilm
+    from hazard_ms.spec.storage.files import drafts, make_folder
 
     camera = {"width": RENDERED[0], "height": RENDERED[1]}
     subtitle = f"agent {episode.agent}, seed {episode.seed}, {' '.join([*episode.strength, episode.physics])} physics"

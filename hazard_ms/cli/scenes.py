@@ -41,9 +41,9 @@ def make(name: tyro.conf.Positional[str], output: Output = None) -> int:
         name: Name of a scene, kitchen_a/07 say.
         output: File to write; without it, the scene is printed.
     """
-    from hazard_ms.machine.files import write
     from hazard_ms.scenes.schema import to_json
     from hazard_ms.scenes.splits import scene
+    from hazard_ms.spec.storage.files import write
 
     text = to_json(scene(name))
     if output is None:

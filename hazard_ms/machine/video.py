@@ -14,8 +14,8 @@ import imageio_ffmpeg
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.machine.files import Draft
 from hazard_ms.machine.processes import environment
+from hazard_ms.spec.storage.files import Draft
 
 FAST = ("-preset", "veryfast", "-crf", "23")  # how ffmpeg encodes films of episodes [ours]
 FINE = ("-crf", "20")  # how it encodes few pictures [ours]

@@ -10,7 +10,6 @@ import numpy as np
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.runner import fates
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.machine.files import Draft
 from hazard_ms.machine.video import Video
 from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import Pixels
@@ -24,6 +23,7 @@ from hazard_ms.skills.decision import EXPLORE, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.skills.mitigations.offers import tools
+from hazard_ms.spec.storage.files import Draft
 
 RATE = 24.0  # pictures of a film per second
 LOOK_EVERY = 4  # pictures of the film for one of the head camera: it is small, and rendering is what takes the time

@@ -13,11 +13,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.machine import files
-from hazard_ms.machine.cache import home
 from hazard_ms.sketch import columns
 from hazard_ms.sketch.rescues.scene import SketchScene
 from hazard_ms.spec.foreign.files import read_foreign
+from hazard_ms.spec.storage import files
+from hazard_ms.spec.storage.cache import home
 
 FORMAT = 1  # goes up when older files can no longer be read
 # folders whose code decides what a scene is, beside that of its timeline

@@ -25,12 +25,12 @@ from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards.base import Hazard, loosened
 from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.hazards.presets import FREQUENCIES
-from hazard_ms.machine.cache import home
 from hazard_ms.scenes.schema import to_json
 from hazard_ms.simulation import bare_scene, building
 from hazard_ms.simulation.world import World
 from hazard_ms.sketch.timeline import STRIDE, Timeline, read
 from hazard_ms.spec import SceneSpec, Task
+from hazard_ms.spec.storage.cache import home
 
 STILL = 0.01  # what never gets farther than this from its start is at rest [m] [ours]
 NOWHERE = 1e3  # where the hand is put when nobody acts [m]

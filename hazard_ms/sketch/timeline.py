@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.machine import files
 from hazard_ms.sketch import columns
 from hazard_ms.spec.foreign.files import read_foreign
+from hazard_ms.spec.storage import files
 
 FORMAT = 1  # goes up when older files can no longer be read
 STRIDE = 10  # frames from sample to sample: water and flames change every 10 frames [ours]

@@ -12,11 +12,11 @@ from typing import Any
 
 from hazard_ms.evaluation.choices import HUMAN
 from hazard_ms.evaluation.options import EpisodeOptions
-from hazard_ms.machine.files import make_folder, write
 from hazard_ms.spec.checks import one_of, whole
 from hazard_ms.spec.foreign import plain
 from hazard_ms.spec.foreign.files import inside, printable
 from hazard_ms.spec.registry import AGENTS, TASKS
+from hazard_ms.spec.storage.files import make_folder, write
 
 PLAY, WATCH = "play", "watch"
 KINDS = (PLAY, WATCH)

@@ -6,7 +6,7 @@ import contextlib
 import secrets
 import socket
 
-from hazard_ms.machine.files import make_folder
+from hazard_ms.spec.storage.files import make_folder
 from hazard_ms.web.options import ServeOptions
 
 HOST = "127.0.0.1"

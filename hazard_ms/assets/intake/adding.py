@@ -23,9 +23,9 @@ from hazard_ms.assets.intake.model import Model
 from hazard_ms.assets.rows import Asset
 from hazard_ms.assets.shipped import root
 from hazard_ms.assets.user_models import LICENCE, USER_ID, confined, read_user_row, user_root, user_rows
-from hazard_ms.machine.files import write
 from hazard_ms.spec.catalogue import CATEGORIES, category
 from hazard_ms.spec.foreign.files import printable
+from hazard_ms.spec.storage.files import write
 
 FILES = ("model.glb", "hulls.ply", "preview.png")  # of a model, in its own folder
 PENDING = ".adding-"  # how the names of temporary folders begin

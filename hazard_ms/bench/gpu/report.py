@@ -18,8 +18,8 @@ from hazard_ms.bench.gpu.rates import FRAMES, PICTURES, SIDE, STATE, WARM_UP, Ra
 from hazard_ms.bench.gpu.waits import waits_table
 from hazard_ms.evaluation.options import EnvOptions
 from hazard_ms.evaluation.report import machine_line
-from hazard_ms.machine.files import make_folder, write
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.storage.files import make_folder, write
 
 SIZES = (1, 4, 16, 64, 256, 1024, 4096)  # environments of a batch
 MOST_DRAWN = 256  # environments that draw [ours]

@@ -18,9 +18,9 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from hazard_ms.machine.cache import home
-from hazard_ms.machine.files import write
-from hazard_ms.machine.progress import say
+from hazard_ms.spec.progress import say
+from hazard_ms.spec.storage.cache import home
+from hazard_ms.spec.storage.files import write
 
 READ_AT_ONCE = 1 << 20  # [bytes]
 

@@ -21,9 +21,9 @@ import torch
 import warp as wp
 from torch import Tensor
 
-from hazard_ms.machine.progress import slow
 from hazard_ms.simulation.kernels.compiled import cache, verified, writable
 from hazard_ms.simulation.kernels.structs import Argument, Filled, alike, another
+from hazard_ms.spec.progress import slow
 
 # Warp's own flags of the compiler (warp.config.cpu_compiler_flags), but for a processor that is every one with AVX2
 _WITH_AVX2 = (

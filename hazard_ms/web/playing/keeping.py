@@ -31,13 +31,13 @@ from hazard_ms.evaluation.replay import EXACT, compare
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.evaluation.runner import play
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.machine.files import drafts, make_folder, write_together
 from hazard_ms.pictures.compositor import RENDERED
 from hazard_ms.pictures.film import Film
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import STOP
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.spec.registry.detectors import TRUTH
+from hazard_ms.spec.storage.files import drafts, make_folder, write_together
 
 EVERY = 6  # frames from one picture of the film to the next, as `hazard-ms play` takes them
 DEMOS = "_demos"  # after the name of the folder of results: the folder of demonstrations, beside it

@@ -15,14 +15,14 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms.machine.files import drafts, make_folder, write, write_together
+from hazard_ms.spec.storage.files import drafts, make_folder, write, write_together
 
 KILLS = 20
 SET = ("out.mp4", "out.json", "out.html")
 ENDLESS = """
 import sys
 from pathlib import Path
-from hazard_ms.machine.files import write_together
+from hazard_ms.spec.storage.files import write_together
 run = 0
 while True:
     run += 1
@@ -136,7 +136,7 @@ def test_a_disk_that_is_full_leaves_the_older_files(tmp_path: Path) -> None:
     """The limit on the size of files ends the writing of the second file in its midst."""
     (tmp_path / "b").write_text("old")
     code = (
-        "import sys; from pathlib import Path; from hazard_ms.machine.files import write_together\n"
+        "import sys; from pathlib import Path; from hazard_ms.spec.storage.files import write_together\n"
         "try: write_together({Path('a'): 'x', Path('b'): 'x' * 100_000})\n"
         "except ValueError as error: sys.exit(str(error))"
     )
@@ -149,7 +149,7 @@ def test_a_disk_that_is_full_leaves_the_older_files(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root may become somebody else")
 def test_a_folder_of_others_is_refused_with_a_remedy(tmp_path: Path) -> None:
     code = (
-        "import os; from pathlib import Path; from hazard_ms.machine.files import write; os.setuid(65534)\n"
+        "import os; from pathlib import Path; from hazard_ms.spec.storage.files import write; os.setuid(65534)\n"
         "write(Path('/x.json'), 'x')"
     )
     error = child(code).communicate(timeout=60)[1]
@@ -203,7 +203,7 @@ def test_readers_never_meet_a_part(tmp_path: Path) -> None:
     place = tmp_path / "a.json"
     write(place, json.dumps([0] * 100_000))
     code = (
-        "import json; from pathlib import Path; from hazard_ms.machine.files import write\n"
+        "import json; from pathlib import Path; from hazard_ms.spec.storage.files import write\n"
         "while True: write(Path('a.json'), json.dumps([1] * 100_000)); print(flush=True)"
     )
     writer = child(code, cwd=tmp_path)

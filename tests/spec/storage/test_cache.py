@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms.machine import cache
+from hazard_ms.spec.storage import cache
 
 FILES = {"pack/a.glsl": "one", "common/b.glsl": "two"}
 
@@ -48,7 +48,7 @@ def test_equal_files_share_a_folder_and_others_get_another(home: Path) -> None:
 
 def test_many_processes_at_once_leave_one_whole_folder(home: Path) -> None:
     code = (
-        "from hazard_ms.machine.cache import kept_folder\n"
+        "from hazard_ms.spec.storage.cache import kept_folder\n"
         "print(kept_folder('shaders', {f'{k}.glsl': 'text' * 1000 for k in range(50)}))"
     )
     children = [subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) for _ in range(6)]
@@ -76,7 +76,7 @@ def test_a_home_that_is_closed_to_us_costs_one_folder_that_is_deleted_at_the_end
     home.chmod(closed)
     code = (
         "from pathlib import Path; import tempfile\n"
-        "from hazard_ms.machine.cache import kept_folder\n"
+        "from hazard_ms.spec.storage.cache import kept_folder\n"
         "for _ in range(3): made = kept_folder('robots', {'a': 'text'})\n"
         "print((made / 'a').read_text(), len(list(Path(tempfile.gettempdir()).iterdir())))"
     )

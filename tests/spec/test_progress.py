@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms.machine import progress
+from hazard_ms.spec import progress
 
 ROOT = Path(__file__).parents[2]
 
@@ -38,7 +38,7 @@ def test_a_fault_is_not_swallowed() -> None:
 @pytest.mark.long
 def test_compiling_kernels_is_told_where_none_are_kept(tmp_path: Path) -> None:
     code = (
-        "from hazard_ms.machine import progress; progress.PATIENCE = 0.2\n"
+        "from hazard_ms.spec import progress; progress.PATIENCE = 0.2\n"
         "import gymnasium as gym, hazard_ms\n"
         "env = gym.make('HazardFlood-v1', obs_mode='none', render_backend='none'); env.reset(); env.step(None)\n"
     )

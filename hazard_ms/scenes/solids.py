@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.assets.index import asset
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import matrix_of
 from hazard_ms.spec import Body, Fixture
 

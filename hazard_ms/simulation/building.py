@@ -16,9 +16,9 @@ from mani_skill.utils.structs import Actor
 from mani_skill.utils.structs.pose import Pose
 from sapien.physx import PhysxRigidDynamicComponent as Dynamic
 
-from hazard_ms.assets.index import asset, asset_path
-from hazard_ms.assets.primitives import colour
-from hazard_ms.assets.rows import Asset
+from hazard_ms.scenes.assets.index import asset, asset_path
+from hazard_ms.scenes.assets.primitives import colour
+from hazard_ms.scenes.assets.rows import Asset
 from hazard_ms.scenes.shell import shell
 from hazard_ms.simulation.drawing.textured_box import surface_material, textured_box
 from hazard_ms.simulation.names import actor_name

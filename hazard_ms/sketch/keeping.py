@@ -21,7 +21,7 @@ from hazard_ms.spec.storage.cache import home
 
 FORMAT = 1  # goes up when older files can no longer be read
 # folders whose code decides what a scene is, beside that of its timeline
-MADE_BY = ("assets", "robots", "scenes", "sensing", "sketch", "skills", "spec", "tasks")
+MADE_BY = ("robots", "scenes", "sensing", "sketch", "skills", "spec", "tasks")
 PACKAGE = Path(__file__).parents[1]
 PLAIN: dict[str, Callable[[Any], Any]] = {  # fields that are no arrays
     "name": str,

@@ -41,7 +41,7 @@ def find(name: str) -> SceneSpec:
 
 def check_one(name: str) -> CheckedScene:
     """Generate or read a scene, and check it; in the simulator too when nothing else is wrong."""
-    from hazard_ms.assets.shipped import shipped_index
+    from hazard_ms.scenes.assets.shipped import shipped_index
     from hazard_ms.scenes.check import check
     from hazard_ms.simulation import rest_check
 

@@ -14,7 +14,6 @@ from tests.project.imports import PACKAGE, ROOT, arrows, circles, graph, imports
 LAYERS = (  # a room may import only from rooms to its left, or from those beside it
     ("spec", "machine"),
     ("__init__",),
-    ("assets",),
     ("scenes",),
     ("simulation",),
     ("robots",),

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hazard_ms.assets.index import asset
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import box_of
 from hazard_ms.scenes.floor import OVERHEAD_HEIGHT, boxes_of
 from hazard_ms.scenes.original.read import read

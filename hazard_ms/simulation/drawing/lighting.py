@@ -17,7 +17,7 @@ import torch
 from sapien.render import RenderBodyComponent
 from torch import Tensor
 
-from hazard_ms.assets.index import asset, asset_path
+from hazard_ms.scenes.assets.index import asset, asset_path
 from hazard_ms.simulation.building import extent_of, lamp_places
 from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.drawing import relighting

@@ -64,7 +64,7 @@ __all__ = [  # noqa: PLE0604
 
 def __getattr__(name: str) -> Any:
     if name == "vector":  # hazard_ms.vector.make
-        return importlib.import_module("hazard_ms.vector")
+        return importlib.import_module("hazard_ms.learning.vector")
     if name not in _LAZY:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return globals().setdefault(name, load(_LAZY[name]))

@@ -17,11 +17,11 @@ import numpy as np
 
 from hazard_ms.evaluation.options import EnvOptions
 from hazard_ms.evaluation.report import machine_line
+from hazard_ms.learning.vector import make
+from hazard_ms.learning.vector.playing import single
 from hazard_ms.machine.activity import processor_seconds
 from hazard_ms.machine.cores import cores
 from hazard_ms.spec.checks import whole
-from hazard_ms.vector import make
-from hazard_ms.vector.playing import single
 
 TURN = 20  # frames of a turn [ours]
 MOST = 10**6  # frames to average over [ours]

@@ -23,7 +23,7 @@ LAYERS = (  # a room may import only from rooms to its left, or from those besid
     ("sensing",),
     ("env",),
     ("skills", "lerobot"),
-    ("sketch", "vector"),
+    ("sketch",),
     ("agents",),
     ("evaluation",),
     ("pictures", "demonstrations", "learning", "perception"),

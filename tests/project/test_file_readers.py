@@ -76,7 +76,7 @@ KNOWN: dict[str, tuple[set[str], str]] = {
     "sketch.recording": ({".read_bytes"}, OWN),
     "skills.mitigations.extinguish": ({".open"}, "the nozzle of an extinguisher"),
     "validation.mitigation.jets": ({".open"}, "the nozzle of an extinguisher"),
-    "vector.board": ({"numpy.memmap"}, "shared memory of this run's own processes"),
+    "learning.vector.board": ({"numpy.memmap"}, "shared memory of this run's own processes"),
     "web.live": ({"json.loads"}, NETWORK),
     "web.playing.link": ({"json.loads"}, HERE),
     "web.session": ({"json.loads"}, NETWORK),

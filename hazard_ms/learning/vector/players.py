@@ -16,11 +16,11 @@ from typing import Any
 
 from gymnasium.vector import AutoresetMode
 
+from hazard_ms.learning.vector.board import NONE, Board, make_file
+from hazard_ms.learning.vector.playing import Failure, Share, Spaces, serve
 from hazard_ms.machine.activity import Activity
 from hazard_ms.machine.cores import cores
 from hazard_ms.machine.processes import few_threads, without_keys
-from hazard_ms.vector.board import NONE, Board, make_file
-from hazard_ms.vector.playing import Failure, Share, Spaces, serve
 
 START = 900.0  # longest time to make environments: on a crowded machine, importing all takes minutes [s] [ours]
 LOOK = 0.25  # time between two looks at whether processes are at work [s] [ours]

@@ -17,8 +17,8 @@ from typing import Any, NamedTuple
 import gymnasium as gym
 from gymnasium.vector import AutoresetMode
 
+from hazard_ms.learning.vector.board import NONE, Board
 from hazard_ms.machine.processes import end_with_parent
-from hazard_ms.vector.board import NONE, Board
 
 
 @dataclass(frozen=True)

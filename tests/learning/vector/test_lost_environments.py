@@ -14,11 +14,11 @@ from pathlib import Path
 import pytest
 from gymnasium.error import ClosedEnvironmentError
 
-from hazard_ms.vector import LostEnvironmentError, make
+from hazard_ms.learning.vector import LostEnvironmentError, make
 from tests.worlds.naughty_env import DIE, NAP, SLEEP, SPIN, WALK
 from tests.worlds.naughty_vector import NAME, SOON, naughty, pids
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize("action", [DIE, SLEEP])
@@ -97,7 +97,7 @@ def test_answers_to_what_was_broken_off_are_left_out() -> None:
 def test_processes_end_with_a_program_that_is_killed() -> None:
     code = (
         "import os, signal, multiprocessing\n"
-        "from hazard_ms.vector import make\n"
+        "from hazard_ms.learning.vector import make\n"
         f"envs = make({NAME!r}, 2, processes=2)\n"
         "print(*[p.pid for p in multiprocessing.active_children()], flush=True)\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
@@ -113,7 +113,7 @@ def test_processes_end_with_a_program_that_is_killed() -> None:
 
 def test_programs_without_a_guard_are_told_what_is_missing(tmp_path: Path) -> None:
     script = tmp_path / "unguarded.py"
-    script.write_text(f"from hazard_ms.vector import make\nmake({NAME!r}, 1)\n")
+    script.write_text(f"from hazard_ms.learning.vector import make\nmake({NAME!r}, 1)\n")
     environ = {**os.environ, "PYTHONPATH": str(ROOT)}
     out = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=60, env=environ)
     assert out.returncode == 1 and "LostEnvironmentError" in out.stderr and "__main__" in out.stderr

@@ -12,8 +12,8 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from hazard_ms.learning.vector.players import Processes
 from hazard_ms.spec.checks import whole
-from hazard_ms.vector.players import Processes
 
 PATIENCE = 600.0  # longest time of a step or a reset by default [s] [ours]
 

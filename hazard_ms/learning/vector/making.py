@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import gymnasium as gym
 from gymnasium.vector import AutoresetMode, VectorEnv
 
+from hazard_ms.learning.vector.processes import PATIENCE, ProcessVectorEnv
 from hazard_ms.machine.cores import cores
 from hazard_ms.spec.checks import one_of, whole
 from hazard_ms.spec.registry.announce import ENVIRONMENT, SKILLS
-from hazard_ms.vector.processes import PATIENCE, ProcessVectorEnv
 
 if TYPE_CHECKING:
-    from hazard_ms.vector.stable_baselines import SB3VecEnv
+    from hazard_ms.learning.vector.stable_baselines import SB3VecEnv
 
 MOST = 2**20  # environments: any larger number must be a mistake [-] [ours]
 MODES = {mode.value: mode for mode in AutoresetMode}
@@ -63,7 +63,7 @@ def make(
         return gym.make_vec(env_id, num_envs, vectorization_mode="vector_entry_point", **keywords)
     mode = mode or AutoresetMode.NEXT_STEP
     if spec.entry_point == ENVIRONMENT and num_envs > 1 and _on_gpu(keywords.get("sim_backend", "auto")):
-        from hazard_ms.vector.batched import BatchedEnv
+        from hazard_ms.learning.vector.batched import BatchedEnv
 
         return BatchedEnv(gym.make(env_id, num_envs=num_envs, **keywords), mode)
     made = ProcessVectorEnv(env_id, num_envs, min(wanted, num_envs), keywords, mode, patience)
@@ -73,7 +73,7 @@ def make(
 
 def make_for_sb3(env_id: str, num_envs: int = 1, **keywords: Any) -> SB3VecEnv:
     """The same for learners of Stable-Baselines3. Raises what `make` raises."""
-    from hazard_ms.vector.stable_baselines import SB3VecEnv
+    from hazard_ms.learning.vector.stable_baselines import SB3VecEnv
 
     return SB3VecEnv(make(env_id, num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **keywords))
 

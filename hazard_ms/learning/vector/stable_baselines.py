@@ -10,7 +10,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
-from hazard_ms.vector.processes import ProcessVectorEnv
+from hazard_ms.learning.vector.processes import ProcessVectorEnv
 
 MASKS = "action_masks"  # what sb3-contrib's MaskablePPO asks for
 

@@ -17,8 +17,8 @@ from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import hazard_ms
-from hazard_ms.vector import make
-from hazard_ms.vector.processes import ProcessVectorEnv
+from hazard_ms.learning.vector import make
+from hazard_ms.learning.vector.processes import ProcessVectorEnv
 from tests.worlds.naughty_env import ODD, RAISE, WALK, Naughty
 from tests.worlds.naughty_vector import NAME, naughty, pids
 

@@ -13,8 +13,8 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.wrappers.vector import DictInfoToList, RecordEpisodeStatistics
 
 from hazard_ms import NumpyEnv
-from hazard_ms.vector import make, make_for_sb3
-from hazard_ms.vector.batched import BatchedEnv
+from hazard_ms.learning.vector import make, make_for_sb3
+from hazard_ms.learning.vector.batched import BatchedEnv
 
 TASK, FRAMES = "HazardFire-v1", 3  # of an episode
 KEYWORDS = {"obs_mode": "state", "render_backend": "none", "max_episode_steps": FRAMES}
@@ -125,7 +125,7 @@ def test_stable_baselines_learns_on_it(three: VectorEnv[Any, Any, Any]) -> None:
     from stable_baselines3 import PPO
     from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
 
-    from hazard_ms.vector.stable_baselines import SB3VecEnv
+    from hazard_ms.learning.vector.stable_baselines import SB3VecEnv
 
     envs = SB3VecEnv(three)
     envs.seed(5)
@@ -147,7 +147,7 @@ def test_stable_baselines_learns_on_it(three: VectorEnv[Any, Any, Any]) -> None:
 
 def test_other_times_of_resets_are_refused_for_stable_baselines() -> None:
     pytest.importorskip("stable_baselines3")
-    from hazard_ms.vector.stable_baselines import SB3VecEnv
+    from hazard_ms.learning.vector.stable_baselines import SB3VecEnv
 
     env = BatchedEnv(gym.make(TASK, **KEYWORDS), AutoresetMode.NEXT_STEP)
     with pytest.raises(ValueError, match="must be SameStep for Stable-Baselines3"):

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
+from hazard_ms.cli.web.options import ServeOptions
 from hazard_ms.evaluation.choices import HUMAN
 from hazard_ms.evaluation.options import EpisodeOptions, PlayOptions, ReplayOptions, SweepOptions
-from hazard_ms.web.options import ServeOptions
 
 if TYPE_CHECKING:
     from hazard_ms.evaluation.result import EpisodeResult
@@ -114,7 +114,7 @@ def serve(options: Annotated[tyro.conf.OmitArgPrefixes[ServeOptions], tyro.conf.
     It needs `pip install hazard_ms[web]`. Only this machine can reach it, and only with the address as it is printed.
     """
     from hazard_ms.agents.base import user_path
-    from hazard_ms.web.serving import serve as run
+    from hazard_ms.cli.web.serving import serve as run
 
     user_path()
     return run(options)

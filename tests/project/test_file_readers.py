@@ -77,9 +77,9 @@ KNOWN: dict[str, tuple[set[str], str]] = {
     "skills.mitigations.extinguish": ({".open"}, "the nozzle of an extinguisher"),
     "validation.mitigation.jets": ({".open"}, "the nozzle of an extinguisher"),
     "learning.vector.board": ({"numpy.memmap"}, "shared memory of this run's own processes"),
-    "web.live": ({"json.loads"}, NETWORK),
-    "web.playing.link": ({"json.loads"}, HERE),
-    "web.session": ({"json.loads"}, NETWORK),
+    "cli.web.live": ({"json.loads"}, NETWORK),
+    "cli.web.playing.link": ({"json.loads"}, HERE),
+    "cli.web.session": ({"json.loads"}, NETWORK),
 }
 
 

@@ -23,6 +23,7 @@ from hazard_ms.agents.learned import weights
 from hazard_ms.agents.learned.map_policy import MapPolicy, MapShape
 from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
 from hazard_ms.agents.llm.cache import Cache, Stored
+from hazard_ms.cli.web import rescue
 from hazard_ms.demonstrations import reading
 from hazard_ms.demonstrations.layout import MANIFEST, content_of, hashes_of
 from hazard_ms.demonstrations.merging import merge
@@ -39,7 +40,6 @@ from hazard_ms.sketch import columns, fit_times, keeping, skill_times, timeline
 from hazard_ms.skills.options.options import COUNT
 from hazard_ms.spec.foreign.arrays import read_arrays
 from hazard_ms.spec.foreign.files import read_foreign
-from hazard_ms.web import rescue
 from tests.worlds.halls import future, hall
 from tests.worlds.hostile import sights
 from tests.worlds.hostile.mutations import mutated, replaced

@@ -17,12 +17,12 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
+from hazard_ms.cli.web.compare.numbers import contents, numbers, overview
+from hazard_ms.cli.web.compare.shelf import Book, Librarian, Shelf, film_of
+from hazard_ms.cli.web.compare.timelines import timelines
+from hazard_ms.cli.web.files import address
+from hazard_ms.cli.web.guard import FILES
 from hazard_ms.evaluation.page import page
-from hazard_ms.web.compare.numbers import contents, numbers, overview
-from hazard_ms.web.compare.shelf import Book, Librarian, Shelf, film_of
-from hazard_ms.web.compare.timelines import timelines
-from hazard_ms.web.files import address
-from hazard_ms.web.guard import FILES
 
 MOST_KEPT = 8  # groups whose numbers are remembered [ours]
 

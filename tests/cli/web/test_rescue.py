@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms.web import rescue as rescues
-from hazard_ms.web.rescue import Taken, asked_for, journal, keep, read, taken_over
+from hazard_ms.cli.web import rescue as rescues
+from hazard_ms.cli.web.rescue import Taken, asked_for, journal, keep, read, taken_over
 
 
 def test_a_journal_gives_the_same_rescue_again(tmp_path: Path) -> None:

@@ -9,9 +9,9 @@ import pytest
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
-from hazard_ms.web.app import application
-from hazard_ms.web.guard import PROTOCOL, file_key
-from hazard_ms.web.options import ServeOptions
+from hazard_ms.cli.web.app import application
+from hazard_ms.cli.web.guard import PROTOCOL, file_key
+from hazard_ms.cli.web.options import ServeOptions
 
 TOKEN, PORT = "t" * 32, 8000
 PAGE = f"http://127.0.0.1:{PORT}"

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms.web.options import ServeOptions
-from hazard_ms.web.playing.link import LONGEST_BYTES
-from hazard_ms.web.rescue import Taken, asked_for, read
-from hazard_ms.web.session import Session
-from hazard_ms.web.sessions import Sessions
+from hazard_ms.cli.web.options import ServeOptions
+from hazard_ms.cli.web.playing.link import LONGEST_BYTES
+from hazard_ms.cli.web.rescue import Taken, asked_for, read
+from hazard_ms.cli.web.session import Session
+from hazard_ms.cli.web.sessions import Sessions
 
 TAKEN = [Taken("explore", None, 3), Taken("walk_to", "mug_1"), Taken("stop", None)]
 

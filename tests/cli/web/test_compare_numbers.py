@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from hazard_ms.cli.__main__ import main
+from hazard_ms.cli.web.compare.numbers import MOST_AGENTS
 from hazard_ms.evaluation.regret.causes import (
     EXECUTION,
     PARTS,
@@ -22,7 +23,6 @@ from hazard_ms.evaluation.regret.causes import (
     place_of,
 )
 from hazard_ms.evaluation.result import DecisionRecord
-from hazard_ms.web.compare.numbers import MOST_AGENTS
 from tests.worlds.asking import Asking
 from tests.worlds.courses import course, drawn, fate
 

@@ -13,13 +13,13 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from hazard_ms.cli.web.guard import PROTOCOL
+from hazard_ms.cli.web.playing.link import LONGEST
+from hazard_ms.cli.web.rescue import PACES, asked_for
+from hazard_ms.cli.web.session import Page, Session
+from hazard_ms.cli.web.sessions import Sessions
 from hazard_ms.evaluation.choices import LIGHTINGS, PRESETS, SEVERITIES
 from hazard_ms.spec.registry import AGENTS, ROBOTS, TASKS, load
-from hazard_ms.web.guard import PROTOCOL
-from hazard_ms.web.playing.link import LONGEST
-from hazard_ms.web.rescue import PACES, asked_for
-from hazard_ms.web.session import Page, Session
-from hazard_ms.web.sessions import Sessions
 
 NO_RESCUE = 4404  # code with which a WebSocket is closed that asks for a rescue which cannot be gone on with [ours]
 

@@ -18,7 +18,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from hazard_ms.web.rescue import asked_for, keep
+from hazard_ms.cli.web.rescue import asked_for, keep
 from tests.worlds.serving import browsing, needs_browser, serving, text, until
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(300), needs_browser]

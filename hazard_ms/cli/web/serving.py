@@ -6,8 +6,8 @@ import contextlib
 import secrets
 import socket
 
+from hazard_ms.cli.web.options import ServeOptions
 from hazard_ms.spec.storage.files import make_folder
-from hazard_ms.web.options import ServeOptions
 
 HOST = "127.0.0.1"
 TOKEN_BYTES = 24  # of chance in a token [bytes] [ours]
@@ -20,8 +20,8 @@ def serve(options: ServeOptions) -> int:
     try:
         import uvicorn
 
-        from hazard_ms.web.app import application
-        from hazard_ms.web.connections import BACKLOG, Connections
+        from hazard_ms.cli.web.app import application
+        from hazard_ms.cli.web.connections import BACKLOG, Connections
     except ImportError as error:
         raise ValueError(f"the page needs the extra web: pip install 'hazard_ms[web]' ({error})") from None
     make_folder(options.folders[0])

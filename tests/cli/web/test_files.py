@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms.web.files import address, inside
+from hazard_ms.cli.web.files import address, inside
 
 
 @pytest.fixture

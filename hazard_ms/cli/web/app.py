@@ -14,12 +14,12 @@ from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from hazard_ms.web import compare
-from hazard_ms.web.files import file_routes
-from hazard_ms.web.guard import Guard, file_key
-from hazard_ms.web.live import live_routes
-from hazard_ms.web.options import ServeOptions
-from hazard_ms.web.sessions import Sessions
+from hazard_ms.cli.web import compare
+from hazard_ms.cli.web.files import file_routes
+from hazard_ms.cli.web.guard import Guard, file_key
+from hazard_ms.cli.web.live import live_routes
+from hazard_ms.cli.web.options import ServeOptions
+from hazard_ms.cli.web.sessions import Sessions
 
 STATIC = Path(__file__).parent / "static"
 

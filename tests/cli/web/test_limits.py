@@ -17,9 +17,9 @@ from urllib.parse import urlsplit
 import pytest
 from websockets.sync.client import ClientConnection, connect
 
-from hazard_ms.web.guard import PROTOCOL
-from hazard_ms.web.rescue import journal
-from hazard_ms.web.sessions import LOOK_ROUND
+from hazard_ms.cli.web.guard import PROTOCOL
+from hazard_ms.cli.web.rescue import journal
+from hazard_ms.cli.web.sessions import LOOK_ROUND
 from tests.worlds.serving import Server, serving
 
 pytestmark = [pytest.mark.render, pytest.mark.timeout(200)]

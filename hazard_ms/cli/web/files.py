@@ -11,7 +11,7 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 from starlette.routing import Route
 
-from hazard_ms.web.guard import FILES
+from hazard_ms.cli.web.guard import FILES
 
 KINDS = {".json": "application/json", ".html": "text/html", ".mp4": "video/mp4", ".jpg": "image/jpeg"}
 

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from hazard_ms.web.compare.answers import routes
+from hazard_ms.cli.web.compare.answers import routes
 
 __all__ = ["routes"]

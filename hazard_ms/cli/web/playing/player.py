@@ -6,13 +6,13 @@ import time
 from collections.abc import Mapping
 
 from hazard_ms.agents.base import Agent, agent, note_of
+from hazard_ms.cli.web.playing.desk import Desk
+from hazard_ms.cli.web.rescue import ALL, WATCH, Rescue
 from hazard_ms.demonstrations.watching.sentences import sentence
 from hazard_ms.evaluation.attempts import Accompanied
 from hazard_ms.skills.actions import wait
 from hazard_ms.skills.decision import EXPLORE, Action, Decision
 from hazard_ms.skills.options.macros import Macro
-from hazard_ms.web.playing.desk import Desk
-from hazard_ms.web.rescue import ALL, WATCH, Rescue
 
 PATIENCE = 0.5  # time between two looks at whether a page still listens [s] [ours]
 

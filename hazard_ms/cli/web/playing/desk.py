@@ -7,6 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from hazard_ms.cli.web import rescue as rescues
+from hazard_ms.cli.web.playing.link import PICTURES, Link
+from hazard_ms.cli.web.playing.menu import Choice, Choices
+from hazard_ms.cli.web.playing.pictures import Pictures
+from hazard_ms.cli.web.rescue import ALL, PLAY, Rescue, Taken
 from hazard_ms.demonstrations.watching.sentences import sentence
 from hazard_ms.evaluation.metrics import Tally
 from hazard_ms.evaluation.result import DecisionRecord, Played
@@ -17,11 +22,6 @@ from hazard_ms.skills.decision import Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.skills.mitigations.offers import tools
-from hazard_ms.web import rescue as rescues
-from hazard_ms.web.playing.link import PICTURES, Link
-from hazard_ms.web.playing.menu import Choice, Choices
-from hazard_ms.web.playing.pictures import Pictures
-from hazard_ms.web.rescue import ALL, PLAY, Rescue, Taken
 
 ROW = ("frame", "verb", "target", "ok", "reason", "frames", "waited", "note", "value")  # of a decision, that pages show
 ASKED = ("choose", "point", "thing", "pace", "pause", "go", "step", "world", "end")

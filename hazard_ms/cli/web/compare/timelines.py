@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from hazard_ms.cli.web.compare.numbers import is_person
+from hazard_ms.cli.web.compare.shelf import Book, film_of
 from hazard_ms.evaluation.comparison.curves import outcome
 from hazard_ms.evaluation.regret.causes import DecisionRegret, EpisodeRegret
 from hazard_ms.evaluation.result import DecisionRecord
-from hazard_ms.web.compare.numbers import is_person
-from hazard_ms.web.compare.shelf import Book, film_of
 
 MOST_TIMELINES = 12  # that are shown over one another [ours]
 MOST_BARS = 2_000  # decisions of an episode that are drawn [ours]

@@ -7,11 +7,11 @@ import time
 from dataclasses import replace
 from typing import Any
 
+from hazard_ms.cli.web import rescue as rescues
+from hazard_ms.cli.web.options import ServeOptions
+from hazard_ms.cli.web.rescue import Rescue
+from hazard_ms.cli.web.session import Session
 from hazard_ms.spec.checks import whole
-from hazard_ms.web import rescue as rescues
-from hazard_ms.web.options import ServeOptions
-from hazard_ms.web.rescue import Rescue
-from hazard_ms.web.session import Session
 
 LOOK_ROUND = 5.0  # time between two searches for idle rescues [s] [ours]
 

@@ -6,11 +6,11 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
+from hazard_ms.cli.web.compare.shelf import Book, Shelf, film_of
 from hazard_ms.evaluation.choices import HUMAN
 from hazard_ms.evaluation.comparison import curves
 from hazard_ms.evaluation.comparison.folders import Group, grouped, title
 from hazard_ms.evaluation.comparison.summary import summary
-from hazard_ms.web.compare.shelf import Book, Shelf, film_of
 
 MOST_AGENTS = 20  # of a group; each is compared with each other [ours]
 MOST_EPISODES = 1_000  # of an agent in a group [ours]

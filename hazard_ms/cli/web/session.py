@@ -12,10 +12,10 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
+from hazard_ms.cli.web.playing.link import LONGEST_BYTES, PICTURES
+from hazard_ms.cli.web.playing.process import main
+from hazard_ms.cli.web.rescue import Rescue, Taken
 from hazard_ms.machine.processes import few_threads, needs_key, without_keys
-from hazard_ms.web.playing.link import LONGEST_BYTES, PICTURES
-from hazard_ms.web.playing.process import main
-from hazard_ms.web.rescue import Rescue, Taken
 
 PASSING = ("pointed", "refused")  # answers that a page which comes later does not need
 LAST = ("closed", "failed", "kept")  # words after which a process ends as it should

@@ -12,8 +12,8 @@ from urllib.parse import quote
 
 import pytest
 
+from hazard_ms.cli.web.compare import shelf
 from hazard_ms.evaluation.regret.causes import PARTS, EpisodeRegret, digest, place_of
-from hazard_ms.web.compare import shelf
 from tests.worlds.asking import Asking
 from tests.worlds.courses import course, drawn, fate
 

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.cli.web.playing.link import HAZARD, HEAD, MAP, ROOM
 from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.panels import MapPanel, hazard_panel, strongest
 from hazard_ms.pictures.spectator import Spectator
@@ -15,7 +16,6 @@ from hazard_ms.pictures.told import told
 from hazard_ms.sensing.camera import relabel
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.mitigations.offers import tools
-from hazard_ms.web.playing.link import HAZARD, HEAD, MAP, ROOM
 
 SIZE = (400, 300)  # of the third person [pixels]: larger ones are too few a second on two cores [measured]
 PLAN = (480, 320)  # of the map [pixels]

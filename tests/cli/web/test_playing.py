@@ -13,13 +13,13 @@ from typing import Any
 
 import pytest
 
+from hazard_ms.cli.web.compare.shelf import Librarian, film_of
+from hazard_ms.cli.web.playing import keeping
+from hazard_ms.cli.web.playing.link import PICTURES, Link
+from hazard_ms.cli.web.playing.process import main, play
+from hazard_ms.cli.web.rescue import Rescue, Taken, asked_for, journal, keep, read
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.spec import registry
-from hazard_ms.web.compare.shelf import Librarian, film_of
-from hazard_ms.web.playing import keeping
-from hazard_ms.web.playing.link import PICTURES, Link
-from hazard_ms.web.playing.process import main, play
-from hazard_ms.web.rescue import Rescue, Taken, asked_for, journal, keep, read
 
 
 @pytest.fixture(autouse=True)

@@ -10,10 +10,10 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from urllib.parse import quote
 
+from hazard_ms.cli.web.playing.link import Link
+from hazard_ms.cli.web.rescue import ALL, PLAY, Rescue, journal, keep
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.machine.processes import end_with_parent
-from hazard_ms.web.playing.link import Link
-from hazard_ms.web.rescue import ALL, PLAY, Rescue, journal, keep
 
 POLITE = 5  # niceness of making a film: rescues that are being played come first [ours]
 
@@ -38,7 +38,7 @@ def play(link: Link, rescue: Rescue, folder: Path) -> None:
 
     Its journal stays until all is kept, so that a process that dies meanwhile costs nothing: the next one goes on.
     """
-    from hazard_ms.web.playing import keeping
+    from hazard_ms.cli.web.playing import keeping
 
     link.say("building")
     import torch
@@ -60,11 +60,11 @@ def play(link: Link, rescue: Rescue, folder: Path) -> None:
 
 def _play(link: Link, rescue: Rescue, folder: Path) -> EpisodeResult | None:
     """Play the rescue. Returns its result, None if the page has ended it."""
+    from hazard_ms.cli.web.playing.desk import Desk, EndedError
+    from hazard_ms.cli.web.playing.pictures import SIZE
+    from hazard_ms.cli.web.playing.player import Player
     from hazard_ms.evaluation.averted.account import Account
     from hazard_ms.evaluation.runner import Runner, environment, fates, result_of
-    from hazard_ms.web.playing.desk import Desk, EndedError
-    from hazard_ms.web.playing.pictures import SIZE
-    from hazard_ms.web.playing.player import Player
 
     start, options = time.perf_counter(), rescue.episode
     desk = Desk(link, rescue, folder)
@@ -90,7 +90,7 @@ def _play(link: Link, rescue: Rescue, folder: Path) -> EpisodeResult | None:
 
 def _tell_again(link: Link, rescue: Rescue, result: EpisodeResult) -> None:
     """Tell the page of a rescue that ended in an earlier process, which did not come to make its film."""
-    from hazard_ms.web.playing.desk import tell_row
+    from hazard_ms.cli.web.playing.desk import tell_row
 
     link.say(
         "begun",
@@ -111,8 +111,8 @@ def _tell_again(link: Link, rescue: Rescue, result: EpisodeResult) -> None:
 
 def _finish(link: Link, rescue: Rescue, folder: Path, path: Path, result: EpisodeResult) -> None:
     """Make the film of a rescue whose result is in the file `path`, and delete its journal."""
+    from hazard_ms.cli.web.playing import keeping
     from hazard_ms.evaluation.report import summary
-    from hazard_ms.web.playing import keeping
 
     went = summary(result, rescue.episode.goal)
     link.say("over", ended=result.ended, summary=went, files=_links(path, (".html", ".json")))

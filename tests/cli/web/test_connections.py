@@ -18,7 +18,7 @@ import pytest
 import uvicorn
 from uvicorn.server import ServerState
 
-from hazard_ms.web import connections
+from hazard_ms.cli.web import connections
 
 FILES = 128  # files that the server may open; connections try to take more
 MOST_LOG = 100_000  # of what the server writes meanwhile [bytes]

@@ -28,7 +28,6 @@ LAYERS = (  # a room may import only from rooms to its left, or from those besid
     ("evaluation",),
     ("pictures", "demonstrations", "learning", "perception"),
     ("validation",),
-    ("bench",),
     ("cli",),
 )
 MOST_ROOMS = 34

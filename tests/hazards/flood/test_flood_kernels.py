@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from hazard_ms.bench import kernels
+from hazard_ms.cli.costs import kernels
 from hazard_ms.hazards.flood.buoyancy import BALL, BOX, CYLINDER
 from hazard_ms.hazards.presets import flood
 from hazard_ms.validation.experiments.probes import Immersion, drag, immersion, spin_drag

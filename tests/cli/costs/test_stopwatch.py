@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from hazard_ms.bench import frames
+from hazard_ms.cli.costs import frames
 
 
 class Robot:

@@ -16,11 +16,11 @@ from typing import Any
 
 import torch
 
-from hazard_ms.bench.gpu.rates import STATE, WARM_UP, batch, motions
-from hazard_ms.bench.tables import table
+from hazard_ms.cli.costs.gpu.rates import STATE, WARM_UP, batch, motions
+from hazard_ms.cli.costs.tables import table
 
 WARNING = "called a synchronizing CUDA operation"  # torch's words
-PACKAGE = Path(__file__).parents[2]
+PACKAGE = Path(__file__).parents[3]
 FRAMES = 30  # frames to count in: the hazards' rarer updates take part [ours]
 
 

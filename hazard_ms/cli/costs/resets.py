@@ -16,8 +16,8 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
-from hazard_ms.bench.tables import table
-from hazard_ms.bench.turns import Case, actions_of, one_thread
+from hazard_ms.cli.costs.tables import table
+from hazard_ms.cli.costs.turns import Case, actions_of, one_thread
 from hazard_ms.evaluation.report import machine_line
 from hazard_ms.scenes.splits import scene
 from hazard_ms.spec.checks import whole

@@ -9,13 +9,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.bench.gpu.apart import StoppedError, apart
-from hazard_ms.bench.gpu.comparison import CHECKED, differences_table, kept
-from hazard_ms.bench.gpu.gpu_tests import gpu_tests
-from hazard_ms.bench.gpu.laws import COMPARED
-from hazard_ms.bench.gpu.looks import SIDES, compare, looks_row, looks_table
-from hazard_ms.bench.gpu.rates import FRAMES, PICTURES, SIDE, STATE, WARM_UP, Rate, growth, rates_table
-from hazard_ms.bench.gpu.waits import waits_table
+from hazard_ms.cli.costs.gpu.apart import StoppedError, apart
+from hazard_ms.cli.costs.gpu.comparison import CHECKED, differences_table, kept
+from hazard_ms.cli.costs.gpu.gpu_tests import gpu_tests
+from hazard_ms.cli.costs.gpu.laws import COMPARED
+from hazard_ms.cli.costs.gpu.looks import SIDES, compare, looks_row, looks_table
+from hazard_ms.cli.costs.gpu.rates import FRAMES, PICTURES, SIDE, STATE, WARM_UP, Rate, growth, rates_table
+from hazard_ms.cli.costs.gpu.waits import waits_table
 from hazard_ms.evaluation.options import EnvOptions
 from hazard_ms.evaluation.report import machine_line
 from hazard_ms.spec.checks import one_of

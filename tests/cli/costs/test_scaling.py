@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from hazard_ms.bench.scaling import FIRST, THINGS, crowded, time_of_things
+from hazard_ms.cli.costs.scaling import FIRST, THINGS, crowded, time_of_things
 from hazard_ms.scenes.schema import from_json, to_json
 from hazard_ms.simulation.building import extent_of
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hazard_ms.bench.pickups import Handling, _floor, handlings, lines, report
+from hazard_ms.cli.costs.pickups import Handling, _floor, handlings, lines, report
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.scenes.splits import scene
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from hazard_ms.bench.gpu.looks import compare, looks_row, looks_table
-from tests.bench.test_gpu_check import cells
+from hazard_ms.cli.costs.gpu.looks import compare, looks_row, looks_table
+from tests.cli.costs.test_gpu_check import cells
 
 
 def test_pictures_are_compared_pixel_by_pixel_and_beyond_outlines() -> None:

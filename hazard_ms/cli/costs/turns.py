@@ -2,7 +2,7 @@
 
 Each has its turn in every round; what is kept is the median over rounds. The clock that counts is the processor time of
 this process, which other processes hardly change; compare ratios all the same. One torch thread works, as in
-`hazard_ms.bench.kernels`.
+`hazard_ms.cli.costs.kernels`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from hazard_ms.bench.frames import Stopwatch
+from hazard_ms.cli.costs.frames import Stopwatch
 
 ACTIONS = ("zeros", "random")  # what an environment is given in each of its turns
 WARM_UP = 20  # frames before the first turn: caches fill, kernels are compiled [ours]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hazard_ms.machine.processes import environment
 
-CHECKOUT = Path(__file__).parents[3]  # which has the tests; an installed package has none
+CHECKOUT = Path(__file__).parents[4]  # which has the tests; an installed package has none
 MENTIONED = re.compile(r"(?:FAILED|ERROR|SKIPPED|XFAIL|XPASS)\b.*")  # lines of pytest's summary
 
 

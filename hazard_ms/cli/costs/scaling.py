@@ -18,9 +18,9 @@ import gymnasium as gym
 import mani_skill.envs  # noqa: F401 registers ManiSkill's own tasks
 import numpy as np
 
-from hazard_ms.bench.frames import FEWEST, HOOKS, MOST, watched
-from hazard_ms.bench.tables import table
-from hazard_ms.bench.turns import WARM_UP, Case, actions_of, frames_in_turn, one_thread, phases_in_turn, spent
+from hazard_ms.cli.costs.frames import FEWEST, HOOKS, MOST, watched
+from hazard_ms.cli.costs.tables import table
+from hazard_ms.cli.costs.turns import WARM_UP, Case, actions_of, frames_in_turn, one_thread, phases_in_turn, spent
 from hazard_ms.evaluation.report import machine_line
 from hazard_ms.scenes.schema import to_json
 from hazard_ms.scenes.splits import scene

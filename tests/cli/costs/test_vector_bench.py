@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from gymnasium.spaces import Box
 
-from hazard_ms.bench.vector import TURN, Turns, report
+from hazard_ms.cli.costs.vector import TURN, Turns, report
 
 
 class Sleepers:

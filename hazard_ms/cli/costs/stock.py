@@ -12,10 +12,10 @@ from typing import Any
 import gymnasium as gym
 import mani_skill.envs  # noqa: F401 registers ManiSkill's own tasks
 
-from hazard_ms.bench.frames import FEWEST, MOST, watched, watched_maniskill
-from hazard_ms.bench.resets import beside_stock
-from hazard_ms.bench.tables import table
-from hazard_ms.bench.turns import WARM_UP, Case, Turn, actions_of, frames_in_turn, one_thread, phases_in_turn, spent
+from hazard_ms.cli.costs.frames import FEWEST, MOST, watched, watched_maniskill
+from hazard_ms.cli.costs.resets import beside_stock
+from hazard_ms.cli.costs.tables import table
+from hazard_ms.cli.costs.turns import WARM_UP, Case, Turn, actions_of, frames_in_turn, one_thread, phases_in_turn, spent
 from hazard_ms.evaluation.report import machine_line
 from hazard_ms.spec.checks import whole
 

@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hazard_ms.bench.gpu import rates, report, waits
-from hazard_ms.bench.gpu.apart import StoppedError, complaints, failure, run
-from hazard_ms.bench.gpu.comparison import BODIES, JOINTS, course, difference, differences_table, keep, kept
-from hazard_ms.bench.gpu.gpu_tests import gpu_tests
-from hazard_ms.bench.gpu.looks import SIDES
-from hazard_ms.bench.gpu.needs import DRIVER, missing
 from hazard_ms.cli.__main__ import main
 from hazard_ms.cli.bench import GPU_PARTS, GPU_TASKS
+from hazard_ms.cli.costs.gpu import rates, report, waits
+from hazard_ms.cli.costs.gpu.apart import StoppedError, complaints, failure, run
+from hazard_ms.cli.costs.gpu.comparison import BODIES, JOINTS, course, difference, differences_table, keep, kept
+from hazard_ms.cli.costs.gpu.gpu_tests import gpu_tests
+from hazard_ms.cli.costs.gpu.looks import SIDES
+from hazard_ms.cli.costs.gpu.needs import DRIVER, missing
 from results.speed import GPU
 from tests.worlds.files.checkout import ROOT
 
@@ -138,7 +138,7 @@ def test_waits_are_counted_by_the_line_that_waits() -> None:
             warnings.warn(f"{waits.WARNING} (Triggered internally at x.cpp:1.)", UserWarning, stacklevel=1)
         warnings.warn("something else", RuntimeWarning, stacklevel=1)
     ((place, count),) = places.items()
-    assert count == 3 and place.startswith("tests/bench/test_gpu_check.py:")
+    assert count == 3 and place.startswith("tests/cli/costs/test_gpu_check.py:")
     assert not Path(place).is_absolute()
 
 
@@ -149,7 +149,7 @@ def test_a_wait_names_the_line_of_the_package_that_led_to_it(monkeypatch: pytest
     with waits.counted() as places, pytest.raises(AttributeError):
         checks.action(0.0, 1, "mode", lambda mode: 1)
     (place,) = places
-    assert place.startswith("tests/bench/test_gpu_check.py:") and ", from hazard_ms/spec/checks.py:" in place
+    assert place.startswith("tests/cli/costs/test_gpu_check.py:") and ", from hazard_ms/spec/checks.py:" in place
 
 
 def test_a_machine_without_a_gpu_is_told_what_is_missing(tmp_path: Path) -> None:

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hazard_ms.bench import stock
-from hazard_ms.bench.frames import Stopwatch
-from hazard_ms.bench.scaling import OURS, STOCK, pictures_table, things_table
-from hazard_ms.bench.tables import table
-from hazard_ms.bench.turns import Case, Turn, actions_of, frames_in_turn, phases_in_turn
+from hazard_ms.cli.costs import stock
+from hazard_ms.cli.costs.frames import Stopwatch
+from hazard_ms.cli.costs.scaling import OURS, STOCK, pictures_table, things_table
+from hazard_ms.cli.costs.tables import table
+from hazard_ms.cli.costs.turns import Case, Turn, actions_of, frames_in_turn, phases_in_turn
 
 
 def busy(seconds: float) -> None:

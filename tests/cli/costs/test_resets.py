@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from hazard_ms.bench import resets
-from hazard_ms.bench.resets import Resets, over_scenes
-from hazard_ms.bench.turns import Case
+from hazard_ms.cli.costs import resets
+from hazard_ms.cli.costs.resets import Resets, over_scenes
+from hazard_ms.cli.costs.turns import Case
 from hazard_ms.env.hazard_env import HazardEnv
 
 FIRE = Case("HazardFire-v1", "fetch", "paper")

@@ -16,10 +16,10 @@ import torch
 from numpy.typing import NDArray
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.bench.effects import ADVANCED, go_on
-from hazard_ms.bench.gpu.comparison import Course
-from hazard_ms.bench.gpu.rates import PICTURES
-from hazard_ms.bench.tables import table
+from hazard_ms.cli.costs.effects import ADVANCED, go_on
+from hazard_ms.cli.costs.gpu.comparison import Course
+from hazard_ms.cli.costs.gpu.rates import PICTURES
+from hazard_ms.cli.costs.tables import table
 
 SIDES = (128, 256, 512)  # of the pictures [pixels]
 MODALITIES = ("rgb", "depth", "segmentation")

@@ -13,8 +13,8 @@ import torch
 from torch import Tensor
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.bench.gpu.apart import StoppedError
-from hazard_ms.bench.tables import table
+from hazard_ms.cli.costs.gpu.apart import StoppedError
+from hazard_ms.cli.costs.tables import table
 
 STATE, PICTURES = "state", "rgb+depth+segmentation"
 SIDE = 128  # of a square picture [pixels]

@@ -9,10 +9,10 @@ from typing import Any
 
 import torch
 
-from hazard_ms.bench.gpu.comparison import CHECKED, Course, differences_table, records
-from hazard_ms.bench.gpu.rates import FRAMES, WARM_UP, Rate, memory, pace, settle
-from hazard_ms.bench.gpu.waits import FRAMES as COUNTED
-from hazard_ms.bench.gpu.waits import counted
+from hazard_ms.cli.costs.gpu.comparison import CHECKED, Course, differences_table, records
+from hazard_ms.cli.costs.gpu.rates import FRAMES, WARM_UP, Rate, memory, pace, settle
+from hazard_ms.cli.costs.gpu.waits import FRAMES as COUNTED
+from hazard_ms.cli.costs.gpu.waits import counted
 from hazard_ms.sketch.rescues.resting import Batch
 
 COMPARED = 64  # environments of the batches that are compared [ours]

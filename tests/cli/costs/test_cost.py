@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from hazard_ms.bench.frames import phases
+from hazard_ms.cli.costs.frames import phases
 
 LIMIT = 0.25  # floods of `paper` take 18 %, the others less
 REALISTIC = {"HazardFire-v1": 0.4, "HazardFlood-v1": 0.3}  # they take 21 to 30 % and 22 %

@@ -41,7 +41,7 @@ _LAZY = {  # imported when they are first asked for: they need torch, SAPIEN and
     "Push": "hazard_ms.hazards.base:Push",
     "Room": "hazard_ms.spec:Room",
     "SceneSpec": "hazard_ms.spec:SceneSpec",
-    "Situation": "hazard_ms.episode.situation:Situation",
+    "Situation": "hazard_ms.tasks.episode.situation:Situation",
     "State": "hazard_ms.hazards.base:State",
     "Task": "hazard_ms.spec:Task",
     "Term": "hazard_ms.spec:Term",

@@ -18,7 +18,6 @@ from hazard_ms.env import inputs, keywords, states
 from hazard_ms.env.built import BuiltEnv
 from hazard_ms.env.control_noise import check_mode
 from hazard_ms.env.spaces import bounded
-from hazard_ms.episode import snapshot
 from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
 from hazard_ms.robots import robot_names
@@ -35,6 +34,7 @@ from hazard_ms.spec.registry import affects_agent as acts_on_agent
 from hazard_ms.spec.registry.announce import importable
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import perturbing, task_of
+from hazard_ms.tasks.episode import snapshot
 
 EFFECTS = ("full", "fast", "off")
 

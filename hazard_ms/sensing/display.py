@@ -8,11 +8,11 @@ from typing import Any
 from hazard_ms.effects.entities import FRAMES_PER_SECOND
 from hazard_ms.effects.looks import Looks, tell_of_first_picture
 from hazard_ms.effects.raytracing.sensor import take_over
-from hazard_ms.episode.situation import Situation
 from hazard_ms.simulation.building import extent_of_bag, pose_of
 from hazard_ms.simulation.drawing.lighting import Lighting
 from hazard_ms.simulation.drawing.moved_cameras import MovedCameras
 from hazard_ms.simulation.world import World
+from hazard_ms.tasks.episode.situation import Situation
 
 
 class Display:

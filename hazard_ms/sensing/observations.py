@@ -9,7 +9,6 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.situation import Situation
 from hazard_ms.sensing.camera import NOTHING, metres, relabel
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.hazard_image import enlarge, hazard_images, sample_points
@@ -20,6 +19,7 @@ from hazard_ms.sensing.senses.senses import DEGRADED, THERMAL, Frame, Senses
 from hazard_ms.sensing.target_table import TargetTable
 from hazard_ms.sensing.view import View
 from hazard_ms.spec import Term
+from hazard_ms.tasks.episode.situation import Situation
 
 SLOTS = 32  # columns of the target table in observations: an episode has 5 to 29 targets (docs/benchmark.md 1)
 

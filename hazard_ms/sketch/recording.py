@@ -20,8 +20,6 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from hazard_ms.episode import snapshot
-from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards.base import Hazard, loosened
 from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.hazards.presets import FREQUENCIES
@@ -31,10 +29,12 @@ from hazard_ms.simulation.world import World
 from hazard_ms.sketch.timeline import STRIDE, Timeline, read
 from hazard_ms.spec import SceneSpec, Task
 from hazard_ms.spec.storage.cache import home
+from hazard_ms.tasks.episode import snapshot
+from hazard_ms.tasks.episode.episode import Episode
 
 STILL = 0.01  # what never gets farther than this from its start is at rest [m] [ours]
 NOWHERE = 1e3  # where the hand is put when nobody acts [m]
-LAWS = ("hazards", "simulation", "episode")  # folders whose code decides what happens
+LAWS = ("hazards", "simulation", "tasks/episode")  # folders whose code decides what happens
 PACKAGE = Path(__file__).parents[1]
 
 

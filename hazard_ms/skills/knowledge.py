@@ -9,8 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.grasp import Hand
 from hazard_ms.robots.robot import Robot
 from hazard_ms.sensing.detection.perception import Perception
 from hazard_ms.sensing.observations import Observer
@@ -23,6 +21,8 @@ from hazard_ms.skills.decision import PICK_UP, Action, Decision, Images, Message
 from hazard_ms.skills.failures import NOT_A_TARGET, REFUSED
 from hazard_ms.skills.mitigations.offers import offered, tools, verbs_of
 from hazard_ms.spec.registry.mitigations import TELL
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.grasp import Hand
 
 
 @dataclass

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 import torch
 
-from hazard_ms.episode.episode import Episode
 from hazard_ms.simulation.world import World
+from hazard_ms.tasks.episode.episode import Episode
 from tests.worlds.fire_worlds import room_world
 
 QPOS = torch.zeros(1, 15)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import torch
 
-from hazard_ms.episode.records import Damage, Rescue
 from hazard_ms.hazards.presets import fire
+from hazard_ms.tasks.episode.records import Damage, Rescue
 from tests.worlds.fire_worlds import begin, room_world, run
 
 

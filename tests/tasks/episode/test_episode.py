@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 import torch
 
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.safe_places import CART
 from hazard_ms.hazards.base import Hazard, Push, State
 from hazard_ms.hazards.fire.fire import Fire
 from hazard_ms.simulation.world import World
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.safe_places import CART
 from tests.worlds.fire_worlds import room_world
 from tests.worlds.lifting import Lift, Simulator, Sink
 

@@ -26,7 +26,7 @@ def start(
     options = ["--steps", str(steps), "--physics", physics, "--env-id", env_id]
     command = [sys.executable, "-m", "tests.worlds.episodes", *options, *map(str, seeds)]
     environ = {**os.environ, "PYTHONHASHSEED": hash_seed, "OMP_NUM_THREADS": "1"}
-    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2], env=environ)
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parents[3], env=environ)
 
 
 def result(process: subprocess.Popen[str]) -> dict[str, str]:

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 import torch
 
-from hazard_ms.episode import snapshot
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.safe_places import BAG, CART
+from hazard_ms.tasks.episode import snapshot
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.safe_places import BAG, CART
 from tests.worlds.fire_worlds import room_world
 
 THINGS = [("book", (2.0, 2.0, 0.0)), ("apple", (3.0, 2.0, 0.0)), ("pan", (1.0, 1.0, 0.0))]

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 import torch
 
-from hazard_ms.episode import rewards
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.situation import Situation
+from hazard_ms.tasks.episode import rewards
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.situation import Situation
 from tests.worlds.fire_worlds import room_world
 
 THINGS = [("book", (2.0, 2.0, 0.0)), ("apple", (3.0, 2.0, 0.0)), ("laptop", (1.0, 1.0, 0.0))]  # worth 5, 1 and 5

@@ -15,8 +15,8 @@ import pytest
 import torch
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.episode.safe_places import CART
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec, Task
+from hazard_ms.tasks.episode.safe_places import CART
 from hazard_ms.tasks.fire import hazard_fire
 from tests.worlds.registering import registered_task
 

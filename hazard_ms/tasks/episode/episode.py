@@ -14,10 +14,6 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.episode import grasp
-from hazard_ms.episode.records import Damage, Rescue
-from hazard_ms.episode.safe_places import BAG, Drop
-from hazard_ms.episode.watchdog import FlightRecorder, Limits
 from hazard_ms.hazards.base import Flames, Hazard, Push, State, none_set
 from hazard_ms.robots.robot import Robot
 from hazard_ms.simulation.kernels.bodies import Bodies
@@ -26,6 +22,10 @@ from hazard_ms.simulation.openings import EVERY
 from hazard_ms.simulation.walls import leaves
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SafePlace
+from hazard_ms.tasks.episode import grasp
+from hazard_ms.tasks.episode.records import Damage, Rescue
+from hazard_ms.tasks.episode.safe_places import BAG, Drop
+from hazard_ms.tasks.episode.watchdog import FlightRecorder, Limits
 
 
 class Episode:

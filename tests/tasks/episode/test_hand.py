@@ -14,10 +14,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import Tensor
 
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.grasp import Hand, conjugate, distance_to_boxes, graspable, multiply, places, update
 from hazard_ms.simulation.world import World, rotate
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.grasp import Hand, conjugate, distance_to_boxes, graspable, multiply, places, update
 from tests.worlds.fire_worlds import repeat
 
 HALF = math.sqrt(0.5)

@@ -8,7 +8,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from hazard_ms.episode.encounters import MARGIN, Contacts, _aside, _gaps
+from hazard_ms.tasks.episode.encounters import MARGIN, Contacts, _aside, _gaps
 from tests.env.test_teams import PLAIN, still
 
 

@@ -12,8 +12,8 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.members import Members
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.members import Members
 
 WORD = 1 << 16  # number of values of a 16-bit word
 

@@ -8,13 +8,13 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.situation import Situation
 from hazard_ms.simulation.kernels.bodies import Bodies
 from hazard_ms.simulation.kernels.counting import count
 from hazard_ms.simulation.kernels.reaching import hint
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Goal
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
+from hazard_ms.tasks.episode.situation import Situation
 
 PER_RESCUE = 20.0  # reward for each rescued target [docs/benchmark.md 5, RL]
 FOR_HOLDING = 0.1  # reward per frame while a target is in the hand [ours]

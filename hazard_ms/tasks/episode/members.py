@@ -13,15 +13,15 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.episode import grasp, rewards
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.grasp import Hand
-from hazard_ms.episode.safe_places import Drop
-from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.base import none_set
 from hazard_ms.robots.robot import Robot
 from hazard_ms.simulation.mitigation.equipment import NozzleState
 from hazard_ms.simulation.world import World
+from hazard_ms.tasks.episode import grasp, rewards
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.grasp import Hand
+from hazard_ms.tasks.episode.safe_places import Drop
+from hazard_ms.tasks.episode.situation import Situation
 
 
 @dataclass(frozen=True)

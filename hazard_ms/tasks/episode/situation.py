@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from hazard_ms.episode.episode import Episode
 from hazard_ms.robots.robot import Robot
 from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.world import World
+from hazard_ms.tasks.episode.episode import Episode
 
 
 @dataclass(frozen=True)

@@ -94,8 +94,8 @@ def page(
         pictures: Play the result again, for a picture of the head camera and a map at each decision.
         load: Modules, or files NAME.py, that register what the episode needs for pictures.
     """
-    from hazard_ms.evaluation.decision_page import decision_page, read_trace
     from hazard_ms.evaluation.regret.causes import beside
+    from hazard_ms.evaluation.regret.decision_page import decision_page, read_trace
     from hazard_ms.evaluation.result import EpisodeResult
     from hazard_ms.spec.storage.files import make_folder, write
 

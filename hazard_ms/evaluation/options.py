@@ -14,7 +14,7 @@ from hazard_ms.agents.thinking import CLOCKS, OFF
 from hazard_ms.evaluation.choices import AVERTED, BACKENDS, LOOKS, flag, offer
 from hazard_ms.evaluation.choices import EnvOptions as EnvOptions
 from hazard_ms.spec import registry
-from hazard_ms.spec.order import natural
+from hazard_ms.spec.names import natural
 from hazard_ms.spec.registry.detectors import DETECTORS, TRUTH
 
 SCENE_FILE = ".json"  # how names of scene files end

@@ -9,8 +9,8 @@ import numpy as np
 
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.runner import fates
+from hazard_ms.evaluation.video import Video
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.machine.video import Video
 from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.news import News

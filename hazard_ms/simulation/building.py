@@ -21,10 +21,10 @@ from hazard_ms.scenes.assets.primitives import colour
 from hazard_ms.scenes.assets.rows import Asset
 from hazard_ms.scenes.shell import shell
 from hazard_ms.simulation.drawing.textured_box import surface_material, textured_box
-from hazard_ms.simulation.names import actor_name
 from hazard_ms.simulation.physx import CpuHandles, GpuHandles
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Body, Fixture, Room, SceneSpec
+from hazard_ms.spec.names import actor_name
 
 # [-] Coulomb, static and dynamic: wood on wood 0.25-0.5, most household pairs 0.3-0.6 (Engineering ToolBox) [ours]
 FRICTION = 0.5

@@ -60,7 +60,7 @@ KNOWN: dict[str, tuple[set[str], str]] = {
     "spec.storage.parts": ({"os.open"}, LOCK),
     "machine.render_backend": ({".open", ".read_text"}, SYSTEM + "; bytes that are compared"),
     "machine.survey": ({".read_text", "json.loads"}, SYSTEM),
-    "machine.video": ({"cv2.VideoCapture"}, HERE),
+    "evaluation.video": ({"cv2.VideoCapture"}, HERE),
     "machine.vulkan": ({"json.loads"}, SYSTEM),
     "perception.capture": ({"json.loads"}, HERE),
     "perception.detectors.open_vocabulary": ({".from_pretrained"}, "transformers reads it, without code and pickles"),

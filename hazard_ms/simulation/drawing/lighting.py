@@ -22,9 +22,9 @@ from hazard_ms.simulation.building import extent_of, lamp_places
 from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.drawing import relighting
 from hazard_ms.simulation.drawing.moods import Mood, moods_of
-from hazard_ms.simulation.names import plain_name
 from hazard_ms.spec import SceneSpec, Vec3
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.names import plain_name
 
 DRAWN = ("day", "evening", "night", "failing")  # what "random" chooses from
 LIGHTINGS = (*DRAWN, "random")

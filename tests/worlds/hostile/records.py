@@ -30,10 +30,10 @@ from hazard_ms.demonstrations.merging import merge
 from hazard_ms.demonstrations.repair import repair
 from hazard_ms.demonstrations.stats import stats
 from hazard_ms.demonstrations.verify import verify
-from hazard_ms.evaluation.decision_page import decision_page, read_trace
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.page import page
 from hazard_ms.evaluation.regret.causes import PARTS, DecisionRegret, EpisodeRegret, beside, digest, place_of
+from hazard_ms.evaluation.regret.decision_page import decision_page, read_trace
 from hazard_ms.evaluation.result import DecisionRecord, EpisodeResult, Link
 from hazard_ms.learning.checks import Check, curve_of
 from hazard_ms.sketch import columns, fit_times, keeping, skill_times, timeline

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from hazard_ms.evaluation.decision_page import decision_page, read_trace
 from hazard_ms.evaluation.metrics import Fate
 from hazard_ms.evaluation.regret.causes import PARTS, DecisionRegret, EpisodeRegret
+from hazard_ms.evaluation.regret.decision_page import decision_page, read_trace
 from hazard_ms.evaluation.result import DecisionRecord, EpisodeResult
 from tests.worlds.files.html_pages import Reader
 

@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from hazard_ms.spec.order import natural
+from hazard_ms.spec.names import natural
 
 
 @pytest.mark.parametrize(

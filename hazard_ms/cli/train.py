@@ -95,8 +95,8 @@ def clone(
         passes: Passes over all decisions.
         physics: Preset of the hazards that was recorded.
     """
+    from hazard_ms.demonstrations.choices import choices
     from hazard_ms.learning.cloning import Student, imitate
-    from hazard_ms.learning.recorded import choices
     from hazard_ms.sketch.scenes import level_ranges, measures_of
     from hazard_ms.spec.checks import whole
     from hazard_ms.spec.storage.files import make_folder

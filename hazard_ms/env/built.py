@@ -19,7 +19,6 @@ from hazard_ms.env.leaves import Leaves
 from hazard_ms.env.spaces import tensors
 from hazard_ms.hazards.base import loosened
 from hazard_ms.hazards.presets import FREQUENCIES
-from hazard_ms.robots import MOST_ROBOTS
 from hazard_ms.robots.mounting import mounted
 from hazard_ms.robots.team import team_of
 from hazard_ms.scenes.choice import SceneChoice
@@ -33,6 +32,7 @@ from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec, Task, checks
 from hazard_ms.spec.perturbation import Perturbation
+from hazard_ms.spec.registry import MOST_ROBOTS
 from hazard_ms.spec.registry.mitigations import tools_of
 from hazard_ms.tasks.episode import rewards
 from hazard_ms.tasks.episode.episode import Episode

@@ -13,9 +13,9 @@ from mani_skill.envs.sapien_env import BaseEnv
 from hazard_ms.effects.raytracing.sensor import with_our_shaders
 from hazard_ms.effects.shaders.pack import shader_config
 from hazard_ms.machine.render_backend import backend
-from hazard_ms.robots import robot_names, robot_uid
 from hazard_ms.sensing.modes import check_obs_mode, check_renderer
 from hazard_ms.spec import Task, checks
+from hazard_ms.spec.registry.robots import robot_names, robot_uid
 
 KNOWN = (*inspect.signature(BaseEnv.__init__).parameters,)[1:]
 RENDER_MODES = ("human", "rgb_array", "sensors", "all")

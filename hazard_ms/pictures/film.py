@@ -125,7 +125,7 @@ class Film(Watcher):
     def _look(self) -> None:
         """Look through the head camera."""
         self._head = self._env.base.observer.look()
-        self._told = told(self._env.base, self._head[1])
+        self._told = told(self._env, self._head[1])
 
 
 def known_targets(labeller: Labeller, now: tuple[Fate, ...]) -> tuple[Target, ...]:

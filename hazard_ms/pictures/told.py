@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import torch
 
-from hazard_ms.env.hazard_env import HazardEnv
 from hazard_ms.sensing.view import View
+from hazard_ms.skills.executor import SkillEnv
 
 
-def told(base: HazardEnv, view: View) -> tuple[float, ...]:
+def told(env: SkillEnv, view: View) -> tuple[float, ...]:
     """The highest level of each hazard in a look of the first environment, in its unit; empty without hazard images.
 
     Where the hazard's `told_up_to` is a height, it is the highest level at that height above what is seen lower: of a
@@ -17,7 +17,7 @@ def told(base: HazardEnv, view: View) -> tuple[float, ...]:
     """
     if view.level is None:
         return ()
-    points, made = view.sampled, []
+    base, points, made = env.base, view.sampled, []
     for k, hazard in enumerate(base.task.hazards):
         top = hazard.shown_level.told_up_to
         if not np.isfinite(top):

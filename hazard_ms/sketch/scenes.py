@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from hazard_ms.robots import robot_class
 from hazard_ms.scenes.splits import SCENES, spare_scene
 from hazard_ms.simulation.building import extent_of
 from hazard_ms.sketch.fires.making import Measures, has_measures
@@ -29,6 +28,7 @@ from hazard_ms.skills.options.landmarks import MIN_SPACING
 from hazard_ms.spec import SceneSpec, Task
 from hazard_ms.spec.catalogue import CATEGORIES, value_of
 from hazard_ms.spec.checks import one_of, whole
+from hazard_ms.spec.registry.robots import robot_class
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import task_of
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import gymnasium as gym
@@ -41,15 +42,15 @@ def test_the_wind_is_that_at_two_metres(at: tuple[float, float, float]) -> None:
     env = gym.make("HazardWind-v1", obs_mode="none", physics="realistic", render_backend="none")
     env.reset(seed=0)
     base: Any = env.unwrapped
-    (number,) = told(base, view(at, True))
+    (number,) = told(SimpleNamespace(base=base), view(at, True))
     aloft = float(base.episode.levels(base.world.agent_position.new_tensor([[[8.0, 8.0, 10.0]]]))[0, 0, 0])
     assert number == pytest.approx(aloft * np.log(2.0 / 0.03) / np.log(10.0 / 0.03), rel=0.02)
-    assert told(base, replace(view(at, True), depth=np.zeros((64, 64), np.float32))) == (-np.inf,)
+    assert told(SimpleNamespace(base=base), replace(view(at, True), depth=np.zeros((64, 64), np.float32))) == (-np.inf,)
     env.close()
 
 
 def test_a_fire_is_told_as_it_is_seen() -> None:
     env = gym.make("HazardFire-v1", obs_mode="none", render_backend="none")
     base: Any = env.unwrapped
-    assert told(base, view((8.0, 8.0, 1.1), True)) == (70.0,)
+    assert told(SimpleNamespace(base=base), view((8.0, 8.0, 1.1), True)) == (70.0,)
     env.close()

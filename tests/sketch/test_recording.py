@@ -16,11 +16,11 @@ import torch
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.env import HazardEnv
 from hazard_ms.hazards.flood.flood import Flood
-from hazard_ms.robots import skill_control_mode
 from hazard_ms.simulation import building
 from hazard_ms.sketch.recording import ahead, record, recorded, suite_of
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.spec import AgentStart, Body, Room, SceneSpec, Task
+from hazard_ms.spec.registry.robots import skill_control_mode
 from hazard_ms.tasks import task_of
 from tests.worlds.same import same_fields
 

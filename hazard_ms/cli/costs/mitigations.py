@@ -16,7 +16,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.agents.mitigating import prospects
 from hazard_ms.agents.mitigating.doing import Mitigator
 from hazard_ms.agents.mitigating.prospects import Prospect

@@ -15,7 +15,6 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.cli.costs.effects import ADVANCED, go_on
 from hazard_ms.cli.costs.gpu.comparison import Course
 from hazard_ms.cli.costs.gpu.rates import PICTURES

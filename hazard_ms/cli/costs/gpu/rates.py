@@ -12,7 +12,6 @@ import gymnasium as gym
 import torch
 from torch import Tensor
 
-import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.cli.costs.gpu.apart import StoppedError
 from hazard_ms.cli.costs.tables import table
 

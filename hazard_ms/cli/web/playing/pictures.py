@@ -13,7 +13,6 @@ from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.panels import MapPanel, hazard_panel, strongest
 from hazard_ms.pictures.spectator import Spectator
 from hazard_ms.pictures.told import told
-from hazard_ms.sensing.camera import relabel
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.mitigations.offers import tools
 
@@ -75,7 +74,7 @@ class Pictures:
     def _look(self) -> None:
         rgb, view = self._env.base.observer.look()
         self._head, self._level, self._seen = np.ascontiguousarray(rgb.cpu().numpy()), view.level, view.labels
-        self._told = told(self._env.base, view)
+        self._told = told(self._env, view)
         self._stale = False
 
     def _plan(self, goal: str | None) -> Pixels:
@@ -102,7 +101,7 @@ class Pictures:
         """Labels of the third person's last picture, [H, W]."""
         if self._labels is None:
             seen = self._camera.get_obs(**_only("segmentation"))["segmentation"]
-            self._labels = relabel(seen, self._env.base.observer.labels)[0].cpu().numpy()
+            self._labels = self._env.base.observer.labelled(seen)[0].cpu().numpy()
         return self._labels
 
     def _on_map(self, x: float, y: float) -> str | None:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from hazard_ms.machine.memory import lasting
+from hazard_ms.env.memory import lasting
 
 
 class Node:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from hazard_ms.agents.aims import Aim
 from hazard_ms.agents.courses import Courses, Notion, Place, Reach, State
 from hazard_ms.agents.truth import Future
+from hazard_ms.hazards.base import pushes
 from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.planning.problem import Problem
-from hazard_ms.sketch.recording import pushes
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.sketch.skill_times import SkillTimes
 from hazard_ms.sketch.timeline import Timeline

@@ -19,10 +19,10 @@ from hazard_ms.agents.mitigating.doing import Mitigator
 from hazard_ms.agents.search.landmark_search import LandmarkSearch
 from hazard_ms.agents.search.outlook import SPREAD
 from hazard_ms.agents.truth import Truth
+from hazard_ms.hazards.base import pushes
 from hazard_ms.sketch.planning.averting import averting
 from hazard_ms.sketch.planning.orienteering import solve
 from hazard_ms.sketch.planning.problem import PlannedRescue, Problem, soonest
-from hazard_ms.sketch.recording import pushes
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision

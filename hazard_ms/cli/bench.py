@@ -59,7 +59,7 @@ def bench(
         output: File for what each pick-up and drop cost, one JSON object a line.
     """
     if kernels:
-        from hazard_ms.cli.costs.kernels import report as report_kernels
+        from hazard_ms.validation.kernel_costs import report as report_kernels
 
         print(report_kernels())
     elif against:

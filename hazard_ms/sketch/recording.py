@@ -20,9 +20,10 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from hazard_ms.hazards.base import Hazard, loosened
+from hazard_ms.hazards.base import loosened, pushes
 from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.hazards.presets import FREQUENCIES
+from hazard_ms.scenes import solids
 from hazard_ms.scenes.schema import to_json
 from hazard_ms.simulation import bare_scene, building
 from hazard_ms.simulation.world import World
@@ -105,14 +106,9 @@ def course_of(env: Running, copies: int = 1) -> Course:
     return course
 
 
-def pushes(hazards: Sequence[Hazard]) -> bool:
-    """Whether any of the hazards moves things, so that a simulator is needed."""
-    return any(type(hazard).force is not Hazard.force for hazard in hazards)
-
-
 def suite_of(task: Task, physics: str, spec: SceneSpec, frames: int | None = None) -> str:
     """A digest of all that determines a timeline, except the seed: scene, models, hazards, laws and length."""
-    sizes = [(building.extent_of(thing), building.mass_of(thing)) for thing in spec.things]
+    sizes = [(solids.extent_of(thing), solids.mass_of(thing)) for thing in spec.things]
     length = task.max_frames if frames is None else frames
     parts = (task.name, repr(task.hazards), FREQUENCIES[physics], length, STRIDE, to_json(spec), sizes, _laws())
     return hashlib.sha256("\0".join(map(str, parts)).encode()).hexdigest()
@@ -121,8 +117,8 @@ def suite_of(task: Task, physics: str, spec: SceneSpec, frames: int | None = Non
 @functools.lru_cache(maxsize=1)
 def _laws() -> str:
     """A digest of the code that decides what happens."""
-    sources = (path.read_bytes() for name in LAWS for path in sorted((PACKAGE / name).rglob("*.py")))
-    return hashlib.sha256(b"\0".join(sources)).hexdigest()
+    files = (path for name in LAWS for path in sorted((PACKAGE / name).rglob("*.py")))
+    return hashlib.sha256(b"\0".join(path.read_bytes() for path in files)).hexdigest()
 
 
 class Course:

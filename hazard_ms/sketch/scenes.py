@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from hazard_ms.scenes.solids import extent_of
 from hazard_ms.scenes.splits import SCENES, spare_scene
-from hazard_ms.simulation.building import extent_of
 from hazard_ms.sketch.fires.making import Measures, has_measures
 from hazard_ms.sketch.keeping import kept
 from hazard_ms.sketch.limits import limit_of

@@ -8,10 +8,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.robots.robot import Robot
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.door_memory import DoorMemory
 from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.world import World
 from hazard_ms.skills.decision import Result
 from hazard_ms.tasks.episode.episode import Episode

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from hazard_ms.robots.robot import Robot
 from hazard_ms.sensing.detection.perception import Perception
 from hazard_ms.sensing.observations import Observer
 from hazard_ms.sensing.semantic_map import CEILING, LINTELS, SemanticMap, cells_for
 from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.world import World
 from hazard_ms.skills.brief import Brief, brief_of, has_several_rooms
 from hazard_ms.skills.context import Rescuer, Stage

@@ -12,9 +12,9 @@ from mani_skill.envs.sapien_env import BaseEnv
 from mani_skill.utils.registration import REGISTERED_ENVS, register_env
 from mani_skill.utils.structs.types import SimConfig
 
-from hazard_ms.robots.robot import Robot
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.world import World
 from hazard_ms.skills.context import LowLevel, Skill, Stage
 from hazard_ms.skills.decision import Result

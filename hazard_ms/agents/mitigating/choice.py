@@ -25,6 +25,7 @@ from hazard_ms.agents.mitigating.prospects import (
     tools_of,
     ways_between,
 )
+from hazard_ms.hazards.base import pushes
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, Foreseen, Intervention, foresee
 from hazard_ms.sketch.futures.surroundings import Home
 from hazard_ms.sketch.planning.averting import averting
@@ -33,7 +34,6 @@ from hazard_ms.sketch.planning.measures import Measure, Measures
 from hazard_ms.sketch.planning.orienteering import solve
 from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.sketch.planning.travel import StaticTravel
-from hazard_ms.sketch.recording import pushes
 from hazard_ms.sketch.rescue_problem import RescueScene
 
 KEPT = 400  # frames for which futures are kept [ours]

@@ -23,8 +23,8 @@ from hazard_ms.cli.costs.tables import table
 from hazard_ms.cli.costs.turns import WARM_UP, Case, actions_of, frames_in_turn, one_thread, phases_in_turn, spent
 from hazard_ms.evaluation.report import machine_line
 from hazard_ms.scenes.schema import to_json
+from hazard_ms.scenes.solids import extent_of
 from hazard_ms.scenes.splits import scene
-from hazard_ms.simulation.building import extent_of
 from hazard_ms.spec import Body, SceneSpec
 from hazard_ms.spec.checks import whole
 

@@ -2,7 +2,7 @@
 
 Each has its turn in every round; what is kept is the median over rounds. The clock that counts is the processor time of
 this process, which other processes hardly change; compare ratios all the same. One torch thread works, as in
-`hazard_ms.cli.costs.kernels`.
+`hazard_ms.validation.kernel_costs`.
 """
 
 from __future__ import annotations

@@ -18,7 +18,8 @@ from sapien.render import RenderBodyComponent
 from torch import Tensor
 
 from hazard_ms.scenes.assets.index import asset, asset_path
-from hazard_ms.simulation.building import extent_of, lamp_places
+from hazard_ms.scenes.solids import extent_of
+from hazard_ms.simulation.building import lamp_places
 from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.drawing import relighting
 from hazard_ms.simulation.drawing.moods import Mood, moods_of

@@ -14,11 +14,12 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from hazard_ms.hazards.base import pushes
 from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.simulation.world import World
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.surroundings import free_boards
-from hazard_ms.sketch.recording import Running, course_of, pushes
+from hazard_ms.sketch.recording import Running, course_of
 from hazard_ms.sketch.timeline import STRIDE
 from hazard_ms.spec.checks import one_of
 from hazard_ms.tasks.episode.episode import Episode

@@ -15,10 +15,10 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.base import Flames, Hazard, Push, State, none_set
-from hazard_ms.robots.robot import Robot
 from hazard_ms.simulation.kernels.bodies import Bodies
 from hazard_ms.simulation.kernels.pushing import free_only
 from hazard_ms.simulation.openings import EVERY
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.walls import leaves
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SafePlace

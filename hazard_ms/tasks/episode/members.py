@@ -14,8 +14,8 @@ import torch
 from torch import Tensor
 
 from hazard_ms.hazards.base import none_set
-from hazard_ms.robots.robot import Robot
 from hazard_ms.simulation.mitigation.equipment import NozzleState
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.world import World
 from hazard_ms.tasks.episode import grasp, rewards
 from hazard_ms.tasks.episode.episode import Episode

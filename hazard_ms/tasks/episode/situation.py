@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from hazard_ms.robots.robot import Robot
 from hazard_ms.simulation.mitigation.door_grip import DoorGrip
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.world import World
 from hazard_ms.tasks.episode.episode import Episode
 

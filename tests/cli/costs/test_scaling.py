@@ -9,7 +9,7 @@ import pytest
 
 from hazard_ms.cli.costs.scaling import FIRST, THINGS, crowded, time_of_things
 from hazard_ms.scenes.schema import from_json, to_json
-from hazard_ms.simulation.building import extent_of
+from hazard_ms.scenes.solids import extent_of
 
 
 @pytest.mark.parametrize(("env_id", "number"), [*itertools.product(FIRST, (THINGS[0], THINGS[-1]))])

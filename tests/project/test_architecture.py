@@ -29,26 +29,8 @@ LAYERS = (  # a room may import only from rooms to its left, or from those besid
     ("validation",),
     ("cli",),
 )
-MOST_ROOMS = 34
-# 4 more than before demonstrations, which play, look, store, and are read by the command; and 3 more than before
-# learning, which plays in the sketch, makes the policies that agents ask, and is begun by the command; 9 more than
-# before perception, which plays episodes, looks, names licences, and is begun by the command; 2 more than before
-# detectors, which are registered, and which episodes name; 2 more than before reinforcement learning, for environments
-# of the sketch, whose episodes are as long as the registry says, and for trainings, which write files; 1 more for
-# examples, of which two play episodes for other people's tools; 7 more for many environments at once, which are
-# started, checked, wrapped, learned from, and measured; 1 more for the sketch, whose ways are straightened by
-# kernels; 2 more for robots and skills, whose arms are followed, and whose ways are searched, by kernels; 2 more for
-# the town around streets, which effects draw by lot as scenes are, and which the bench hides; 14 more for the page,
-# which plays, shows, keeps and compares episodes, and is begun by the command; 1 more for learning, which reads
-# recorded choices; 1 more for episodes, whose rescues are counted, and whose hands reach, by kernels, and 1 for senses,
-# which take the numbers of targets by one; 1 more for the bench, which plays batches in which nobody acts; 1 more for
-# senses, which notice the heat and the smoke of hazards; 2 more for mitigations, which are registered, and which skills
-# and agents look up; 3 more for evaluation, which adds up what hazards do to things and robots, asks where things were
-# put, and what a task declares; 1 more for agents, which reckon with the law of the gale; 2 more for evaluation, whose
-# regret plans with measures about hazards, and foresees what they lead to; 4 more for LeRobot, whose tools make the
-# environment, ask how robots are driven, and are refused by the same checks, and for the example of its Hub; 2 more for
-# demonstrations, which ask the registry what cameras a robot has, and for the example that learns from them
-MOST_ARROWS = 186
+MOST_ROOMS = 24
+MOST_ARROWS = 109  # pairs of rooms of which one imports from the other: for a new one, another must go
 MOST_FILES = 16  # of a folder
 MOST_LINES = 250  # of a file
 HEAVY = ("torch", "warp", "sapien", "mani_skill", "scipy", "numpy", "gymnasium")  # that take seconds to import

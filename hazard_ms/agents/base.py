@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
-from hazard_ms.agents.thinking import Thought
+from hazard_ms.agents.latency import Thought
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.brief import Brief

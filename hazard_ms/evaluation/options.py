@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import tyro
 
-from hazard_ms.agents.thinking import CLOCKS, OFF
+from hazard_ms.agents.latency import CLOCKS, OFF
 from hazard_ms.evaluation.choices import AVERTED, BACKENDS, LOOKS, flag, offer
 from hazard_ms.evaluation.choices import EnvOptions as EnvOptions
 from hazard_ms.spec import registry

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from hazard_ms.agents.thinking import OFF
+from hazard_ms.agents.latency import OFF
 from hazard_ms.evaluation.averted.loss import averted_of_all, mean_loads, mean_score
 from hazard_ms.evaluation.choices import LOOKS
 from hazard_ms.evaluation.metrics import Score, scores

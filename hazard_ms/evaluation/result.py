@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
-from hazard_ms.agents.thinking import OFF
+from hazard_ms.agents.latency import OFF
 from hazard_ms.evaluation.averted.loss import Loads, Loss, averted, averted_of_all
 from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
 from hazard_ms.evaluation.teams.fields import TEAM_FORMAT, check, told

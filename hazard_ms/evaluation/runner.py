@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from hazard_ms.agents.base import Agent, PrivilegedAgent, agent, counters_of, note_of, staying
-from hazard_ms.agents.thinking import OFF, frames_of, seconds_of
+from hazard_ms.agents.latency import OFF, frames_of, seconds_of
 from hazard_ms.evaluation.averted.account import Account
 from hazard_ms.evaluation.hashes import EVERY, extended
 from hazard_ms.evaluation.metrics import Fate, Tally

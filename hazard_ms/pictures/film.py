@@ -14,8 +14,8 @@ from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.news import News
+from hazard_ms.pictures.peak_levels import peak_levels
 from hazard_ms.pictures.spectator import Spectator
-from hazard_ms.pictures.told import told
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.context import LowLevel
@@ -125,7 +125,7 @@ class Film(Watcher):
     def _look(self) -> None:
         """Look through the head camera."""
         self._head = self._env.base.observer.look()
-        self._told = told(self._env, self._head[1])
+        self._told = peak_levels(self._env, self._head[1])
 
 
 def known_targets(labeller: Labeller, now: tuple[Fate, ...]) -> tuple[Target, ...]:

@@ -76,11 +76,11 @@ def record(
         raise ValueError(f"seeds must be {len(specs)}, one for each scene, got {len(seeds)}")
     length = task.max_frames if frames is None else frames
     if pushes(task.hazards):
-        courses = [_simulated(task, physics, spec, seed) for spec, seed in zip(specs, seeds, strict=True)]
+        rollouts = [_simulated(task, physics, spec, seed) for spec, seed in zip(specs, seeds, strict=True)]
     else:
         world = building.make_world(tuple(specs), torch.device("cpu"))
-        courses = [begun(task, physics, world, seeds)]
-    made = [line for course in courses for line in course.run(length)]
+        rollouts = [begun(task, physics, world, seeds)]
+    made = [line for rollout in rollouts for line in rollout.run(length)]
     return [
         dataclasses.replace(line, task=task.name, physics=physics, suite=suite_of(task, physics, spec, length))
         for line, spec in zip(made, specs, strict=True)
@@ -93,17 +93,17 @@ def ahead(env: Running, frames: int | None = None) -> Timeline:
     `frames`: how long, by default until the task's limit. Things in the hand stay there.
     """
     left = max(0, env.task.max_frames - int(env.world.frame[0])) if frames is None else frames
-    return dataclasses.replace(course_of(env).run(left)[0], task=env.task.name, physics=env.physics)
+    return dataclasses.replace(rollout_of(env).run(left)[0], task=env.task.name, physics=env.physics)
 
 
-def course_of(env: Running, copies: int = 1) -> Course:
-    """The course of the one running episode of `env` from its present on, in equal `copies` without a simulator."""
-    course = Course(_copied(env, copies), 1.0 / FREQUENCIES[env.physics][0])
+def rollout_of(env: Running, copies: int = 1) -> Rollout:
+    """The rollout of the one running episode of `env` from its present on, in equal `copies` without a simulator."""
+    rollout = Rollout(_copied(env, copies), 1.0 / FREQUENCIES[env.physics][0])
     if pushes(env.task.hazards):
         free = env.world.movable[0] & ~env.world.held[0] & ~env.world.away[0]
         past = recorded(env.task, env.physics, env.specs[0], int(env.world.chance.seed[0]))
-        course.drift = _drift(past, int(env.world.frame[0]), free)
-    return course
+        rollout.drift = _drift(past, int(env.world.frame[0]), free)
+    return rollout
 
 
 def suite_of(task: Task, physics: str, spec: SceneSpec, frames: int | None = None) -> str:
@@ -121,7 +121,7 @@ def _laws() -> str:
     return hashlib.sha256(b"\0".join(path.read_bytes() for path in files)).hexdigest()
 
 
-class Course:
+class Rollout:
     """E episodes in which nobody acts, with or without simulators; those that drift do so alike."""
 
     def __init__(self, episode: Episode, frame_seconds: float) -> None:
@@ -189,28 +189,28 @@ def _flames(episode: Episode, e: int) -> tuple[NDArray[np.int32], NDArray[np.flo
     return np.zeros(0, np.int32), np.zeros((0, 2), np.float32)
 
 
-def begun(task: Task, physics: str, world: World, seeds: Sequence[int]) -> Course:
+def begun(task: Task, physics: str, world: World, seeds: Sequence[int]) -> Rollout:
     """Episodes at frame 0."""
     episode, rows = Episode(world, task.hazards, task.safe_place), torch.arange(world.num_envs)
     episode.begin(rows, torch.tensor(list(seeds)))
     episode.begin_hazards(rows)
-    return Course(episode, 1.0 / FREQUENCIES[physics][0])
+    return Rollout(episode, 1.0 / FREQUENCIES[physics][0])
 
 
-def _simulated(task: Task, physics: str, spec: SceneSpec, seed: int) -> Course:
+def _simulated(task: Task, physics: str, spec: SceneSpec, seed: int) -> Rollout:
     """One episode at frame 0 in a simulator of its own, without a robot."""
     control, rate = FREQUENCIES[physics]
     scene = bare_scene.build(spec, rate=rate, loose=loosened(task.hazards, spec))
-    course = begun(task, physics, scene.world, (seed,))
+    rollout = begun(task, physics, scene.world, (seed,))
 
     def physics_step() -> None:
         for _ in range(rate // control):
-            course.episode.push(1.0 / rate)
+            rollout.episode.push(1.0 / rate)
             scene.step()
         scene.world.read()
 
-    course.physics_step = physics_step
-    return course
+    rollout.physics_step = physics_step
+    return rollout
 
 
 def _copied(env: Running, copies: int) -> Episode:

@@ -24,7 +24,7 @@ import numpy as np
 import torch
 
 from hazard_ms.agents.base import PrivilegedAgent, agent, open_targets
-from hazard_ms.agents.hindsight import Hindsight
+from hazard_ms.agents.judge import Judge
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.regret.appraiser import Appraiser
 from hazard_ms.evaluation.regret.causes import EXECUTION, LATENCY, MEMORY, PARTS, PERCEPTION, PLANNING, EpisodeRegret
@@ -163,7 +163,7 @@ def measured(episodes: Sequence[EpisodeOptions]) -> SkillTimes:
 
 def judged(fault: str, episode: EpisodeOptions, times: SkillTimes) -> EpisodeRegret:
     """The regret of the planner with a fault in an episode, where skills usually take the `times`."""
-    appraiser = Appraiser(mind=functools.partial(Hindsight, times=times))
+    appraiser = Appraiser(mind=functools.partial(Judge, times=times))
     result = play(episode, [appraiser], Faulty(fault))
     return regret_of(dataclasses.replace(result, agent=fault), "", appraiser)
 

@@ -101,7 +101,7 @@ def test_the_oracle_alone_of_all_agents_can_know_the_future() -> None:
     future = {"sketch.timeline", "sketch.recording"}
     mitigating = {f"agents.mitigating.{name}" for name in ("barred", "choice", "doing", "prospects")}  # of the oracle
     gale = {"agents.gale.truth"}
-    judge = {"agents.aims", "agents.courses", "agents.hindsight"}  # of decisions, which regret asks
+    judge = {"agents.aims", "agents.action_values", "agents.judge"}  # of decisions, which regret asks
     privileged = {module for module in modules() if room(module) == "agents" and used(module, set()) & future}
     assert privileged == {"agents.oracle", "agents.teams.oracle", "agents.truth", *judge, *mitigating, *gale}
 

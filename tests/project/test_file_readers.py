@@ -72,7 +72,7 @@ KNOWN: dict[str, tuple[set[str], str]] = {
     "robots.without_visuals": ({".read_text", "xml.etree.ElementTree.parse"}, OWN),
     "scenes.original.models": ({".read_text", "json.loads"}, OWN),
     "scenes.original.reading": ({"json.JSONDecoder"}, BYTES + ", with the hooks of the gate"),
-    "sketch.keeping": ({".read_bytes"}, OWN),
+    "sketch.scene_cache": ({".read_bytes"}, OWN),
     "sketch.recording": ({".read_bytes"}, OWN),
     "skills.mitigations.extinguish": ({".open"}, "the nozzle of an extinguisher"),
     "validation.mitigation.jets": ({".open"}, "the nozzle of an extinguisher"),

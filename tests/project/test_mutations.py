@@ -72,7 +72,7 @@ def test_the_expected_tests_come_first_then_the_room_then_all_that_import_the_fi
     mutation = Mutation("x", "hazard_ms/scenes/floor.py", "tests/scenes/test_scenes.py", "It breaks.", "a", "b")
     first, beside, elsewhere = stages(mutation)
     assert first == ["tests/scenes/test_scenes.py"]
-    assert set(beside) == {str(p.relative_to(ROOT)) for p in (ROOT / "tests/scenes").glob("test_*.py")} - set(first)
+    assert set(beside) == {str(p.relative_to(ROOT)) for p in (ROOT / "tests/scenes").rglob("test_*.py")} - set(first)
     assert beside[0] in ("tests/scenes/test_floor.py", "tests/scenes/test_generator_rules.py")  # they import the file
     assert elsewhere and all(not test.startswith("tests/scenes/") for test in elsewhere)
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.agents.thinking import OFF
+from hazard_ms.agents.latency import OFF
 from hazard_ms.evaluation.averted.loss import Loss
 from hazard_ms.evaluation.choices import AVERTED
 from hazard_ms.evaluation.options import EpisodeOptions, SweepOptions

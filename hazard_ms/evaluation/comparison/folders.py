@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hazard_ms.agents.thinking import OFF
+from hazard_ms.agents.latency import OFF
 from hazard_ms.evaluation.comparison.pairing import Episode
 from hazard_ms.evaluation.metrics import value
 from hazard_ms.evaluation.regret.causes import EpisodeRegret, beside

@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from hazard_ms.agents.action_values import EASE, Place, State
 from hazard_ms.agents.aims import LITTLE
-from hazard_ms.agents.courses import EASE, Place, State
-from hazard_ms.agents.hindsight import Hindsight
+from hazard_ms.agents.judge import Judge
 from hazard_ms.agents.mitigating import costs
 from hazard_ms.agents.mitigating.prospects import FETCH, Prospect, seats_of
 from hazard_ms.evaluation.regret.offers import Offers
@@ -35,7 +35,7 @@ NOTHING = 1e-3  # value of the targets up to which nothing is lost [ours]
 class MeasureWorth:
     """The worth of measures in one episode, in units of the targets' values."""
 
-    def __init__(self, env: SkillEnv, mind: Hindsight) -> None:
+    def __init__(self, env: SkillEnv, mind: Judge) -> None:
         """Take an environment in which an episode has just begun, and its judge."""
         self._env, self._base, self._mind = env, env.base, mind
         self._offers = Offers(env, mind)

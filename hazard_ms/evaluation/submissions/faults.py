@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from hazard_ms.agents.base import PrivilegedAgent
-from hazard_ms.agents.thinking import OFF, frames_of
+from hazard_ms.agents.latency import OFF, frames_of
 from hazard_ms.evaluation.result import BROKEN, FAILED, FORMAT, EpisodeResult
 from hazard_ms.evaluation.submissions.packing import MANIFEST, Entry, Submission, mean_values, name_of
 from hazard_ms.evaluation.submissions.tracks import Track

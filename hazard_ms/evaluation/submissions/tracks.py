@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from hazard_ms.agents.thinking import OFF, TOKENS
+from hazard_ms.agents.latency import OFF, TOKENS
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.sensing.detection.perception import parts
 from hazard_ms.spec.checks import one_of

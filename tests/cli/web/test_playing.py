@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from hazard_ms.cli.web.compare.shelf import Librarian, film_of
-from hazard_ms.cli.web.playing import keeping
+from hazard_ms.cli.web.playing import saving
 from hazard_ms.cli.web.playing.link import PICTURES, Link
 from hazard_ms.cli.web.playing.process import main, play
 from hazard_ms.cli.web.rescue import Rescue, Taken, asked_for, journal, keep, read
@@ -25,7 +25,7 @@ from hazard_ms.spec import registry
 @pytest.fixture(autouse=True)
 def few_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Films have a picture a second: drawing takes most of the time."""
-    monkeypatch.setattr(keeping, "EVERY", 30)
+    monkeypatch.setattr(saving, "EVERY", 30)
 
 
 class Page(threading.Thread):
@@ -163,7 +163,7 @@ def test_a_process_that_dies_before_the_result_is_there_costs_nothing(
     other = tmp_path / "other" / "changed.json"
     other.parent.mkdir()
     changed = replace(result, links=result.links[:-1])
-    verdict, demonstration = keeping.film(other, rescue.episode, changed, lambda frame: None, teaches=True)
+    verdict, demonstration = saving.film(other, rescue.episode, changed, lambda frame: None, teaches=True)
     assert verdict.startswith("same score") and demonstration is None and not (tmp_path / "other_demos").exists()
 
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from hazard_ms.cli.web.playing.link import HAZARD, HEAD, MAP, ROOM
 from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.panels import MapPanel, hazard_panel, strongest
+from hazard_ms.pictures.peak_levels import peak_levels
 from hazard_ms.pictures.spectator import Spectator
-from hazard_ms.pictures.told import told
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.mitigations.offers import tools
 
@@ -74,7 +74,7 @@ class Pictures:
     def _look(self) -> None:
         rgb, view = self._env.base.observer.look()
         self._head, self._level, self._seen = np.ascontiguousarray(rgb.cpu().numpy()), view.level, view.labels
-        self._told = told(self._env, view)
+        self._told = peak_levels(self._env, view)
         self._stale = False
 
     def _plan(self, goal: str | None) -> Pixels:

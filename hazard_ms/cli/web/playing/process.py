@@ -38,14 +38,14 @@ def play(link: Link, rescue: Rescue, folder: Path) -> None:
 
     Its journal stays until all is kept, so that a process that dies meanwhile costs nothing: the next one goes on.
     """
-    from hazard_ms.cli.web.playing import keeping
+    from hazard_ms.cli.web.playing import saving
 
     link.say("building")
     import torch
 
     torch.set_num_threads(1)
     rescue.check()
-    found = keeping.kept(folder, rescue.name) if rescue.over else None
+    found = saving.kept(folder, rescue.name) if rescue.over else None
     if found is not None:
         _tell_again(link, rescue, found[1])
     else:
@@ -53,8 +53,8 @@ def play(link: Link, rescue: Rescue, folder: Path) -> None:
         if result is None:
             link.say("closed")
             return
-        found = keeping.place(folder, result, rescue.name), result
-        keeping.keep(*found)
+        found = saving.place(folder, result, rescue.name), result
+        saving.keep(*found)
     _finish(link, rescue, folder, *found)
 
 
@@ -111,19 +111,19 @@ def _tell_again(link: Link, rescue: Rescue, result: EpisodeResult) -> None:
 
 def _finish(link: Link, rescue: Rescue, folder: Path, path: Path, result: EpisodeResult) -> None:
     """Make the film of a rescue whose result is in the file `path`, and delete its journal."""
-    from hazard_ms.cli.web.playing import keeping
+    from hazard_ms.cli.web.playing import saving
     from hazard_ms.evaluation.report import summary
 
     went = summary(result, rescue.episode.goal)
     link.say("over", ended=result.ended, summary=went, files=_links(path, (".html", ".json")))
     os.nice(POLITE)
     if result.lost is not None and result.lost_alone is None:
-        result = replace(result, lost_alone=keeping.lost_alone(rescue.episode))
-        keeping.keep(path, result)
+        result = replace(result, lost_alone=saving.lost_alone(rescue.episode))
+        saving.keep(path, result)
     if result.averted is not None:
         link.say("averted", share=result.averted)
     told = lambda frame: link.say("filming", frame=frame, of=result.frames)  # noqa: E731
-    verdict, demonstration = keeping.film(path, rescue.episode, result, told, teaches=rescue.kind == PLAY)
+    verdict, demonstration = saving.film(path, rescue.episode, result, told, teaches=rescue.kind == PLAY)
     journal(folder, rescue.name).unlink(missing_ok=True)
     where = None if demonstration is None else str(demonstration)
     link.say("kept", replay=verdict, demonstration=where, files=_links(path, (".html", ".mp4", ".json")))

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from hazard_ms.agents.thinking import OFF
+from hazard_ms.agents.latency import OFF
 from hazard_ms.demonstrations import claims, store
 from hazard_ms.demonstrations.card import write_card
 from hazard_ms.demonstrations.layout import MANIFEST

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.sketch import columns
+from hazard_ms.sketch import array_files
 from hazard_ms.sketch.rescues.scene import SketchScene
 from hazard_ms.spec.foreign.files import read_foreign
 from hazard_ms.spec.storage import files
@@ -41,7 +41,7 @@ def kept(name: str, follows_from: str, made: Callable[[], SketchScene]) -> Sketc
     digest = hashlib.sha256(f"{_code()} {follows_from}".encode()).hexdigest()[:16]
     path = home() / "sketch" / f"{name.replace('/', '-')}-{digest}.scene"
     with contextlib.suppress(ValueError):
-        return from_bytes(read_foreign(path, columns.LARGEST))
+        return from_bytes(read_foreign(path, array_files.LARGEST))
     scene = made()
     with contextlib.suppress(OSError, ValueError):  # a cache that cannot be written to only costs time
         files.make_folder(path.parent)
@@ -51,13 +51,13 @@ def kept(name: str, follows_from: str, made: Callable[[], SketchScene]) -> Sketc
 
 def to_bytes(scene: SketchScene) -> bytes:
     """A scene as the content of a file."""
-    return columns.to_bytes(FORMAT, {f.name: getattr(scene, f.name) for f in dataclasses.fields(scene)})
+    return array_files.to_bytes(FORMAT, {f.name: getattr(scene, f.name) for f in dataclasses.fields(scene)})
 
 
 def from_bytes(content: bytes) -> SketchScene:
     """The scene that `to_bytes` gave. Raises ValueError for any other content."""
     what = "a scene of the sketch"
-    return columns.made_from(SketchScene, what, columns.from_bytes(what, FORMAT, content), PLAIN)
+    return array_files.made_from(SketchScene, what, array_files.from_bytes(what, FORMAT, content), PLAIN)
 
 
 @functools.lru_cache(maxsize=1)

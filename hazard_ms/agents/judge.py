@@ -7,8 +7,8 @@ from collections import Counter
 import numpy as np
 from numpy.typing import NDArray
 
+from hazard_ms.agents.action_values import ActionValues, Notion, Place, Reach, State
 from hazard_ms.agents.aims import Aim
-from hazard_ms.agents.courses import Courses, Notion, Place, Reach, State
 from hazard_ms.agents.truth import Future
 from hazard_ms.hazards.base import pushes
 from hazard_ms.sketch import skill_times
@@ -26,8 +26,8 @@ FAILED = {UNREACHABLE: 2, NO_PATH: 1, BLOCKED: 1}  # how much each failure tells
 OUT_OF_REACH = 2  # of that in a row, from which a target counts as out of reach [ours]
 
 
-class Hindsight:
-    """The judge of a running episode: its true state and future, and all courses from there."""
+class Judge:
+    """The judge of a running episode: its true state and future, and what choices are worth there."""
 
     def __init__(self, env: SkillEnv, times: SkillTimes | None = None) -> None:
         """Take an environment in which an episode has just begun; `times` of skills, as measured if None."""
@@ -37,7 +37,7 @@ class Hindsight:
         averts = base.task.averted and base.task.several_rooms
         self.aim = Aim(averts, averts and pushes(base.task.hazards))
         carts = tuple(base.world.index(0, cart.name) for cart in base.specs[0].containers)
-        self._courses = Courses(scene, carts, times or skill_times.shipped(robot), self.aim)
+        self._values = ActionValues(scene, carts, times or skill_times.shipped(robot), self.aim)
         self.targets = {target.index: target for target in base.observer.table.rows(base.world)}
         self.truth = Notion({index: target.value for index, target in self.targets.items()})
         self._failures: Counter[int] = Counter()
@@ -71,11 +71,11 @@ class Hindsight:
 
     def problem(self, state: State) -> tuple[Problem | None, list[int]]:
         """The true rest of the rescue with the targets' own values, and its targets, indices along B."""
-        return self._courses.problem(state, self.truth, self.future())
+        return self._values.problem(state, self.truth, self.future())
 
     def after(self, state: State, action: Action, place: Place | None = None) -> State:
         """The state in which `action` usually leaves a rescue; `place` as for `choice`."""
-        return self._courses.after(state, action, self.truth, self.future(), place)
+        return self._values.after(state, action, self.truth, self.future(), place)
 
     def note(self, action: Action, result: Result) -> None:
         """Count a failure of `action` that can be due to where its target is; what works ends the count.
@@ -94,11 +94,11 @@ class Hindsight:
 
     def limits(self, state: State) -> Reach:
         """The last frame of the episode at each of PACES, as it looks from `state`."""
-        return self._courses.limits(state.frame)
+        return self._values.limits(state.frame)
 
     def best(self, state: State, limits: Reach, notion: Notion | None = None) -> Reach:
         """The value that the best plan reaches from `state` by each of `limits`; `notion`: by default the truth."""
-        return self._courses.best(state, notion or self.truth, self._future.timeline(), limits)
+        return self._values.best(state, notion or self.truth, self._future.timeline(), limits)
 
     def choice(
         self,
@@ -113,8 +113,8 @@ class Hindsight:
 
         `place` [m]: where somebody walks whose target is nothing that there is.
         """
-        return self._courses.choice(state, action, notion or self.truth, self._future.timeline(), limits, best, place)
+        return self._values.choice(state, action, notion or self.truth, self._future.timeline(), limits, best, place)
 
     def begins_with(self, state: State, limit: float) -> str:
         """The first rescue of the best plan from `state` by `limit` in words; empty where it has none."""
-        return self._courses.begins_with(state, self.truth, self._future.timeline(), limit)
+        return self._values.begins_with(state, self.truth, self._future.timeline(), limit)

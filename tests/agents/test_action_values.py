@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from hazard_ms.agents.courses import PACES, Courses, Notion, State, mean
+from hazard_ms.agents.action_values import PACES, ActionValues, Notion, State, mean
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.sketch import skill_times
 from hazard_ms.sketch.rescue_problem import RescueScene
@@ -22,7 +22,7 @@ WORTH = Notion({0: 5.0, 1: 1.0})
 SCENE = RescueScene(SPEC, "fetch", HazardFetch.build.radius, 1500)
 TIMES = skill_times.load("fetch")
 PICK = TIMES.usual(skill_times.PICK_UP, 0.0)  # frames, of a box on the floor
-COURSES = Courses(SCENE, (), TIMES)
+VALUES = ActionValues(SCENE, (), TIMES)
 REST = PICK + SCENE.bag  # frames of a rescue without its walk
 NEAR = 0.5 + 0.02**0.5  # from the middle of a box at which a walk arrives [m]
 END = (1500.0,)  # the last frame of an episode
@@ -33,12 +33,12 @@ ROUND = 14  # frames by which ways over cells of 0.1 m differ from straight line
 
 def worth(action: Action, limit: float, notion: Notion = WORTH, damaged: int = -1, state: State = START) -> float:
     """The value that is left by an action in a hall where LEFT is damaged at a frame."""
-    line, best = future(SPEC, damaged=damaged), COURSES.best(state, notion, future(SPEC, damaged=damaged), (limit,))
-    return COURSES.choice(state, action, notion, line, (limit,), best)[0]
+    line, best = future(SPEC, damaged=damaged), VALUES.best(state, notion, future(SPEC, damaged=damaged), (limit,))
+    return VALUES.choice(state, action, notion, line, (limit,), best)[0]
 
 
 def after(action: Action, state: State = START) -> State:
-    return COURSES.after(state, action, WORTH, future(SPEC))
+    return VALUES.after(state, action, WORTH, future(SPEC))
 
 
 @pytest.mark.parametrize(
@@ -123,27 +123,27 @@ def test_a_target_is_taken_where_it_is_near_and_put_away_where_it_counts() -> No
 def test_a_state_is_worth_the_mean_over_paces_and_in_the_end_what_is_safe() -> None:
     """At a frame from where the first rescue just fits at the two slower paces of four: 5 at each of these."""
     middle = dataclasses.replace(START, frame=1500 - round(ONE))
-    line, limits = future(SPEC), COURSES.limits(middle.frame)
+    line, limits = future(SPEC), VALUES.limits(middle.frame)
     assert limits == pytest.approx([middle.frame + pace * round(ONE) for pace in PACES])
-    assert COURSES.best(middle, WORTH, line, limits) == (0.0, 0.0, 5.0, 5.0) and mean((0.0, 0.0, 5.0, 5.0)) == 2.5
+    assert VALUES.best(middle, WORTH, line, limits) == (0.0, 0.0, 5.0, 5.0) and mean((0.0, 0.0, 5.0, 5.0)) == 2.5
     over = dataclasses.replace(START, frame=1500, saved=1.5)
-    assert COURSES.best(over, WORTH, line, COURSES.limits(1500)) == (1.5,) * 4
+    assert VALUES.best(over, WORTH, line, VALUES.limits(1500)) == (1.5,) * 4
 
 
 def test_what_is_held_goes_into_the_cart() -> None:
     scene = RescueScene(CARTS, "fetch", HazardFetch.build.radius, 1500)
     line = future(CARTS)
     boxes, cart = (line.index(LEFT), line.index(RIGHT)), line.index(CART)
-    courses, notion = Courses(scene, (cart,), TIMES), Notion({boxes[0]: 5.0, boxes[1]: 1.0})
+    values, notion = ActionValues(scene, (cart,), TIMES), Notion({boxes[0]: 5.0, boxes[1]: 1.0})
     held = State((2.7, 3.0), None, 0, boxes[0], boxes, 0.0)
 
     def left(action: Action, state: State) -> float:
-        return courses.choice(state, action, notion, line, END, courses.best(state, notion, line, END))[0]
+        return values.choice(state, action, notion, line, END, values.best(state, notion, line, END))[0]
 
     assert [left(Action(WALK_TO, CART), held), left(Action(DROP, CART), held)] == [6.0, 6.0]
     beside = dataclasses.replace(held, place=(5.3, 3.0), frame=1500 - int(scene.cart) - 5)
     assert left(Action(DROP, CART), beside) == 5.0
     assert left(Action(DROP), beside) == left(Action(WALK_TO, RIGHT), beside) == 0.0
-    assert courses.begins_with(held, notion, line, END[0]) == "to put away what it held"
+    assert values.begins_with(held, notion, line, END[0]) == "to put away what it held"
     free = dataclasses.replace(held, holding=None)
-    assert courses.begins_with(free, notion, line, END[0]) == f"to rescue {LEFT}"
+    assert values.begins_with(free, notion, line, END[0]) == f"to rescue {LEFT}"

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import hazard_ms  # noqa: F401  # registers the tasks
-from hazard_ms.pictures.told import told
+from hazard_ms.pictures.peak_levels import peak_levels
 from hazard_ms.sensing.view import View
 from tests.worlds.rays import Block, cast, intrinsic, looking
 
@@ -42,15 +42,16 @@ def test_the_wind_is_that_at_two_metres(at: tuple[float, float, float]) -> None:
     env = gym.make("HazardWind-v1", obs_mode="none", physics="realistic", render_backend="none")
     env.reset(seed=0)
     base: Any = env.unwrapped
-    (number,) = told(SimpleNamespace(base=base), view(at, True))
+    (number,) = peak_levels(SimpleNamespace(base=base), view(at, True))
     aloft = float(base.episode.levels(base.world.agent_position.new_tensor([[[8.0, 8.0, 10.0]]]))[0, 0, 0])
     assert number == pytest.approx(aloft * np.log(2.0 / 0.03) / np.log(10.0 / 0.03), rel=0.02)
-    assert told(SimpleNamespace(base=base), replace(view(at, True), depth=np.zeros((64, 64), np.float32))) == (-np.inf,)
+    high = replace(view(at, True), depth=np.zeros((64, 64), np.float32))
+    assert peak_levels(SimpleNamespace(base=base), high) == (-np.inf,)
     env.close()
 
 
 def test_a_fire_is_told_as_it_is_seen() -> None:
     env = gym.make("HazardFire-v1", obs_mode="none", render_backend="none")
     base: Any = env.unwrapped
-    assert told(SimpleNamespace(base=base), view((8.0, 8.0, 1.1), True)) == (70.0,)
+    assert peak_levels(SimpleNamespace(base=base), view((8.0, 8.0, 1.1), True)) == (70.0,)
     env.close()

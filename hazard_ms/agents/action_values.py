@@ -67,8 +67,8 @@ class Notion:
     places: Mapping[int, Place] = field(default_factory=dict)  # of those that are not where they really are [m]
 
 
-class Courses:
-    """The courses that a rescue can take in one scene, whose future is known."""
+class ActionValues:
+    """The values of states and of choices in one scene, whose future is known."""
 
     def __init__(self, scene: RescueScene, carts: tuple[int, ...], times: SkillTimes, aim: Aim = VALUE) -> None:
         """`carts`: indices along B of those of `scene`, none where the safe place is the bag; `times` of skills."""

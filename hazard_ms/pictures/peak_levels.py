@@ -9,7 +9,7 @@ from hazard_ms.sensing.view import View
 from hazard_ms.skills.executor import SkillEnv
 
 
-def told(env: SkillEnv, view: View) -> tuple[float, ...]:
+def peak_levels(env: SkillEnv, view: View) -> tuple[float, ...]:
     """The highest level of each hazard in a look of the first environment, in its unit; empty without hazard images.
 
     Where the hazard's `told_up_to` is a height, it is the highest level at that height above what is seen lower: of a

@@ -11,10 +11,10 @@ ASSETS = "hazard_ms._assets"
 
 def version() -> str:
     """`__version__` of hazard_ms, read without importing it."""
-    for node in ast.parse((ROOT / "hazard_ms/registry/version.py").read_text(encoding="utf-8")).body:
+    for node in ast.parse((ROOT / "hazard_ms/spec/registry/version.py").read_text(encoding="utf-8")).body:
         if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__version__":
             return str(ast.literal_eval(node.value))
-    raise ValueError("hazard_ms/registry/version.py has no __version__")
+    raise ValueError("hazard_ms/spec/registry/version.py has no __version__")
 
 
 def asset_files() -> list[str]:
@@ -58,7 +58,7 @@ setup(
         "gymnasium>=1.2",
         "torch>=2.10",  # earlier ones have known holes in torch.load
         "torchvision>=0.25",
-        "warp-lang>=1.19",  # compiles the laws of the hazards for CPUs and GPUs: hazard_ms/kernels/launch.py
+        "warp-lang>=1.19",  # compiles the laws of the hazards for CPUs and GPUs: hazard_ms/simulation/kernels/launch.py
         "opencv-python-headless>=4.10",
         "numpy>=2.0",
         "trimesh>=4.5",

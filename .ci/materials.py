@@ -24,7 +24,7 @@ from packaging.licenses import InvalidLicenseExpression, canonicalize_license_ex
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
-from hazard_ms.registry.version import __version__  # noqa: E402 (found by the line above)
+from hazard_ms.spec.registry.version import __version__  # noqa: E402 (found by the line above)
 
 PIN = re.compile(r"(?P<name>[\w.-]+)==(?P<version>[^\s;]+)(?: ; (?P<marker>.*?))? *(?P<hashes>(?:--hash=\S+ *)+)")
 INDEX = "https://pypi.org/simple/"

@@ -7,7 +7,7 @@ nothing heavy:
     env = gym.make("HazardFire-v1")
 
 Third parties add tasks, hazards, robots, agents, detectors and mitigations with `register_task`, `register_hazard`,
-`register_robot`, `register_agent`, `register_detector` and `register_mitigation`; see `hazard_ms.registry`.
+`register_robot`, `register_agent`, `register_detector` and `register_mitigation`; see `hazard_ms.spec.registry`.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from hazard_ms.registry import load, register_agent, register_hazard, register_robot, register_task
-from hazard_ms.registry.announce import announce
-from hazard_ms.registry.detectors import register_detector
-from hazard_ms.registry.instructions import agree
-from hazard_ms.registry.mitigations import register_mitigation
-from hazard_ms.registry.version import __version__
+from hazard_ms.spec.registry import load, register_agent, register_hazard, register_robot, register_task
+from hazard_ms.spec.registry.announce import announce
+from hazard_ms.spec.registry.detectors import register_detector
+from hazard_ms.spec.registry.instructions import agree
+from hazard_ms.spec.registry.mitigations import register_mitigation
+from hazard_ms.spec.registry.version import __version__
 
 _LAZY = {  # imported when they are first asked for: they need torch, SAPIEN and ManiSkill
     "Action": "hazard_ms.skills.decision:Action",
     "Agent": "hazard_ms.agents.base:Agent",
-    "NumpyEnv": "hazard_ms.wrappers:NumpyEnv",
+    "NumpyEnv": "hazard_ms.env.wrappers:NumpyEnv",
     "SkillEnv": "hazard_ms.skills.executor:SkillEnv",
     "main": "hazard_ms.cli.__main__:main",  # the command hazard-ms
     "render_backend": "hazard_ms.machine.render_backend:backend",
@@ -41,7 +41,7 @@ _LAZY = {  # imported when they are first asked for: they need torch, SAPIEN and
     "Push": "hazard_ms.hazards.base:Push",
     "Room": "hazard_ms.spec:Room",
     "SceneSpec": "hazard_ms.spec:SceneSpec",
-    "Situation": "hazard_ms.episode.situation:Situation",
+    "Situation": "hazard_ms.tasks.episode.situation:Situation",
     "State": "hazard_ms.hazards.base:State",
     "Task": "hazard_ms.spec:Task",
     "Term": "hazard_ms.spec:Term",
@@ -64,7 +64,7 @@ __all__ = [  # noqa: PLE0604
 
 def __getattr__(name: str) -> Any:
     if name == "vector":  # hazard_ms.vector.make
-        return importlib.import_module("hazard_ms.vector")
+        return importlib.import_module("hazard_ms.learning.vector")
     if name not in _LAZY:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return globals().setdefault(name, load(_LAZY[name]))

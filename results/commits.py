@@ -10,7 +10,7 @@ from pathlib import Path
 
 from results.makers import Maker
 
-VERSION = "hazard_ms/registry/version.py"
+VERSION = "hazard_ms/spec/registry/version.py"
 MADE = "results/made.csv"  # commits of what names none itself: where `./run results` made it, or last changed by hand
 NAMED = re.compile(r"\bcommit ([0-9a-f]{7,40})(-dirty)?\b")
 DIRTY = "-dirty"

@@ -22,11 +22,11 @@ from hazard_ms.agents.llm.agent import Llm
 from hazard_ms.agents.llm.scripted import BEHAVIOURS, ScriptedServer
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.runner import Runner
-from hazard_ms.registry.version import __version__
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.registry.version import __version__
 
 HERE = Path(__file__).parent
 RAW = HERE.parent / "build" / "hostile"  # the table of each task

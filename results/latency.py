@@ -12,8 +12,8 @@ import sys
 from collections.abc import Sequence
 
 from hazard_ms.agents.base import Agent, agent
+from hazard_ms.agents.latency import Thought
 from hazard_ms.agents.llm.choices import forced
-from hazard_ms.agents.thinking import Thought
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision

@@ -22,10 +22,10 @@ from hazard_ms.evaluation.choices import HUMAN
 from hazard_ms.evaluation.comparison.folders import title as settings
 from hazard_ms.evaluation.comparison.summary import ORACLE, interval
 from hazard_ms.evaluation.result import EpisodeResult
-from hazard_ms.robots import robot_class
 from hazard_ms.sketch.bound import bound
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.registry.robots import robot_class
 from hazard_ms.tasks import task_of
 from results.plans import between
 from results.rows import COLUMNS, Row, group, merged, read, row_of, whole

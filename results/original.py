@@ -18,12 +18,12 @@ from pathlib import Path
 from hazard_ms.evaluation.comparison.pairing import difference
 from hazard_ms.evaluation.metrics import Tally, scores
 from hazard_ms.evaluation.result import STUCK, EpisodeResult
-from hazard_ms.robots import robot_class
 from hazard_ms.scenes.files import read_scenes
 from hazard_ms.scenes.reach import reachable
 from hazard_ms.skills.decision import EXPLORE, WALK_TO
 from hazard_ms.skills.failures import NO_PATH
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.registry.robots import robot_class
 from results.tables import COMMAND, HERE, evaluate, machine, results_in, value_of, words
 
 RAW = HERE.parent / "build" / "original"

@@ -8,12 +8,12 @@ import numpy as np
 
 from hazard_ms.agents.oracle import BEAM, MOST_LABELS
 from hazard_ms.evaluation.result import EpisodeResult
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.robots import robot_class
+from hazard_ms.sketch.planning.orienteering import solve
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.decision import PICK_UP
 from hazard_ms.skills.failures import UNREACHABLE
+from hazard_ms.spec.registry.robots import robot_class
 from hazard_ms.tasks import task_of
 
 

@@ -16,7 +16,6 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards.fire import heat
 from hazard_ms.hazards.fire.dousing import NEVER, STEAM
 from hazard_ms.hazards.fire.fire import Fire
@@ -29,6 +28,7 @@ from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec, Task
 from hazard_ms.spec.catalogue import CATEGORIES, FLOOD_BOARD
 from hazard_ms.tasks import task_of
+from hazard_ms.tasks.episode.episode import Episode
 
 FIRE, FLOOD = "HazardHouseFire-v1", "HazardHouseFlood-v1"
 AT = 500  # the frame of changes: about when an extinguisher can be at a fire

@@ -2,7 +2,7 @@
 
 Three agents: nearest first, by value over way; the exact plan of rescues alone; the best plan that fetches
 extinguishers and puts out fires, or shuts doors and sets flood boards, before it rescues
-(hazard_ms.planning.beginning). Each has the share of what would be lost that it averts. Nobody explores here, so all
+(`sketch/planning/beginning.py`). Each has the share of what would be lost that it averts. Nobody explores here, so all
 numbers are higher than those of agents in the simulator.
 """
 
@@ -15,14 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.averting import kept
-from hazard_ms.planning.beginning import MOST_MEASURES, best_course
-from hazard_ms.planning.measures import Measure, Measures
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.scenes import solids
 from hazard_ms.scenes.walls import WALLS, on_wall, thickness_of
-from hazard_ms.simulation import building
 from hazard_ms.sketch import skill_times
+from hazard_ms.sketch.planning.averting import kept
+from hazard_ms.sketch.planning.beginning import MOST_MEASURES, best_course
+from hazard_ms.sketch.planning.measures import Measure, Measures
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 from hazard_ms.sketch.travel.ways import Ways
 from hazard_ms.spec import Area, Body, Opening, SceneSpec
 from hazard_ms.spec.catalogue import FLOOD_BOARD
@@ -190,7 +190,7 @@ def _table(spec: SceneSpec) -> NDArray[np.float64]:
     doors = [on_wall(room, o.wall, o.centre, 0.0, thickness_of(room, o.wall) / 2)[:2] for o in room.openings]
     places = [*(tool.position[:2] for tool in _tools(spec)), *spec.fires, *doors]
     at = np.array([*(t.position[:2] for t in spec.targets), spec.agent_start.position, *places])
-    sizes = [float(np.hypot(*building.extent_of(t)[:2])) / 2 for t in spec.targets]
+    sizes = [float(np.hypot(*solids.extent_of(t)[:2])) / 2 for t in spec.targets]
     edge = np.array([*sizes, 0.0, *[0.0] * len(_tools(spec)), *[JET] * len(spec.fires), *[0.0] * len(doors)])
     made = Ways(spec).frames(at[:, None], at[None], edge=np.broadcast_to(edge, (len(at), len(at))))
     np.fill_diagonal(made, 0.0)

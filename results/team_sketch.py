@@ -16,7 +16,6 @@ from scipy import stats
 
 from hazard_ms.env.placing import starts
 from hazard_ms.evaluation.comparison.pairing import Episode, difference
-from hazard_ms.robots import robot_class
 from hazard_ms.simulation import building
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.sketch.scenes import sketch_scene
@@ -24,6 +23,7 @@ from hazard_ms.sketch.skill_times import load
 from hazard_ms.sketch.teams.plans import team_bound, team_plan
 from hazard_ms.sketch.teams.policies import mean_values
 from hazard_ms.spec.catalogue import value_of
+from hazard_ms.spec.registry.robots import robot_class
 from hazard_ms.tasks import task_of
 from results.tables import HERE, machine, words
 from results.teams import TASKS, episodes, setup_of

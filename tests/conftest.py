@@ -32,7 +32,7 @@ def pytest_collection_finish() -> None:
 @pytest.fixture(scope="module", autouse=True)
 def tasks_are_left_as_they_were() -> Iterator[None]:
     """A task that a test leaves registered breaks tests of all tasks, and only where both run in one process."""
-    from hazard_ms.registry import TASKS
+    from hazard_ms.spec.registry import TASKS
 
     before = set(TASKS)
     yield

@@ -2,7 +2,7 @@
 
 By the aim `averted` a target that is safe counts as by Value, and every other one what it keeps by itself: all of its
 value, half where it is damaged, and nothing where it is carried off. A rescue then adds what would be lost without it
-(`hazard_ms.planning.averting`).
+(`hazard_ms.sketch.planning.averting`).
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.averting import averting
-from hazard_ms.planning.problem import Problem
+from hazard_ms.sketch.planning.averting import averting
+from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.spec.catalogue import DAMAGED_SHARE

@@ -18,8 +18,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
-from hazard_ms.agents.thinking import Thought
-from hazard_ms.registry import AGENTS, load, load_plugin
+from hazard_ms.agents.latency import Thought
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.brief import Brief
@@ -28,6 +27,7 @@ from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_TO, Action, D
 from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.parameters import parameters
+from hazard_ms.spec.registry import AGENTS, load, load_plugin
 
 if TYPE_CHECKING:
     from hazard_ms.skills.executor import SkillEnv

@@ -1,4 +1,4 @@
-"""Tree search over whole rescues: what `planner` solves exactly, searched with `hazard_ms.planning.tree`.
+"""Tree search over whole rescues: what `planner` solves exactly, searched with `hazard_ms.sketch.planning.tree`.
 
 The tree's options are the goals that can still be reached in time. A simulation ends when there is none, and counts the
 share of the value that it saved. It believes what `planner` believes, so that the two differ in the search alone.
@@ -13,9 +13,9 @@ import numpy as np
 
 from hazard_ms.agents.search.outlook import Outlook, Weights
 from hazard_ms.agents.search.searcher import GIVE_UP, REACH, First, Searcher
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import Spot
-from hazard_ms.planning.tree import SIMULATIONS, search
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import Spot
+from hazard_ms.sketch.planning.tree import SIMULATIONS, search
 from hazard_ms.skills.brief import Brief
 from hazard_ms.spec.checks import whole
 

@@ -1,7 +1,7 @@
 """The oracle: a reference for what an agent could reach with the skills that all share.
 
 It alone sees what is hidden: where everything is, what is damaged, and what will happen (hazard_ms.sketch.recording).
-At each decision it plans by the exact search of hazard_ms.planning, enters into its map where things really are, and
+At each decision it plans by the exact search of `sketch/planning`, enters into its map where things really are, and
 acts by ordinary skills, so that what fails in their execution fails for the oracle, too. With `known=true` it plans
 only with what its map holds, and searches when that is all done: the difference between the two is what it costs not
 to know. Where a gale blows it rescues what that will carry off, into carts or into the lee (hazard_ms.agents.gale).
@@ -19,10 +19,10 @@ from hazard_ms.agents.mitigating.doing import Mitigator
 from hazard_ms.agents.search.landmark_search import LandmarkSearch
 from hazard_ms.agents.search.outlook import SPREAD
 from hazard_ms.agents.truth import Truth
-from hazard_ms.planning.averting import averting
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import PlannedRescue, Problem, soonest
-from hazard_ms.sketch.recording import pushes
+from hazard_ms.hazards.base import pushes
+from hazard_ms.sketch.planning.averting import averting
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import PlannedRescue, Problem, soonest
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision

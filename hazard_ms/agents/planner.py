@@ -2,7 +2,7 @@
 
 At each decision it forecasts from what it has seen when each known target will be damaged and where it will be, takes
 the walks over its map, adds the places where the targets that it has not seen may be found, and solves the problem of
-the rescue (`hazard_ms.planning.orienteering`). It does what the plan begins with.
+the rescue (`hazard_ms.sketch.planning.orienteering`). It does what the plan begins with.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import numpy as np
 
 from hazard_ms.agents.search.outlook import Outlook, Weights
 from hazard_ms.agents.search.searcher import GIVE_UP, REACH, First, Searcher
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Plan, Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Plan, Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import UNFINISHED

@@ -11,10 +11,10 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, cast
 
 from hazard_ms.agents.base import Agent, agent, made_of
-from hazard_ms.registry.loading import load
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.registry.loading import load
 
 if TYPE_CHECKING:
     from hazard_ms.skills.team import TeamSkills

@@ -28,8 +28,8 @@ from hazard_ms.cli.scenes import SceneCommand
 from hazard_ms.cli.sketch import SketchCommand
 from hazard_ms.cli.train import TrainCommand
 from hazard_ms.cli.validate import validate
-from hazard_ms.registry.version import __version__
 from hazard_ms.spec.foreign.terminal import plain, plain_output
+from hazard_ms.spec.registry.version import __version__
 
 DESCRIPTION = (
     "Rescue tasks in fire, flood and wind. `hazard-ms COMMAND --help` describes a command, --version the version."

@@ -43,9 +43,9 @@ def add(
     """
     import dataclasses
 
-    from hazard_ms.assets.intake import adding
-    from hazard_ms.assets.intake.model import model_of_file
-    from hazard_ms.assets.providers import PROVIDERS, provider
+    from hazard_ms.scenes.assets.intake import adding
+    from hazard_ms.scenes.assets.intake.model import model_of_file
+    from hazard_ms.scenes.assets.providers import PROVIDERS, provider
 
     kind, colon, rest = model.partition(":")
     found = provider(kind).model(rest) if colon and kind in PROVIDERS else model_of_file(Path(model), up, front)
@@ -67,14 +67,14 @@ def list_all(category: str = "", provider: Annotated[str, offer(PROVIDERS)] = ""
         category: One category only.
         provider: Collection that you downloaded.
     """
-    from hazard_ms.assets.index import asset, asset_ids
-    from hazard_ms.assets.shipped import shipped_index
-    from hazard_ms.assets.user_models import user_root
+    from hazard_ms.scenes.assets.index import asset, asset_ids
+    from hazard_ms.scenes.assets.shipped import shipped_index
+    from hazard_ms.scenes.assets.user_models import user_root
     from hazard_ms.spec.catalogue import category as known
 
     only = known(category).name if category else None
     if provider:
-        from hazard_ms.assets.providers import provider as collection
+        from hazard_ms.scenes.assets.providers import provider as collection
 
         print("\n".join(collection(provider).ids(only)))
         return 0
@@ -91,7 +91,7 @@ def remove(name: tyro.conf.Positional[str]) -> int:
     Args:
         name: Its id.
     """
-    from hazard_ms.assets.intake import adding
+    from hazard_ms.scenes.assets.intake import adding
 
     adding.remove(name)
     print(f"{name} removed")
@@ -105,8 +105,8 @@ def sheet(output: Annotated[Path, flag("-o", "--output", old="out")] = Path("she
         output: File to write.
         category: One category only.
     """
-    from hazard_ms.assets.contact_sheet import save_sheet
-    from hazard_ms.assets.index import asset_ids
+    from hazard_ms.scenes.assets.contact_sheet import save_sheet
+    from hazard_ms.scenes.assets.index import asset_ids
     from hazard_ms.spec.catalogue import category as known
 
     save_sheet(output, asset_ids(category=known(category).name if category else None, users=True))

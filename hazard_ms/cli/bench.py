@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 from typing import Annotated
 
-from hazard_ms import registry
 from hazard_ms.evaluation.choices import PRESETS, SEVERITIES, SPLITS, flag, offer
+from hazard_ms.spec import registry
 
 PICTURES_SHARE = 10  # frames for one picture: pictures take that much longer [ours]
 FEWEST_PICTURES = 3  # of which a median is taken [ours]
@@ -59,38 +59,38 @@ def bench(
         output: File for what each pick-up and drop cost, one JSON object a line.
     """
     if kernels:
-        from hazard_ms.bench.kernels import report as report_kernels
+        from hazard_ms.validation.kernel_costs import report as report_kernels
 
         print(report_kernels())
     elif against:
-        from hazard_ms.bench.stock import report as report_stock
+        from hazard_ms.cli.costs.stock import report as report_stock
 
         print(report_stock(frames, seed))
     elif resets:
-        from hazard_ms.bench.resets import report as report_resets
-        from hazard_ms.bench.turns import Case
+        from hazard_ms.cli.costs.resets import report as report_resets
+        from hazard_ms.cli.costs.turns import Case
 
         print(report_resets([Case(env_id, robot, physics)]))
     elif scaling:
-        from hazard_ms.bench.scaling import report as report_scaling
+        from hazard_ms.cli.costs.scaling import report as report_scaling
 
         print(report_scaling(frames, seed, physics))
     elif pickups:
         _pickups(env_id, robot, count, seed, output)
     elif vector:
-        from hazard_ms.bench.vector import report as report_vector
+        from hazard_ms.cli.costs.vector import report as report_vector
 
         print(report_vector(env_id, frames, seed))
     elif serve:
-        from hazard_ms.bench.serving import report as report_serving
+        from hazard_ms.cli.costs.serving import report as report_serving
 
         print(report_serving(env_id, seed, minutes))
     elif effects:
-        from hazard_ms.bench.effects import report as report_effects
+        from hazard_ms.cli.costs.effects import report as report_effects
 
         print(report_effects(env_id, max(frames // PICTURES_SHARE, FEWEST_PICTURES), seed))
     else:
-        from hazard_ms.bench.frames import report
+        from hazard_ms.cli.costs.frames import report
 
         print(report(env_id, frames, seed, episode, physics, severity))
     return 0
@@ -117,13 +117,13 @@ def gpu_check(
         seed: Seed of episodes and actions.
         output: The page.
     """
-    from hazard_ms.bench.gpu.needs import missing, without_physx
+    from hazard_ms.cli.costs.gpu.needs import missing, without_physx
 
     if lack := missing():
         what = "runs the tests marked gpu, and measures batches of environments on a GPU"
         print(f"hazard-ms gpu-check {what}; this machine lacks {lack}", file=sys.stderr)
         return 1
-    from hazard_ms.bench.gpu.report import PHYSX, SIZES, report
+    from hazard_ms.cli.costs.gpu.report import PHYSX, SIZES, report
 
     sizes = [size for size in SIZES if size <= most]
     lack = without_physx() if any(part in PHYSX for part in parts) else ""
@@ -158,8 +158,8 @@ def danger(
 def _pickups(env_id: str, robot: str, count: int, seed: int, output: Path | None) -> None:
     from tqdm import tqdm
 
-    from hazard_ms.bench.pickups import handlings, lines, report
-    from hazard_ms.machine.files import drafts, make_folder
+    from hazard_ms.cli.costs.pickups import handlings, lines, report
+    from hazard_ms.spec.storage.files import drafts, make_folder
 
     made = list(tqdm(handlings(env_id, robot, count, seed), desc=robot, mininterval=5.0))
     print(report(made))

@@ -97,8 +97,8 @@ def show(folder: Folder, output: Annotated[Path, flag("-o")] = Path("demos.html"
     """
     from hazard_ms.demonstrations.show import page
     from hazard_ms.evaluation.options import MOST
-    from hazard_ms.machine.files import make_folder, write
     from hazard_ms.spec.checks import whole
+    from hazard_ms.spec.storage.files import make_folder, write
 
     whole(films, 0, MOST, "films")
     if output.suffix != ".html":

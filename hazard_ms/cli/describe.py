@@ -6,7 +6,7 @@ import json as json_format
 from typing import Annotated
 
 from hazard_ms.evaluation.choices import flag, offer
-from hazard_ms.registry import ROBOTS, TASKS, load_plugin
+from hazard_ms.spec.registry import ROBOTS, TASKS, load_plugin
 
 MODES = ("state", "state_dict", "rgb+depth+segmentation", "pointcloud", "sensor_data", "none")
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
+from hazard_ms.cli.web.options import ServeOptions
 from hazard_ms.evaluation.choices import HUMAN
 from hazard_ms.evaluation.options import EpisodeOptions, PlayOptions, ReplayOptions, SweepOptions
-from hazard_ms.web.options import ServeOptions
 
 if TYPE_CHECKING:
     from hazard_ms.evaluation.result import EpisodeResult
@@ -68,10 +68,10 @@ def _filmed(episode: EpisodeOptions, path: Path, every: int) -> EpisodeResult:
     """Play and film the episode; its film, result and page appear together at its end."""
     from hazard_ms.evaluation.page import address, page
     from hazard_ms.evaluation.watchers import Progress
-    from hazard_ms.machine.files import drafts, make_folder
     from hazard_ms.pictures.compositor import RENDERED
     from hazard_ms.pictures.film import Film
     from hazard_ms.pictures.team_film import TeamFilm
+    from hazard_ms.spec.storage.files import drafts, make_folder
 
     camera = {"width": RENDERED[0], "height": RENDERED[1]}
     subtitle = f"agent {episode.agent}, seed {episode.seed}, {' '.join([*episode.strength, episode.physics])} physics"
@@ -117,7 +117,7 @@ def serve(options: Annotated[tyro.conf.OmitArgPrefixes[ServeOptions], tyro.conf.
     It needs `pip install hazard_ms[web]`. Only this machine can reach it, and only with the address as it is printed.
     """
     from hazard_ms.agents.base import user_path
-    from hazard_ms.web.serving import serve as run
+    from hazard_ms.cli.web.serving import serve as run
 
     user_path()
     return run(options)

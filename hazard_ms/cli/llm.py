@@ -97,10 +97,10 @@ def page(
     Raises:
         ValueError: for files that are not a trace and a result, and for pictures without a result.
     """
-    from hazard_ms.evaluation.decision_page import decision_page, read_trace
     from hazard_ms.evaluation.regret.causes import beside
+    from hazard_ms.evaluation.regret.decision_page import decision_page, read_trace
     from hazard_ms.evaluation.result import EpisodeResult
-    from hazard_ms.machine.files import make_folder, write
+    from hazard_ms.spec.storage.files import make_folder, write
 
     if output.suffix != ".html":
         raise ValueError(f"output must be a name that ends in .html, got {output.name!r}")

@@ -42,7 +42,7 @@ def report(
     from hazard_ms.evaluation.comparison.page import episode_pages, page
     from hazard_ms.evaluation.comparison.rows import table as table_of_rows
     from hazard_ms.evaluation.comparison.summary import summary, table
-    from hazard_ms.machine.files import make_folder, write
+    from hazard_ms.spec.storage.files import make_folder, write
 
     if not folders:
         raise ValueError("folders must be those that `hazard-ms evaluate -o FOLDER` wrote, got none")
@@ -92,7 +92,7 @@ def regret(
     from hazard_ms.evaluation.regret.command import regret as run
     from hazard_ms.evaluation.regret.table import shares
     from hazard_ms.evaluation.spread import Where
-    from hazard_ms.machine.files import write
+    from hazard_ms.spec.storage.files import write
 
     user_path()
     found = run(folders, Where(workers, backend, address), load)
@@ -129,7 +129,7 @@ def submit(
     from hazard_ms.evaluation.submissions.faults import faults_of
     from hazard_ms.evaluation.submissions.packing import pack, results_of, submission_of
     from hazard_ms.evaluation.submissions.tracks import track_of
-    from hazard_ms.machine.files import make_folder, write
+    from hazard_ms.spec.storage.files import make_folder, write
 
     published = read_hidden(hidden)
     wanted = published or track_of(track)

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import tyro
 
-from hazard_ms import registry
 from hazard_ms.evaluation.choices import SPLITS, flag, offer
+from hazard_ms.spec import registry
 
 FAMILIES = ("indoor", "outdoor", "house", "house_flood", "gale")
 MOST_WORKERS = 64  # processes [ours]
@@ -41,9 +41,9 @@ def make(name: tyro.conf.Positional[str], output: Output = None) -> int:
         name: Name of a scene, kitchen_a/07 say.
         output: File to write; without it, the scene is printed.
     """
-    from hazard_ms.machine.files import write
     from hazard_ms.scenes.schema import to_json
     from hazard_ms.scenes.splits import scene
+    from hazard_ms.spec.storage.files import write
 
     text = to_json(scene(name))
     if output is None:
@@ -61,7 +61,7 @@ def show(name: tyro.conf.Positional[str], output: Output = None) -> int:
         name: Name of a scene, or a JSON file that holds one.
         output: File to write; without it, the scene's name with .png in the current folder.
     """
-    from hazard_ms.cli.scene_checks import find
+    from hazard_ms.validation.scene_checks import find
 
     spec = find(name)  # before what draws it, which takes seconds to load
     from hazard_ms.pictures.scene_plan import save
@@ -90,8 +90,8 @@ def check(
         all: All scenes.
         workers: Processes that check at the same time.
     """
-    from hazard_ms.cli.scene_checks import check_all
     from hazard_ms.spec.checks import whole
+    from hazard_ms.validation.scene_checks import check_all
 
     _only_one_of(bool(names), bool(split or family), all)
     whole(workers, 1, MOST_WORKERS, "workers")
@@ -130,7 +130,7 @@ def reach(
         family: indoor, outdoor, house, house_flood or gale; empty for all.
         all: All scenes.
     """
-    from hazard_ms.cli.scene_checks import print_reach
+    from hazard_ms.validation.scene_checks import print_reach
 
     _only_one_of(bool(names), bool(split or family), all)
     print_reach(names or names_of(split, family), robots)

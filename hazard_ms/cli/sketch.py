@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from hazard_ms import registry
 from hazard_ms.evaluation.choices import PRESETS, flag, offer
+from hazard_ms.spec import registry
 
 if TYPE_CHECKING:
     from hazard_ms.evaluation.result import EpisodeResult
@@ -33,8 +33,8 @@ def fit(
         output: File for the tables; the shipped ones are hazard_ms/sketch/skill_times.json.
         source: Where the numbers come from: commit, machine, number of episodes.
     """
-    from hazard_ms.machine.files import write
     from hazard_ms.sketch import fit_times, skill_times
+    from hazard_ms.spec.storage.files import write
 
     attempts: dict[str, list[fit_times.Attempt]] = defaultdict(list)
     for file in files:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from hazard_ms import registry
 from hazard_ms.evaluation.choices import PRESETS, flag, offer
-from hazard_ms.registry.version import __version__
+from hazard_ms.spec import registry
+from hazard_ms.spec.registry.version import __version__
 
 if TYPE_CHECKING:
     from hazard_ms.learning.cloning import Student
@@ -48,10 +48,10 @@ def bc(
 
     from hazard_ms.learning.cloning import Student, train
     from hazard_ms.learning.scenes import generated
-    from hazard_ms.machine.files import make_folder
     from hazard_ms.sketch.scenes import SCENES, level_ranges, measures_of
     from hazard_ms.sketch.skill_times import load
     from hazard_ms.spec.checks import whole
+    from hazard_ms.spec.storage.files import make_folder
 
     count = whole(scenes, 1, VALIDATION - SCENES, "scenes")
     whole(rounds, 1, 1000, "rounds")
@@ -95,11 +95,11 @@ def clone(
     Raises:
         ValueError: without recorded decisions of the task.
     """
+    from hazard_ms.demonstrations.choices import choices
     from hazard_ms.learning.cloning import Student, imitate
-    from hazard_ms.learning.recorded import choices
-    from hazard_ms.machine.files import make_folder
     from hazard_ms.sketch.scenes import level_ranges, measures_of
     from hazard_ms.spec.checks import whole
+    from hazard_ms.spec.storage.files import make_folder
 
     if measures_of(env_id, physics):
         raise ValueError(f"env_id must be a task without measures, since recordings have none, got {env_id}")
@@ -114,7 +114,7 @@ def clone(
 def _stored(student: Student, output: Path, env_id: str, command: str, facts: dict[str, Any]) -> int:
     """Write the files of a `student`, whom a `command` made, and print the command that scores it; returns 0."""
     from hazard_ms.agents.learned.weights import ENDING, contents
-    from hazard_ms.machine.files import write_together
+    from hazard_ms.spec.storage.files import write_together
 
     path = output / f"bc_{env_id}{ENDING}"
     facts = {"command": f"hazard-ms {command}", "version": __version__, **facts}
@@ -164,10 +164,10 @@ def ppo(
     """
     from hazard_ms.agents.learned.weights import ENDING, load, load_map
     from hazard_ms.learning.scenes import generated
-    from hazard_ms.machine.files import make_folder
     from hazard_ms.sketch.scenes import SCENES, level_ranges, measures_of
     from hazard_ms.sketch.skill_times import load as times_of
     from hazard_ms.spec.checks import one_of, whole
+    from hazard_ms.spec.storage.files import make_folder
 
     try:
         from hazard_ms.learning.checks import curve_of, ended

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from hazard_ms import registry
 from hazard_ms.evaluation.choices import flag, offer
+from hazard_ms.spec import registry
 
 
 def validate(

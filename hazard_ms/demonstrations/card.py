@@ -8,7 +8,7 @@ from pathlib import Path
 from hazard_ms.demonstrations.layout import CARD, FAILURES, FORMAT, MANIFEST
 from hazard_ms.demonstrations.sound import Named
 from hazard_ms.demonstrations.stats import Stats
-from hazard_ms.machine.files import write
+from hazard_ms.spec.storage.files import write
 
 TEXT = """\
 # {env_id}, played by {agent}

@@ -10,8 +10,8 @@ from hazard_ms.demonstrations import claims, store
 from hazard_ms.demonstrations.card import write_card
 from hazard_ms.demonstrations.layout import MANIFEST, Entry, datasets, files_of, plain, shelves
 from hazard_ms.demonstrations.reading import described, differences, entries, whole_entries
-from hazard_ms.machine.files import make_folder
 from hazard_ms.spec.foreign.files import folder_name
+from hazard_ms.spec.storage.files import make_folder
 
 
 def merge(folders: Sequence[Path], output: Path) -> dict[Path, int]:

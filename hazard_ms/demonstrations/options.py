@@ -64,8 +64,8 @@ class RecordOptions:
 
     def _check_cameras(self) -> None:
         """Check the names of cameras. Raises ValueError for those that the robot lacks, and where nothing is filmed."""
-        from hazard_ms.registry import ROBOTS, load
         from hazard_ms.spec.checks import one_of
+        from hazard_ms.spec.registry import ROBOTS, load
 
         assert isinstance(self.env.robot_uids, str)  # its check sees to it
         known = (HEAD, *load(ROBOTS[self.env.robot_uids].robot).mounted_cameras)

@@ -30,9 +30,9 @@ from hazard_ms.evaluation.runner import play
 from hazard_ms.evaluation.spread import spread
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.evaluation.workers import SILENCE, Job, Outcome, Say
-from hazard_ms.machine.files import make_folder
 from hazard_ms.skills.failures import BLOCKED
 from hazard_ms.spec import Goal
+from hazard_ms.spec.storage.files import make_folder
 
 MOST_BLOCKED = 3  # skills of one episode that may have been blocked, for it to be kept [ours]
 REWARD = "normalized_dense"  # that recorded frames hold: what gym.make gives if no other is asked for

@@ -22,8 +22,8 @@ from hazard_ms.demonstrations.layout import (
 )
 from hazard_ms.demonstrations.reading import differences, entries
 from hazard_ms.demonstrations.store import entry_of, parts
-from hazard_ms.machine.files import write
 from hazard_ms.spec.foreign.files import read_foreign
+from hazard_ms.spec.storage.files import write
 
 KEPT, ENTERED, MOVED, MISSING, REMOVED = "whole", "entered", "moved aside", "missing", "unfinished"
 CLAIM = re.compile(r"\.s(\d+)\.(lock|part-\d+)")  # names of what an unfinished episode leaves

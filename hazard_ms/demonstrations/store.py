@@ -35,7 +35,7 @@ from hazard_ms.demonstrations.layout import (
 )
 from hazard_ms.demonstrations.reading import read_episode
 from hazard_ms.evaluation.result import EpisodeResult
-from hazard_ms.machine.files import flush
+from hazard_ms.spec.storage.files import flush
 
 CHECKSUM = "checksum"  # key of episode.json: the hash of everything else in it
 

@@ -16,8 +16,8 @@ from sapien.render import RenderBodyComponent, RenderMaterial
 from hazard_ms.effects.soot import SHEET
 from hazard_ms.scenes.shell import ShellBox, leaf, shell
 from hazard_ms.simulation.drawing.textured_box import surface_material, textured_box
-from hazard_ms.simulation.names import plain_name
 from hazard_ms.spec import SceneSpec
+from hazard_ms.spec.names import plain_name
 
 CUT = 1.1  # height at which walls are cut [m] [ours: above tables, below the handles of cupboards]
 TOP = 0.02  # thickness of the dark top of a cut wall [m] [ours]

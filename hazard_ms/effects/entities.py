@@ -11,7 +11,7 @@ from sapien.render import RenderBodyComponent, RenderMaterial, RenderShapeTriang
 from hazard_ms.effects import meshes
 from hazard_ms.effects.shaders import pack
 from hazard_ms.effects.shaders.water import CUT_IOR, DRY_IOR, WET_IOR
-from hazard_ms.simulation.names import plain_name
+from hazard_ms.spec.names import plain_name
 
 FRAMES_PER_SECOND = 30.0  # of the animation, as videos play
 PREFIX = "effect_"  # of the names of effect entities

@@ -15,10 +15,10 @@ from hazard_ms.effects.shaders.pack import shader_config
 from hazard_ms.effects.streets import street
 from hazard_ms.effects.surroundings import Surroundings
 from hazard_ms.hazards.base import Hazard
-from hazard_ms.machine.progress import say
-from hazard_ms.registry import HAZARDS, load
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec
+from hazard_ms.spec.progress import say
+from hazard_ms.spec.registry import HAZARDS, load
 
 
 class Effects(Protocol):

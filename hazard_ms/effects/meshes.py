@@ -112,3 +112,8 @@ def smoke_column(ceiling: float, seed: float, material: RenderMaterial) -> Rende
     half = np.where(np.arange(EMBERS + PUFFS) < EMBERS, EMBER_SIZE, PUFF_SIZE)
     kinds = np.where(np.arange(EMBERS + PUFFS) < EMBERS, EMBER, SMOKE)
     return quads(anchors, np.column_stack([half, np.full_like(half, ceiling)]), kinds, seeds, material)
+
+
+def unit(vectors: np.ndarray) -> np.ndarray:
+    """`vectors`, [..., 3], as long as 1 [-]; those of no length stay so."""
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9))

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from hazard_ms.episode.encounters import Contacts
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.labels import labels_of
 from hazard_ms.sensing.observations import Observer
 from hazard_ms.simulation.crew import Crew
 from hazard_ms.simulation.drawing.moved_cameras import MovedCameras
 from hazard_ms.simulation.world import World
+from hazard_ms.tasks.episode.encounters import Contacts
 
 
 def enlist(world: World, robots: Iterable[Any]) -> None:

@@ -17,15 +17,8 @@ from hazard_ms.env import assembling, placing
 from hazard_ms.env.control_noise import lead_astray
 from hazard_ms.env.leaves import Leaves
 from hazard_ms.env.spaces import tensors
-from hazard_ms.episode import rewards
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.grasp import Hand
-from hazard_ms.episode.members import Members
-from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.base import loosened
 from hazard_ms.hazards.presets import FREQUENCIES
-from hazard_ms.registry.mitigations import tools_of
-from hazard_ms.robots import MOST_ROBOTS
 from hazard_ms.robots.mounting import mounted
 from hazard_ms.robots.team import team_of
 from hazard_ms.scenes.choice import SceneChoice
@@ -39,6 +32,13 @@ from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec, Task, checks
 from hazard_ms.spec.perturbation import Perturbation
+from hazard_ms.spec.registry import MOST_ROBOTS
+from hazard_ms.spec.registry.mitigations import tools_of
+from hazard_ms.tasks.episode import rewards
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.grasp import Hand
+from hazard_ms.tasks.episode.members import Members
+from hazard_ms.tasks.episode.situation import Situation
 
 SPACING = 60.0  # between the scenes of a batch: nothing reaches a neighbour [m] [ours]
 

@@ -18,13 +18,8 @@ from hazard_ms.env import inputs, keywords, states
 from hazard_ms.env.built import BuiltEnv
 from hazard_ms.env.control_noise import check_mode
 from hazard_ms.env.spaces import bounded
-from hazard_ms.episode import snapshot
 from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.presets import FREQUENCIES, PRESETS
-from hazard_ms.registry import TASKS
-from hazard_ms.registry import affects_agent as acts_on_agent
-from hazard_ms.registry.announce import importable
-from hazard_ms.robots import robot_names
 from hazard_ms.robots.mounting import check_cameras
 from hazard_ms.scenes.choice import SceneChoice, SceneTurns
 from hazard_ms.scenes.files import playing
@@ -33,8 +28,13 @@ from hazard_ms.sensing.observation_table import ObservationTable
 from hazard_ms.simulation.drawing.lighting import LIGHTINGS
 from hazard_ms.spec import checks
 from hazard_ms.spec.perturbation import Perturbation
+from hazard_ms.spec.registry import TASKS
+from hazard_ms.spec.registry import affects_agent as acts_on_agent
+from hazard_ms.spec.registry.announce import importable
+from hazard_ms.spec.registry.robots import robot_names
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import perturbing, task_of
+from hazard_ms.tasks.episode import snapshot
 
 EFFECTS = ("full", "fast", "off")
 

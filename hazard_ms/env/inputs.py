@@ -9,8 +9,8 @@ from torch import Tensor
 
 from hazard_ms.env import states
 from hazard_ms.env.built import BuiltEnv
-from hazard_ms.episode import snapshot
 from hazard_ms.spec import checks
+from hazard_ms.tasks.episode import snapshot
 
 STATES = "reset_to_env_states"
 

@@ -10,17 +10,15 @@ from typing import Any
 import torch
 from mani_skill.envs.sapien_env import BaseEnv
 
-from hazard_ms.effects.raytracing.sensor import with_our_shaders
-from hazard_ms.effects.shaders.pack import shader_config
 from hazard_ms.machine.render_backend import backend
-from hazard_ms.robots import robot_names, robot_uid
+from hazard_ms.sensing.display import camera_settings
 from hazard_ms.sensing.modes import check_obs_mode, check_renderer
 from hazard_ms.spec import Task, checks
+from hazard_ms.spec.registry.robots import robot_names, robot_uid
 
 KNOWN = (*inspect.signature(BaseEnv.__init__).parameters,)[1:]
 RENDER_MODES = ("human", "rgb_array", "sensors", "all")
 REWARD_MODES = ("normalized_dense", "dense", "sparse", "none")
-CAMERAS = ("sensor_configs", "human_render_camera_configs")
 MOST_ENVS = 2**20  # environments of a batch: any larger number must be a mistake [-] [ours]
 NEVER = 0  # reconfiguration_freq of a scene that stays
 
@@ -69,8 +67,7 @@ def for_maniskill(given: dict[str, Any], robot: Any, effects: str, deterministic
         check_obs_mode(given["obs_mode"])
     chosen = backend() if render == "auto" else render
     check_renderer(given.get("obs_mode"), chosen)
-    pack = {} if chosen in ("none", None) else {"shader_pack": shader_config(effects)}
-    cameras = {name: with_our_shaders({**pack, **(given.get(name) or {})}, num_envs, sim) for name in CAMERAS}
+    cameras = camera_settings(given, effects if chosen not in ("none", None) else None, num_envs, sim)
     often = given.get("reconfiguration_freq")
     if often is None:  # only an environment that is rebuilt for every episode is bit-exact (measured)
         often = 1 if deterministic and num_envs == 1 else NEVER

@@ -19,9 +19,9 @@ from hazard_ms.scenes.shell import ShellBox, leaf
 from hazard_ms.scenes.walls import WALLS, runs_along_x
 from hazard_ms.simulation.drawing.textured_box import surface_material, textured_box
 from hazard_ms.simulation.mitigation import hinges
-from hazard_ms.simulation.names import actor_name
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Room
+from hazard_ms.spec.names import actor_name
 
 GONE = -10.0  # height of what is broken [m]
 SLOW = 0.1  # leaves that move less in a frame turn, others are put where they belong [m] [ours]

@@ -10,10 +10,10 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from hazard_ms.robots.robot import Robot
 from hazard_ms.scenes.floor import FLOOR_CELL
 from hazard_ms.scenes.reach import floor_of
 from hazard_ms.simulation import clearance
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Build
 

@@ -12,11 +12,11 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.grasp import Hand
-from hazard_ms.episode.snapshot import WORD
 from hazard_ms.hazards.base import State
 from hazard_ms.spec import checks
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.grasp import Hand
+from hazard_ms.tasks.episode.snapshot import WORD
 
 FARTHEST = 1e6  # largest number of a body or a joint, in its SI unit; its square is far from float32's end [ours]
 LARGEST = {"float": 1e9, "int": 1e13}  # finite numbers of a hazard go up to it, in their units [ours]

@@ -17,12 +17,12 @@ from hazard_ms.evaluation.teams.player import RecordedTeam
 from hazard_ms.evaluation.teams.player import play as play_team
 from hazard_ms.evaluation.watchers import Watcher
 from hazard_ms.evaluation.workers import Job, Outcome, Say, Word
-from hazard_ms.registry import AGENTS, load
 from hazard_ms.skills.actions import wait
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import STOP, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.team import TeamSkills
+from hazard_ms.spec.registry import AGENTS, load
 
 LONGEST_ERROR = 300  # characters of an agent's error that are shown [ours]
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import tyro
 from tyro.constructors import PrimitiveConstructorSpec
 
-from hazard_ms import registry
+from hazard_ms.spec import registry
 from hazard_ms.spec.perturbation import canonical
 
 if TYPE_CHECKING:

@@ -10,12 +10,12 @@ from typing import Annotated, Any
 
 import tyro
 
-from hazard_ms import registry
-from hazard_ms.agents.thinking import CLOCKS, OFF
+from hazard_ms.agents.latency import CLOCKS, OFF
 from hazard_ms.evaluation.choices import AVERTED, BACKENDS, LOOKS, flag, offer
 from hazard_ms.evaluation.choices import EnvOptions as EnvOptions
-from hazard_ms.registry.detectors import DETECTORS, TRUTH
-from hazard_ms.spec.order import natural
+from hazard_ms.spec import registry
+from hazard_ms.spec.names import natural
+from hazard_ms.spec.registry.detectors import DETECTORS, TRUTH
 
 SCENE_FILE = ".json"  # how names of scene files end
 EPISODES = 25  # of every agent, unless another number is asked for: a split of the original has as many scenes

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from hazard_ms.agents.thinking import OFF
+from hazard_ms.agents.latency import OFF
 from hazard_ms.evaluation.averted.loss import averted_of_all, mean_loads, mean_score
 from hazard_ms.evaluation.choices import LOOKS
 from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.options import SweepOptions
 from hazard_ms.evaluation.result import EpisodeResult, machine, versions
-from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.spec import Goal
+from hazard_ms.spec.registry.detectors import TRUTH
 
 MOST_FALLBACKS = 0.05  # share of a model's decisions taken in its place, beyond which its scores are marked [ours]
 HEADINGS = f"{'agent':16s} {'Value':>22s} {'Step':>26s} {'Damage':>22s} {'rescued':>8s} {'s/episode':>10s}"

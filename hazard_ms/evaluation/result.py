@@ -15,18 +15,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
-from hazard_ms.agents.thinking import OFF
+from hazard_ms.agents.latency import OFF
 from hazard_ms.evaluation.averted.loss import Loads, Loss, averted, averted_of_all
 from hazard_ms.evaluation.metrics import Fate, Tally, damage, step, value
 from hazard_ms.evaluation.teams.fields import TEAM_FORMAT, check, told
 from hazard_ms.machine.diagnosis import installed_version
-from hazard_ms.machine.files import write
-from hazard_ms.registry.detectors import TRUTH
-from hazard_ms.registry.version import __version__
 from hazard_ms.sensing.detection.eyes import EYES
 from hazard_ms.spec.foreign import plain
 from hazard_ms.spec.foreign.files import printable, read_foreign, sha256_of
 from hazard_ms.spec.foreign.plain import Within
+from hazard_ms.spec.registry.detectors import TRUTH
+from hazard_ms.spec.registry.version import __version__
+from hazard_ms.spec.storage.files import write
 
 FORMAT = 3  # of results of one robot; goes up when a field changes its meaning, or is new
 READABLE = (2, FORMAT, TEAM_FORMAT)  # formats that are read: files of format 2 tell nothing of what was lost

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from hazard_ms.agents.base import Agent, PrivilegedAgent, agent, counters_of, note_of, staying
-from hazard_ms.agents.thinking import OFF, frames_of, seconds_of
+from hazard_ms.agents.latency import OFF, frames_of, seconds_of
 from hazard_ms.evaluation.averted.account import Account
 from hazard_ms.evaluation.hashes import EVERY, extended
 from hazard_ms.evaluation.metrics import Fate, Tally
@@ -17,13 +17,13 @@ from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import BROKEN, STUCK, DecisionRecord, EpisodeResult, Link, Played, file_hashes
 from hazard_ms.evaluation.teams.fields import TEAM_FORMAT
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.sensing.detection.perception import eyes_of
 from hazard_ms.skills.actions import wait
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import STOP, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.team import TeamSkills
+from hazard_ms.spec.registry.detectors import TRUTH
 
 FRAME_REACHED = "frame reached"  # how a run ends if it was asked to end at a frame
 RUNNING = "running"  # of an episode that has not ended

@@ -20,9 +20,9 @@ from hazard_ms.evaluation.report import report, summary
 from hazard_ms.evaluation.result import BROKEN, FAILED, DamagedResultError, EpisodeResult, file_hashes
 from hazard_ms.evaluation.spread import in_shard, shard, spread
 from hazard_ms.evaluation.workers import Job
-from hazard_ms.machine.files import make_folder
-from hazard_ms.registry.version import __version__
 from hazard_ms.sensing.detection.perception import eyes_of
+from hazard_ms.spec.registry.version import __version__
+from hazard_ms.spec.storage.files import make_folder
 
 LONGEST_NAME = 255  # of a file, in the file systems of Linux and macOS [bytes]
 

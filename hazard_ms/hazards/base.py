@@ -28,6 +28,11 @@ def loosened(hazards: Iterable[Hazard], spec: SceneSpec) -> frozenset[str]:
     return frozenset().union(*(hazard.loosens(spec) for hazard in hazards))
 
 
+def pushes(hazards: Iterable[Hazard]) -> bool:
+    """Whether any of the hazards moves things, so that a simulator is needed."""
+    return any(type(hazard).force is not Hazard.force for hazard in hazards)
+
+
 def none_set(mask: Tensor) -> bool:
     """Whether `mask`, [...], holds nowhere, so that work can be skipped.
 

@@ -20,7 +20,7 @@ from hazard_ms.hazards.flood.realistic.inundation import Inundation
 from hazard_ms.hazards.flood.water import Water
 from hazard_ms.hazards.wind.gale import Gale
 from hazard_ms.hazards.wind.wind import Wind
-from hazard_ms.registry import HAZARDS, find, load
+from hazard_ms.spec.registry import HAZARDS, find, load
 from hazard_ms.spec.severity import MIDDLE, SCALED, SEVERITIES, USUAL, chosen
 
 FREQUENCIES = {  # frames and physics steps per second: a frame is one env step

@@ -10,7 +10,7 @@ import torch
 import warp as wp
 from torch import Tensor
 
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.launch import OPTIONS
 from hazard_ms.simulation.walls import Walls
 
 wp.set_module_options(OPTIONS)

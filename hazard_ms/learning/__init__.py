@@ -1,1 +1,1 @@
-"""Training of policies over options in the sketch. Nothing here scores an agent."""
+"""Training of policies in the sketch, and many environments at once for learners. Nothing here scores an agent."""

@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 from torch import Tensor
 from torch.nn.functional import cross_entropy
 
+from hazard_ms.agents.learned.choices import Choices
 from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
 from hazard_ms.learning.labels import SEEDS, Labels, collect
 from hazard_ms.learning.playing import TRIALS, Player
-from hazard_ms.learning.recorded import Choices
 from hazard_ms.sketch.policies import POLICIES, Policy, fighter, play
 from hazard_ms.sketch.rescues.features import MISSING
 from hazard_ms.sketch.rescues.scene import Floats, SketchScene

@@ -16,7 +16,7 @@ import torch
 from hazard_ms.agents.learned.weights import contents, packed_state, told
 from hazard_ms.learning.checks import Check
 from hazard_ms.learning.ppo import Learner
-from hazard_ms.machine.files import write_together
+from hazard_ms.spec.storage.files import write_together
 
 RESUMABLE, CURVE = ".training", ".csv"
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.learned.set_policy import worthwhile
+from hazard_ms.learning.vector.stable_baselines import SB3VecEnv
 from hazard_ms.sketch.environments.batch import SketchBatch
 from hazard_ms.sketch.environments.choices import OPTIONS
-from hazard_ms.vector.stable_baselines import SB3VecEnv
 
 
 class SketchVecEnv(SB3VecEnv):

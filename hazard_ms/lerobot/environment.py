@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.env.hazard_env import HazardEnv
-from hazard_ms.robots import skill_control_mode
 from hazard_ms.spec.checks import one_of, whole
+from hazard_ms.spec.registry.robots import skill_control_mode
 
 HEAD = "head"
 RENDER_MODES = ("rgb_array",)

@@ -1,1 +1,1 @@
-"""The machine below: drivers, renderers and the cache folder, and a diagnosis where something does not start."""
+"""The machine below: drivers, renderers and processes, and a diagnosis where something does not start."""

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hazard_ms.machine import drivers
-from hazard_ms.machine.cache import home
 from hazard_ms.machine.survey import Machine
 from hazard_ms.machine.vulkan import OLDEST_MESA, Answer
+from hazard_ms.spec.storage.cache import home
 
 PACKAGES = (
     "sapien",

@@ -16,11 +16,11 @@ from dataclasses import asdict
 from pathlib import Path
 
 from hazard_ms.machine import render_backend
-from hazard_ms.machine.cache import home
 from hazard_ms.machine.diagnosis import OPENCVS, PACKAGES, Facts, chosen_backend, examine, installed_version
 from hazard_ms.machine.processes import environment
 from hazard_ms.machine.survey import read_machine
 from hazard_ms.machine.vulkan import ask_vulkan, last_line
+from hazard_ms.spec.storage.cache import home
 
 CHILD_TIMEOUT = 120.0  # [s] importing torch from a cold disk takes most of a minute
 

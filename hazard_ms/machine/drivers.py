@@ -25,10 +25,10 @@ import tempfile
 import urllib.request
 from pathlib import Path
 
-from hazard_ms.machine.files import write
 from hazard_ms.machine.processes import environment
 from hazard_ms.machine.survey import Machine, read_machine
 from hazard_ms.machine.vulkan import Answer, ask_vulkan
+from hazard_ms.spec.storage.files import write
 
 # Library that SAPIEN or a Vulkan driver loads -> Debian's and Ubuntu's package of it.
 LIBRARIES = {"libX11.so.6": "libx11-6", "libXext.so.6": "libxext6", "libvulkan.so.1": "libvulkan1"}

@@ -19,11 +19,11 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from hazard_ms.machine.cache import home
-from hazard_ms.machine.files import write
 from hazard_ms.machine.processes import environment
 from hazard_ms.machine.survey import manifest_paths
 from hazard_ms.machine.vulkan import last_line
+from hazard_ms.spec.storage.cache import home
+from hazard_ms.spec.storage.files import write
 
 BACKENDS = ("gpu", "cpu", "none")
 DEVICES = {"gpu": "cuda", "cpu": "cpu"}  # as SAPIEN calls them

@@ -18,14 +18,14 @@ from tqdm import tqdm
 from hazard_ms.evaluation.choices import RAY
 from hazard_ms.evaluation.spread import spread
 from hazard_ms.evaluation.workers import SILENCE, Job, Outcome, Say, Word
-from hazard_ms.machine.files import flush, make_folder, write, write_together
-from hazard_ms.machine.parts import part_of
 from hazard_ms.perception import coco, layout
 from hazard_ms.perception.card import card, licences
 from hazard_ms.perception.options import CaptureOptions
 from hazard_ms.perception.scene import capture_scene
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.foreign.files import sha256_of
+from hazard_ms.spec.storage.files import flush, make_folder, write, write_together
+from hazard_ms.spec.storage.parts import part_of
 from hazard_ms.tasks import task_of
 from hazard_ms.tasks.spare import spare_names
 

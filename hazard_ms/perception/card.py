@@ -10,10 +10,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.assets.index import asset
 from hazard_ms.perception import layout
 from hazard_ms.perception.rows import COUNTED
 from hazard_ms.perception.states import MOVING
+from hazard_ms.scenes.assets.index import asset
 
 TEXT = """\
 # {env_id}: labelled pictures of hazards

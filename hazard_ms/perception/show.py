@@ -12,13 +12,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.machine.files import make_folder, write
 from hazard_ms.perception import layout
 from hazard_ms.perception.card import numbers
 from hazard_ms.perception.closeups import COLOURS, closeups, state_of
 from hazard_ms.perception.reading import colours_of, mask_of
 from hazard_ms.perception.rows import SHOWN, by_image
 from hazard_ms.spec.checks import whole
+from hazard_ms.spec.storage.files import make_folder, write
 
 MOST_PICTURES, MOST_THINGS = 500, 5000  # of a page [ours]
 EDGE = 384  # of a picture on the page [pixels] [ours]

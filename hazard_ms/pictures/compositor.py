@@ -50,7 +50,7 @@ class Shot:
     third_person: Pixels
     head: Pixels
     level: NDArray[np.floating] | None  # [K, 16, 16], of the task's K hazards in their units
-    told: tuple[float, ...]  # the highest number of each of them, as `hazard_ms.pictures.told` finds it
+    told: tuple[float, ...]  # the highest number of each of them, as `hazard_ms.pictures.peak_levels` finds it
     map: SemanticMap
     names: tuple[str, ...]  # of the things that the map refers to by index
     targets: tuple[Target, ...]

@@ -8,8 +8,8 @@ from pathlib import Path
 import cv2
 
 from hazard_ms.effects.raytracing.still import Image
-from hazard_ms.machine.files import drafts, write
-from hazard_ms.machine.video import FINE, Video
+from hazard_ms.evaluation.video import FINE, Video
+from hazard_ms.spec.storage.files import drafts, write
 
 QUALITY = 82  # of a JPEG, of 100
 

@@ -9,14 +9,13 @@ import numpy as np
 
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.runner import fates
+from hazard_ms.evaluation.video import Video
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.machine.files import Draft
-from hazard_ms.machine.video import Video
 from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Compositor, Shot
 from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.news import News
+from hazard_ms.pictures.peak_levels import peak_levels
 from hazard_ms.pictures.spectator import Spectator
-from hazard_ms.pictures.told import told
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.context import LowLevel
@@ -24,6 +23,7 @@ from hazard_ms.skills.decision import EXPLORE, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.failures import UNFINISHED
 from hazard_ms.skills.mitigations.offers import tools
+from hazard_ms.spec.storage.files import Draft
 
 RATE = 24.0  # pictures of a film per second
 LOOK_EVERY = 4  # pictures of the film for one of the head camera: it is small, and rendering is what takes the time
@@ -125,7 +125,7 @@ class Film(Watcher):
     def _look(self) -> None:
         """Look through the head camera."""
         self._head = self._env.base.observer.look()
-        self._told = told(self._env.base, self._head[1])
+        self._told = peak_levels(self._env, self._head[1])
 
 
 def known_targets(labeller: Labeller, now: tuple[Fate, ...]) -> tuple[Target, ...]:

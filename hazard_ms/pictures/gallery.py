@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 from hazard_ms.effects.raytracing.still import Image
 from hazard_ms.evaluation.options import EpisodeOptions
-from hazard_ms.machine.files import make_folder, write_together
 from hazard_ms.pictures.files import encoded
 from hazard_ms.pictures.frozen_episode import FrozenEpisode
 from hazard_ms.pictures.options import IDLE, RenderOptions
+from hazard_ms.spec.storage.files import make_folder, write_together
 
 SIZE, HEAD_SIZE = (480, 320), (320, 320)  # of pictures from the corner, and through the robot's eyes [pixels]
 QUALITY = 76  # of JPEG: all pictures together stay below 1.5 MB

@@ -11,9 +11,8 @@ import numpy as np
 
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.runner import fates
+from hazard_ms.evaluation.video import Video
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.machine.files import Draft
-from hazard_ms.machine.video import Video
 from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Shot
 from hazard_ms.pictures.drawing import Pixels
 from hazard_ms.pictures.film import LAST_SHOTS, LOOK_EVERY, PATH_STEP, RATE, known_targets
@@ -23,6 +22,7 @@ from hazard_ms.pictures.team_compositor import TeamCompositor
 from hazard_ms.skills.decision import Decision
 from hazard_ms.skills.mitigations.offers import tools
 from hazard_ms.skills.team import TeamSkills
+from hazard_ms.spec.storage.files import Draft
 
 
 class TeamFilm(Watcher):

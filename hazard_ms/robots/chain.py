@@ -15,7 +15,7 @@ import torch
 import warp as wp
 from numpy.typing import NDArray
 
-from hazard_ms.kernels.launch import OPTIONS, Launches
+from hazard_ms.simulation.kernels.launch import OPTIONS, Launches
 from hazard_ms.spec.undocumented import export_kinematic_chain_xml
 
 wp.set_module_options(OPTIONS)

@@ -20,8 +20,8 @@ from torch import Tensor
 
 from hazard_ms.robots.direct import direct, pose_of
 from hazard_ms.robots.planar import FORWARD_STEP, HEAD_FOV, TURN_STEP, PlanarRobot
-from hazard_ms.robots.robot import MountedCamera
 from hazard_ms.robots.without_visuals import without_visuals
+from hazard_ms.simulation.robot import MountedCamera
 from hazard_ms.spec import Build
 
 RIDE_HEIGHT = 0.01  # gap under the base, so that a key or a pen does not wedge under it [m]

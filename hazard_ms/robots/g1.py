@@ -27,7 +27,7 @@ from hazard_ms.robots.direct import direct, pose_of
 from hazard_ms.robots.g1_controllers import LEFT, RIGHT, HandsController, HandsControllerConfig, LegsControllerConfig
 from hazard_ms.robots.g1_description import DOWN, LEG_JOINTS, g1_description
 from hazard_ms.robots.planar import FORWARD_STEP, HEAD_FOV, TURN_STEP, PlanarRobot, turned
-from hazard_ms.robots.robot import MountedCamera
+from hazard_ms.simulation.robot import MountedCamera
 from hazard_ms.spec import Build
 
 # per frame rate [N/Hz] and [N m/Hz]; as Fetch's for its weight: 33 kg reach full speed within two to four frames

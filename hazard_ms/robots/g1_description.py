@@ -17,8 +17,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from hazard_ms.machine.cache import kept_folder
 from hazard_ms.robots.without_visuals import without_visuals
+from hazard_ms.spec.storage.cache import kept_folder
 
 LEG_JOINTS = tuple(
     f"{side}_{part}_joint" for side in ("left", "right") for part in ("hip_pitch", "knee", "ankle_pitch")

@@ -8,8 +8,8 @@ from typing import Any
 import sapien
 from mani_skill.sensors.camera import CameraConfig
 
-from hazard_ms.robots import robot_class
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.registry.robots import robot_class
 
 SIDE = 256  # width and height of a picture if nothing else is asked for, as of the head [pixels]
 NEAR, FAR = 0.01, 100.0  # that are seen [m]

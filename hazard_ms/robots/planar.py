@@ -19,7 +19,7 @@ from torch import Tensor
 
 from hazard_ms.robots.chain import Chain
 from hazard_ms.robots.direct import Part, going_on, parts_of
-from hazard_ms.robots.robot import Robot
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.spec import rounding
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.undocumented import CombinedController

@@ -11,7 +11,7 @@ from typing import Any
 
 from mani_skill.agents.multi_agent import MultiAgent
 
-from hazard_ms.robots import robot_name
+from hazard_ms.spec.registry.robots import robot_name
 
 OWN_BITS = 0b1110  # of collision group 2, by which parts of one robot pass through one another: those of ManiSkill's G1
 OWN_HIGH_BITS = 0b111 << 29  # 29: links of a robot without collisions of its own; 30, 31: what Fetch glides over

@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
-from hazard_ms.machine.cache import kept_folder
+from hazard_ms.spec.storage.cache import kept_folder
 
 
 def without_visuals(urdf: Path) -> Path:

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hazard_ms.assets.index import asset
 from hazard_ms.scenes import schema
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import Box, box_of
 from hazard_ms.scenes.floor import (
     FLOOR_CELL,

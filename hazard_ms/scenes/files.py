@@ -11,7 +11,7 @@ from typing import Any
 from hazard_ms.scenes.schema import LARGEST_FILE, from_json
 from hazard_ms.spec import SceneSpec, Task
 from hazard_ms.spec.foreign.files import printable, read_foreign
-from hazard_ms.spec.order import natural
+from hazard_ms.spec.names import natural
 
 MOST_FILES = 2000  # that one folder may hold
 

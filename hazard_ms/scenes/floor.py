@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from hazard_ms.assets.index import asset
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import Array, Box, box_of
 from hazard_ms.scenes.shell import leaf, shell
 from hazard_ms.scenes.walls import WALLS, on_wall, runs_along_x, thickness_of

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from scipy import ndimage
 
-from hazard_ms.assets.index import asset
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import box_of
 from hazard_ms.scenes.floor import FLOOR_CELL, Grid, boxes_of, cell_of, cells, free_for, halls
 from hazard_ms.spec import Body, Build, SceneSpec, Vec2

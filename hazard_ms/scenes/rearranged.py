@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import Box, box_of, free_of, turned, yaw_of
 from hazard_ms.scenes.floor import cell_of, connected, doorways, free_floor, partitions
 from hazard_ms.scenes.generate.arrangement import MIN_GAP

@@ -1,11 +1,11 @@
-"""Boxes turned in any way, as corners, and the distance between two of them. All lengths are in metres."""
+"""Things as solids: size, mass and parts, boxes turned in any way, the distance of two. All lengths are in metres."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.assets.index import asset
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import matrix_of
 from hazard_ms.spec import Body, Fixture
 
@@ -20,13 +20,21 @@ def corners_of(thing: Body | Fixture) -> Corners:
     return np.asarray((_UNIT * size) @ matrix_of(thing.rotation).T + thing.position)
 
 
+def extent_of(thing: Body | Fixture) -> tuple[float, float, float]:
+    """Edge lengths of the thing's box along its own axes [m]."""
+    x, y, z = (size * factor for size, factor in zip(asset(thing.asset).extent, thing.scale, strict=True))
+    return x, y, z
+
+
 def half_size(thing: Body | Fixture) -> NDArray[np.float64]:
     """Half the edge lengths of the box around a thing, along its own axes [m], [3]."""
     return np.asarray(np.array(asset(thing.asset).extent) * thing.scale / 2)
 
 
 def mass_of(thing: Body | Fixture) -> float:
-    """The mass of a thing's model [kg], scaled with its volume."""
+    """Mass of the thing [kg]: the scene's own, else the asset's, scaled with its volume."""
+    if isinstance(thing, Body) and thing.mass is not None:
+        return thing.mass
     return asset(thing.asset).mass * float(np.prod(thing.scale))
 
 

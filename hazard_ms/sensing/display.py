@@ -2,17 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hazard_ms.effects.entities import FRAMES_PER_SECOND
 from hazard_ms.effects.looks import Looks, tell_of_first_picture
-from hazard_ms.effects.raytracing.sensor import take_over
-from hazard_ms.episode.situation import Situation
+from hazard_ms.effects.raytracing.sensor import take_over, with_our_shaders
+from hazard_ms.effects.shaders.pack import shader_config
 from hazard_ms.simulation.building import extent_of_bag, pose_of
 from hazard_ms.simulation.drawing.lighting import Lighting
 from hazard_ms.simulation.drawing.moved_cameras import MovedCameras
 from hazard_ms.simulation.world import World
+from hazard_ms.tasks.episode.situation import Situation
+
+CAMERAS = ("sensor_configs", "human_render_camera_configs")  # ManiSkill's keywords of cameras
+
+
+def camera_settings(
+    given: Mapping[str, Any], effects: str | None, num_envs: int, sim_backend: str
+) -> dict[str, dict[str, Any]]:
+    """ManiSkill's keywords of cameras, complete: those `given`, drawn with our shaders; `effects` None: without.
+
+    Raises ValueError for unknown `effects`, and as `with_our_shaders` does.
+    """
+    pack = {} if effects is None else {"shader_pack": shader_config(effects)}
+    return {name: with_our_shaders({**pack, **(given.get(name) or {})}, num_envs, sim_backend) for name in CAMERAS}
 
 
 class Display:

@@ -9,7 +9,6 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.situation import Situation
 from hazard_ms.sensing.camera import NOTHING, metres, relabel
 from hazard_ms.sensing.display import Display
 from hazard_ms.sensing.hazard_image import enlarge, hazard_images, sample_points
@@ -20,6 +19,7 @@ from hazard_ms.sensing.senses.senses import DEGRADED, THERMAL, Frame, Senses
 from hazard_ms.sensing.target_table import TargetTable
 from hazard_ms.sensing.view import View
 from hazard_ms.spec import Term
+from hazard_ms.tasks.episode.situation import Situation
 
 SLOTS = 32  # columns of the target table in observations: an episode has 5 to 29 targets (docs/benchmark.md 1)
 
@@ -127,10 +127,14 @@ class Observer:
         """The picture `colour`, [E, H, W, 3], of the camera `name` as its sensor gives it."""
         return noisy(colour, self.noise, self.situation.world.chance, name) if self.noise else colour
 
+    def labelled(self, segmentation: Tensor) -> Tensor:
+        """Labels, int64 [E, H, W], of any camera's `segmentation` (see `hazard_ms.sensing.camera`)."""
+        return relabel(segmentation, self.labels)
+
     def _frame(self, depth: Tensor, seen: dict[str, Tensor], params: dict[str, Tensor]) -> Frame:
         """What the head camera truly sees; `depth` as ManiSkill gives it, [E, H, W, 1]."""
         ids = seen["segmentation"] if "segmentation" in seen else self._textures(segmentation=True)["segmentation"]
-        labels = relabel(ids, self.labels)
+        labels = self.labelled(ids)
         return Frame(
             depth[..., 0], labels, params["intrinsic_cv"], params["cam2world_gl"], self.situation.agent.head_camera
         )

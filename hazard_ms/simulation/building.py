@@ -16,15 +16,16 @@ from mani_skill.utils.structs import Actor
 from mani_skill.utils.structs.pose import Pose
 from sapien.physx import PhysxRigidDynamicComponent as Dynamic
 
-from hazard_ms.assets.index import asset, asset_path
-from hazard_ms.assets.primitives import colour
-from hazard_ms.assets.rows import Asset
+from hazard_ms.scenes.assets.index import asset, asset_path
+from hazard_ms.scenes.assets.primitives import colour
+from hazard_ms.scenes.assets.rows import Asset
 from hazard_ms.scenes.shell import shell
+from hazard_ms.scenes.solids import extent_of, mass_of
 from hazard_ms.simulation.drawing.textured_box import surface_material, textured_box
-from hazard_ms.simulation.names import actor_name
 from hazard_ms.simulation.physx import CpuHandles, GpuHandles
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Body, Fixture, Room, SceneSpec
+from hazard_ms.spec.names import actor_name
 
 # [-] Coulomb, static and dynamic: wood on wood 0.25-0.5, most household pairs 0.3-0.6 (Engineering ToolBox) [ours]
 FRICTION = 0.5
@@ -37,23 +38,10 @@ BAG_MODEL, BAG_SCALE = "basket_2", 0.8  # the asset that shows the bag, and the 
 GLIDE_BITS = (30, 31, 27, 28, 24, 25, 21, 22)
 
 
-def extent_of(thing: Body | Fixture) -> tuple[float, float, float]:
-    """Edge lengths of the thing's box along its own axes [m]."""
-    x, y, z = (size * factor for size, factor in zip(asset(thing.asset).extent, thing.scale, strict=True))
-    return x, y, z
-
-
 def extent_of_bag() -> tuple[float, float, float]:
     """Edge lengths of the bag that the agent carries [m]."""
     x, y, z = (size * BAG_SCALE for size in asset(BAG_MODEL).extent)
     return x, y, z
-
-
-def mass_of(thing: Body | Fixture) -> float:
-    """Mass of the thing [kg]: the scene's own, else the asset's, scaled with its volume."""
-    if isinstance(thing, Body) and thing.mass is not None:
-        return thing.mass
-    return asset(thing.asset).mass * float(np.prod(thing.scale))
 
 
 def make_world(specs: tuple[SceneSpec, ...], device: torch.device, loose: Sequence[frozenset[str]] = ()) -> World:

@@ -11,10 +11,10 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.containers import BASKET_HIGH as BASKET_HIGH
-from hazard_ms.kernels.containers import BASKET_LOW as BASKET_LOW
-from hazard_ms.kernels.containers import find
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.containers import BASKET_HIGH as BASKET_HIGH
+from hazard_ms.simulation.kernels.containers import BASKET_LOW as BASKET_LOW
+from hazard_ms.simulation.kernels.containers import find
 from hazard_ms.simulation.world import World
 
 CATEGORY = "cart"

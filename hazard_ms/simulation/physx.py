@@ -19,8 +19,8 @@ import torch
 from sapien.physx import PhysxRigidDynamicComponent
 from torch import Tensor
 
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.reading import unpack
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.reading import unpack
 
 if TYPE_CHECKING:
     from hazard_ms.simulation.world import World

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import torch
 from torch import Tensor
 
-from hazard_ms.kernels.launch import Launches
+from hazard_ms.simulation.kernels.launch import Launches
 from hazard_ms.spec import Opening, Partition, SceneSpec
 
 NOWHERE = 1e6  # where a wall that does not exist is [m]: farther than any place

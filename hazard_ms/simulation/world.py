@@ -15,11 +15,11 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.kernels.launch import Launches
 from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.crew import Crew
 from hazard_ms.simulation.handles import Handles
 from hazard_ms.simulation.jet import Jet
+from hazard_ms.simulation.kernels.launch import Launches
 from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.mitigation.equipment import Equipment
 from hazard_ms.simulation.openings import Openings

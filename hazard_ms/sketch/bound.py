@@ -16,11 +16,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.bound import never_damaged
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import Spot, StaticTravel, Travel
-from hazard_ms.simulation import building
+from hazard_ms.scenes import solids
+from hazard_ms.sketch.planning.bound import never_damaged
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import Spot, StaticTravel, Travel
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.spec import Build, SceneSpec
 from hazard_ms.spec.robot import GRASP_REACH
@@ -90,7 +90,7 @@ def easiest(
 def _reach(spec: SceneSpec, build: Build) -> Metres:
     """Largest horizontal distance from the base [m] at which a hand can touch each thing, [B]."""
     far = max(ahead for ahead, _ in (build.shoulder, *build.stoops)) + build.reach + GRASP_REACH
-    return np.array([far + np.linalg.norm(building.extent_of(thing)) / 2 for thing in spec.things])
+    return np.array([far + np.linalg.norm(solids.extent_of(thing)) / 2 for thing in spec.things])
 
 
 def _nearest(ways: Metres, start: Metres, reach: Metres) -> Metres:

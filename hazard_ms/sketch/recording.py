@@ -20,21 +20,22 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from hazard_ms.episode import snapshot
-from hazard_ms.episode.episode import Episode
-from hazard_ms.hazards.base import Hazard, loosened
+from hazard_ms.hazards.base import loosened, pushes
 from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.hazards.presets import FREQUENCIES
-from hazard_ms.machine.cache import home
+from hazard_ms.scenes import solids
 from hazard_ms.scenes.schema import to_json
 from hazard_ms.simulation import bare_scene, building
 from hazard_ms.simulation.world import World
 from hazard_ms.sketch.timeline import STRIDE, Timeline, read
 from hazard_ms.spec import SceneSpec, Task
+from hazard_ms.spec.storage.cache import home
+from hazard_ms.tasks.episode import snapshot
+from hazard_ms.tasks.episode.episode import Episode
 
 STILL = 0.01  # what never gets farther than this from its start is at rest [m] [ours]
 NOWHERE = 1e3  # where the hand is put when nobody acts [m]
-LAWS = ("hazards", "kernels", "simulation", "episode")  # folders whose code decides what happens
+LAWS = ("hazards", "simulation", "tasks/episode")  # folders whose code decides what happens
 PACKAGE = Path(__file__).parents[1]
 
 
@@ -75,11 +76,11 @@ def record(
         raise ValueError(f"seeds must be {len(specs)}, one for each scene, got {len(seeds)}")
     length = task.max_frames if frames is None else frames
     if pushes(task.hazards):
-        courses = [_simulated(task, physics, spec, seed) for spec, seed in zip(specs, seeds, strict=True)]
+        rollouts = [_simulated(task, physics, spec, seed) for spec, seed in zip(specs, seeds, strict=True)]
     else:
         world = building.make_world(tuple(specs), torch.device("cpu"))
-        courses = [begun(task, physics, world, seeds)]
-    made = [line for course in courses for line in course.run(length)]
+        rollouts = [begun(task, physics, world, seeds)]
+    made = [line for rollout in rollouts for line in rollout.run(length)]
     return [
         dataclasses.replace(line, task=task.name, physics=physics, suite=suite_of(task, physics, spec, length))
         for line, spec in zip(made, specs, strict=True)
@@ -92,27 +93,22 @@ def ahead(env: Running, frames: int | None = None) -> Timeline:
     `frames`: how long, by default until the task's limit. Things in the hand stay there.
     """
     left = max(0, env.task.max_frames - int(env.world.frame[0])) if frames is None else frames
-    return dataclasses.replace(course_of(env).run(left)[0], task=env.task.name, physics=env.physics)
+    return dataclasses.replace(rollout_of(env).run(left)[0], task=env.task.name, physics=env.physics)
 
 
-def course_of(env: Running, copies: int = 1) -> Course:
-    """The course of the one running episode of `env` from its present on, in equal `copies` without a simulator."""
-    course = Course(_copied(env, copies), 1.0 / FREQUENCIES[env.physics][0])
+def rollout_of(env: Running, copies: int = 1) -> Rollout:
+    """The rollout of the one running episode of `env` from its present on, in equal `copies` without a simulator."""
+    rollout = Rollout(_copied(env, copies), 1.0 / FREQUENCIES[env.physics][0])
     if pushes(env.task.hazards):
         free = env.world.movable[0] & ~env.world.held[0] & ~env.world.away[0]
         past = recorded(env.task, env.physics, env.specs[0], int(env.world.chance.seed[0]))
-        course.drift = _drift(past, int(env.world.frame[0]), free)
-    return course
-
-
-def pushes(hazards: Sequence[Hazard]) -> bool:
-    """Whether any of the hazards moves things, so that a simulator is needed."""
-    return any(type(hazard).force is not Hazard.force for hazard in hazards)
+        rollout.drift = _drift(past, int(env.world.frame[0]), free)
+    return rollout
 
 
 def suite_of(task: Task, physics: str, spec: SceneSpec, frames: int | None = None) -> str:
     """A digest of all that determines a timeline, except the seed: scene, models, hazards, laws and length."""
-    sizes = [(building.extent_of(thing), building.mass_of(thing)) for thing in spec.things]
+    sizes = [(solids.extent_of(thing), solids.mass_of(thing)) for thing in spec.things]
     length = task.max_frames if frames is None else frames
     parts = (task.name, repr(task.hazards), FREQUENCIES[physics], length, STRIDE, to_json(spec), sizes, _laws())
     return hashlib.sha256("\0".join(map(str, parts)).encode()).hexdigest()
@@ -121,11 +117,11 @@ def suite_of(task: Task, physics: str, spec: SceneSpec, frames: int | None = Non
 @functools.lru_cache(maxsize=1)
 def _laws() -> str:
     """A digest of the code that decides what happens."""
-    sources = (path.read_bytes() for name in LAWS for path in sorted((PACKAGE / name).rglob("*.py")))
-    return hashlib.sha256(b"\0".join(sources)).hexdigest()
+    files = (path for name in LAWS for path in sorted((PACKAGE / name).rglob("*.py")))
+    return hashlib.sha256(b"\0".join(path.read_bytes() for path in files)).hexdigest()
 
 
-class Course:
+class Rollout:
     """E episodes in which nobody acts, with or without simulators; those that drift do so alike."""
 
     def __init__(self, episode: Episode, frame_seconds: float) -> None:
@@ -193,28 +189,28 @@ def _flames(episode: Episode, e: int) -> tuple[NDArray[np.int32], NDArray[np.flo
     return np.zeros(0, np.int32), np.zeros((0, 2), np.float32)
 
 
-def begun(task: Task, physics: str, world: World, seeds: Sequence[int]) -> Course:
+def begun(task: Task, physics: str, world: World, seeds: Sequence[int]) -> Rollout:
     """Episodes at frame 0."""
     episode, rows = Episode(world, task.hazards, task.safe_place), torch.arange(world.num_envs)
     episode.begin(rows, torch.tensor(list(seeds)))
     episode.begin_hazards(rows)
-    return Course(episode, 1.0 / FREQUENCIES[physics][0])
+    return Rollout(episode, 1.0 / FREQUENCIES[physics][0])
 
 
-def _simulated(task: Task, physics: str, spec: SceneSpec, seed: int) -> Course:
+def _simulated(task: Task, physics: str, spec: SceneSpec, seed: int) -> Rollout:
     """One episode at frame 0 in a simulator of its own, without a robot."""
     control, rate = FREQUENCIES[physics]
     scene = bare_scene.build(spec, rate=rate, loose=loosened(task.hazards, spec))
-    course = begun(task, physics, scene.world, (seed,))
+    rollout = begun(task, physics, scene.world, (seed,))
 
     def physics_step() -> None:
         for _ in range(rate // control):
-            course.episode.push(1.0 / rate)
+            rollout.episode.push(1.0 / rate)
             scene.step()
         scene.world.read()
 
-    course.physics_step = physics_step
-    return course
+    rollout.physics_step = physics_step
+    return rollout
 
 
 def _copied(env: Running, copies: int) -> Episode:

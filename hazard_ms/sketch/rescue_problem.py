@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.hazards.places import MOVED
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import MovingTravel, StaticTravel, Travel, straight_line
-from hazard_ms.simulation import building
+from hazard_ms.scenes import solids
 from hazard_ms.sketch import skill_times
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import MovingTravel, StaticTravel, Travel, straight_line
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.sketch.travel.ways import SETTLE, TURN, WALK, Ways
 from hazard_ms.skills.motor.walking import ARRIVED
@@ -44,7 +44,7 @@ class RescueScene:
         self.pick, self.bag, self.cart = (
             times.typical(skill)[1] for skill in (skill_times.PICK_UP, skill_times.BAG, skill_times.CART)
         )
-        self.edges = np.array([np.hypot(*building.extent_of(thing)[:2]) / 2 for thing in spec.things])  # [m], [B]
+        self.edges = np.array([np.hypot(*solids.extent_of(thing)[:2]) / 2 for thing in spec.things])  # [m], [B]
 
     def problem(
         self,

@@ -12,16 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from hazard_ms.robots import robot_class
+from hazard_ms.scenes.solids import extent_of
 from hazard_ms.scenes.splits import SCENES, spare_scene
-from hazard_ms.simulation.building import extent_of
 from hazard_ms.sketch.fires.making import Measures, has_measures
-from hazard_ms.sketch.keeping import kept
 from hazard_ms.sketch.limits import limit_of
 from hazard_ms.sketch.recording import recorded, suite_of
 from hazard_ms.sketch.rescues.grid import grid_of
 from hazard_ms.sketch.rescues.scene import LOOKS, SPOTS, Floats, Ints, SketchScene, spot_offsets
 from hazard_ms.sketch.rescues.sites import Sites
+from hazard_ms.sketch.scene_cache import kept
 from hazard_ms.sketch.sight import FETCH, G1, Sight
 from hazard_ms.sketch.timeline import STRIDE, Timeline
 from hazard_ms.sketch.travel.ways import Ways
@@ -29,6 +28,7 @@ from hazard_ms.skills.options.landmarks import MIN_SPACING
 from hazard_ms.spec import SceneSpec, Task
 from hazard_ms.spec.catalogue import CATEGORIES, value_of
 from hazard_ms.spec.checks import one_of, whole
+from hazard_ms.spec.registry.robots import robot_class
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import task_of
 

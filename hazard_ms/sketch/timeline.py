@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.machine import files
-from hazard_ms.sketch import columns
+from hazard_ms.sketch import array_files
 from hazard_ms.spec.foreign.files import read_foreign
+from hazard_ms.spec.storage import files
 
 FORMAT = 1  # goes up when older files can no longer be read
 STRIDE = 10  # frames from sample to sample: water and flames change every 10 frames [ours]
@@ -99,7 +99,7 @@ class Timeline:
 
     def to_bytes(self) -> bytes:
         """The record as the content of a file."""
-        return columns.to_bytes(FORMAT, {f.name: getattr(self, f.name) for f in fields(self)})
+        return array_files.to_bytes(FORMAT, {f.name: getattr(self, f.name) for f in fields(self)})
 
     def write(self, path: Path) -> None:
         """Write the record to a file, whole or not at all. Raises ValueError where it cannot be written."""
@@ -110,12 +110,12 @@ class Timeline:
 def from_bytes(content: bytes) -> Timeline:
     """The record that `to_bytes` gave. Raises ValueError for any other content."""
     what = "a timeline"
-    return columns.made_from(Timeline, what, columns.from_bytes(what, FORMAT, content), PLAIN)
+    return array_files.made_from(Timeline, what, array_files.from_bytes(what, FORMAT, content), PLAIN)
 
 
 def read(path: Path) -> Timeline:
     """The record in a file. Raises ValueError that names the file if there is none, or if it is damaged."""
     try:
-        return from_bytes(read_foreign(path, columns.LARGEST))
+        return from_bytes(read_foreign(path, array_files.LARGEST))
     except ValueError as error:
         raise ValueError(f"{path} must hold a timeline: {error}") from None

@@ -6,8 +6,6 @@ from typing import cast
 
 import numpy as np
 
-from hazard_ms.registry import load
-from hazard_ms.registry.mitigations import MITIGATIONS
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Result
 from hazard_ms.skills.mitigations.approach import walk_into
@@ -16,6 +14,8 @@ from hazard_ms.skills.motor.grasping import pick_up
 from hazard_ms.skills.motor.motion import turn_by, wrap
 from hazard_ms.skills.motor.stowing import drop
 from hazard_ms.skills.motor.walking import WALK_FRAMES, walk_to
+from hazard_ms.spec.registry import load
+from hazard_ms.spec.registry.mitigations import MITIGATIONS
 
 LOOKS = 12  # number of looks when looking around (docs/benchmark.md 3)
 

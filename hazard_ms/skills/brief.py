@@ -7,13 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from hazard_ms.robots import robot_name
 from hazard_ms.sensing.detection.eyes import FAR
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.registry.robots import robot_name
 
 RANDOM_BYTES = 8  # size of an agent's random seed [bytes]
 

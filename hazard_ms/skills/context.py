@@ -8,14 +8,14 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.grasp import Hand, distance_to_boxes, graspable
-from hazard_ms.robots.robot import Robot
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.door_memory import DoorMemory
 from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.world import World
 from hazard_ms.skills.decision import Result
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.grasp import Hand, distance_to_boxes, graspable
 
 LowLevel = NDArray[np.float32]  # an action of the environment
 Skill = Generator[LowLevel, None, Result]  # yields actions and returns the outcome

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.registry.mitigations import MITIGATIONS
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.target_table import Target
+from hazard_ms.spec.registry.mitigations import MITIGATIONS
 
 WALK_TO, WALK_ONE_STEP, PICK_UP, DROP, EXPLORE, STOP = "walk_to", "walk_one_step", "pick_up", "drop", "explore", "stop"
 VERBS = (WALK_TO, WALK_ONE_STEP, PICK_UP, DROP, EXPLORE, STOP)

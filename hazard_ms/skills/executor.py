@@ -10,7 +10,6 @@ import torch
 
 from hazard_ms.env import HazardEnv
 from hazard_ms.env.time_limit import is_bare
-from hazard_ms.robots import skill_control_mode
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.sensing.detection.perception import TRUTH, camera_of
 from hazard_ms.sensing.detection.perception import perception as perception_of
@@ -22,6 +21,7 @@ from hazard_ms.skills.decision import STOP, Action, Decision, Result
 from hazard_ms.skills.failures import EPISODE_OVER
 from hazard_ms.skills.knowledge import Knowledge
 from hazard_ms.skills.mitigations.offers import check
+from hazard_ms.spec.registry.robots import skill_control_mode
 
 
 class SkillEnv:

@@ -16,7 +16,7 @@ CART_UNREACHABLE = "cart_unreachable"  # the cart is not within reach
 NOT_RESCUED = "not_rescued"  # let go, but it did not end in the bag or the cart
 EPISODE_OVER = "episode_over"  # the time limit came first
 
-# Of mitigations (hazard_ms.registry.mitigations)
+# Of mitigations (hazard_ms.spec.registry.mitigations)
 TOO_HEAVY = "too_heavy"  # more than the arm can carry
 NO_LEAF = "no_leaf"  # a doorway, or a window or an outer door that robots cannot move
 BROKEN = "broken"  # the leaf or the pane is gone

@@ -9,20 +9,20 @@ from typing import Any
 
 import numpy as np
 
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.grasp import Hand
-from hazard_ms.registry.mitigations import TELL
-from hazard_ms.robots.robot import Robot
 from hazard_ms.sensing.detection.perception import Perception
 from hazard_ms.sensing.observations import Observer
 from hazard_ms.sensing.semantic_map import CEILING, LINTELS, SemanticMap, cells_for
 from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.world import World
 from hazard_ms.skills.brief import Brief, brief_of, has_several_rooms
 from hazard_ms.skills.context import Rescuer, Stage
 from hazard_ms.skills.decision import PICK_UP, Action, Decision, Images, Message, Result, Teammate, available
 from hazard_ms.skills.failures import NOT_A_TARGET, REFUSED
 from hazard_ms.skills.mitigations.offers import offered, tools, verbs_of
+from hazard_ms.spec.registry.mitigations import TELL
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.grasp import Hand
 
 
 @dataclass

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.robots.robot import Robot
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.skills.context import Stage
 
 APART = 2.5  # distance of two bases beyond which arms cannot meet: both are 1.1 m long at most [m] [ours]

@@ -15,8 +15,6 @@ import gymnasium as gym
 
 from hazard_ms.env import HazardEnv
 from hazard_ms.env.time_limit import is_bare
-from hazard_ms.registry.mitigations import TELL
-from hazard_ms.robots import robot_names, skill_control_mode
 from hazard_ms.sensing.detection.perception import TRUTH, perception
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.brief import Brief
@@ -38,6 +36,8 @@ from hazard_ms.skills.knowledge import Knowledge, OneRobot
 from hazard_ms.skills.mitigations.offers import check
 from hazard_ms.skills.spacing import would_touch
 from hazard_ms.skills.telling import named_in
+from hazard_ms.spec.registry.mitigations import TELL
+from hazard_ms.spec.registry.robots import robot_names, skill_control_mode
 
 WALKING, REACHING = (WALK_TO, WALK_ONE_STEP), (PICK_UP, DROP)  # verbs
 PASSING = 1.3  # distance of two bases within which a robot that may reach out lets one that walks pass [m] [ours]

@@ -16,7 +16,7 @@ Bound = float | tuple[float, ...]  # of all numbers of a quantity, or of each on
 class Term:
     """One entry of what an environment tells: of its observations, or of `info`.
 
-    Functions of a task get the `hazard_ms.episode.situation.Situation` of all E environments.
+    Functions of a task get the `hazard_ms.tasks.episode.situation.Situation` of all E environments.
     """
 
     name: str
@@ -39,7 +39,7 @@ class SafePlace:
 
     name: str  # "bag"
     text: str  # in words, for agents: "the bag that you carry"
-    # World -> (Drop -> things that are safe there now, [E, B], bool); see hazard_ms.episode.safe_places
+    # World -> (Drop -> things that are safe there now, [E, B], bool); see hazard_ms.tasks.episode.safe_places
     rule: Callable[[Any], Callable[[Any], Any]]
     containers: tuple[str, ...] = ()  # categories of the things that have to be reached in order to put something there
     carried: bool = False  # the agent takes along what is safe, so that it is no longer in the scene
@@ -83,7 +83,7 @@ class Task:
     several_rooms: bool = False
     # (Situation, environments that begin, [R]) -> None: puts robots elsewhere than their scenes say; None: it does not
     arrange: Callable[[Any, Any], None] | None = None
-    # verbs of `hazard_ms.registry.mitigations` that its agents have, beyond the six of the benchmark
+    # verbs of `hazard_ms.spec.registry.mitigations` that its agents have, beyond the six of the benchmark
     mitigations: tuple[str, ...] = ()
     # a hand that shuts at the handle of a door holds it, and the leaf follows the hand; False: skills alone turn leaves
     doors_by_hand: bool = False

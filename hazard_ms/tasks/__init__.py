@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from hazard_ms.hazards.presets import severity_for
-from hazard_ms.registry import TASKS, find, load
 from hazard_ms.spec import Task
+from hazard_ms.spec.registry import TASKS, find, load
 from hazard_ms.spec.severity import USUAL
 
 

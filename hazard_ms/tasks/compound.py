@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.hazards.presets import hazard
-from hazard_ms.registry import HAZARDS
 from hazard_ms.spec import Task
+from hazard_ms.spec.registry import HAZARDS
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks.rescue import rescue
 

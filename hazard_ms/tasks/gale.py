@@ -12,13 +12,13 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.safe_places import CART
 from hazard_ms.hazards.presets import gale
 from hazard_ms.scenes import splits
 from hazard_ms.spec import Task, Term
 from hazard_ms.spec.catalogue import DAMAGED_SHARE
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import words
+from hazard_ms.tasks.episode.safe_places import CART
 from hazard_ms.tasks.rescue import RESCUE, rescue
 
 FAMILY = "gale"

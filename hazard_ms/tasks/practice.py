@@ -16,17 +16,17 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.safe_places import BAG
-from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.presets import PRESETS
-from hazard_ms.registry import register_task
 from hazard_ms.spec import AgentStart, Body, Fixture, Goal, Room, SceneSpec, Task, Term, rounding
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.registry import register_task
 from hazard_ms.spec.severity import USUAL
 from hazard_ms.tasks import practice_doors as doors
 from hazard_ms.tasks import practice_rewards as rewards
 from hazard_ms.tasks import words
 from hazard_ms.tasks.compound import acting
+from hazard_ms.tasks.episode.safe_places import BAG
+from hazard_ms.tasks.episode.situation import Situation
 from hazard_ms.tasks.practice_terms import FETCH_TERMS, PICK_UP_TERMS, STOW_TERMS, WALK_TO_TERMS
 
 ROOM = (7.0, 6.0)  # of a practice room [m] [ours]

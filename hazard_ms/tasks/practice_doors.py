@@ -15,11 +15,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.situation import Situation
 from hazard_ms.spec import AgentStart, Body, Fixture, Goal, Opening, Partition, Room, SceneSpec, Term, rounding
 from hazard_ms.spec.robot import GRASP_REACH
 from hazard_ms.tasks import practice_rewards as rewards
 from hazard_ms.tasks import practice_terms as terms
+from hazard_ms.tasks.episode.situation import Situation
 
 ROOM = (7.0, 6.0)  # of both rooms together [m] [ours]
 WALL = (3.0, 4.0)  # least and most distance of the wall from the west or the south, in which there is a door [m] [ours]

@@ -11,11 +11,11 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.grasp import distance_to_boxes
-from hazard_ms.episode.safe_places import BAG_REACH
-from hazard_ms.episode.situation import Situation
 from hazard_ms.spec import Goal, Term, rounding
 from hazard_ms.spec.robot import GRASP_REACH
+from hazard_ms.tasks.episode.grasp import distance_to_boxes
+from hazard_ms.tasks.episode.safe_places import BAG_REACH
+from hazard_ms.tasks.episode.situation import Situation
 
 WALK_FRAMES, PICK_UP_FRAMES = 450, 120  # of an episode: 7 m at full speed; a skill's pick-up takes 81 at most [ours]
 STOW_FRAMES, FETCH_FRAMES = 240, 750  # twice as long as a skill, or a walk and that, takes at most [ours]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.grasp import conjugate, multiply
-from hazard_ms.episode.situation import Situation
 from hazard_ms.spec import Term
 from hazard_ms.tasks import practice_rewards as rewards
+from hazard_ms.tasks.episode.grasp import conjugate, multiply
+from hazard_ms.tasks.episode.situation import Situation
 
 AROUND = 3  # nearest pieces of furniture that a walk observes
 FAR = 10.0  # away, where what is no furniture counts as being [m]

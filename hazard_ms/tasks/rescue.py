@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hazard_ms.episode import rewards
-from hazard_ms.episode.safe_places import BAG, CART
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.scenes import splits
 from hazard_ms.spec import Goal, Task, Term
 from hazard_ms.spec.catalogue import HIGH_VALUE
+from hazard_ms.tasks.episode import rewards
+from hazard_ms.tasks.episode.safe_places import BAG, CART
 from hazard_ms.tasks.terms import terms
 from hazard_ms.tasks.words import RESCUES, worded
 

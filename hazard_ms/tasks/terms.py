@@ -11,10 +11,10 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.spec import Term
 from hazard_ms.spec.catalogue import HIGH_VALUE, LIMITS
+from hazard_ms.tasks.episode.situation import Situation
 
 PROPERTIES = ("flammable", "waterproof", "ignition_temperature")  # attributes of the catalogue; the last [C]
 HOTTEST = float(LIMITS["ignition_temperature"][1])  # highest ignition temperature [C]

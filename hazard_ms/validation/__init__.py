@@ -1,1 +1,4 @@
-"""The cases of docs/physics.md with their expected numbers, `hazard-ms validate`; it says which are tests only."""
+"""Checks of laws and scenes: the cases of docs/physics.md with their expected numbers, and faults of scenes.
+
+`hazard-ms validate` also says which cases are tests only.
+"""

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from hazard_ms.hazards.case import Case
-from hazard_ms.machine.files import make_folder, write_together
 from hazard_ms.pictures.files import encoded
-from hazard_ms.registry import HAZARDS, find, load
+from hazard_ms.spec.registry import HAZARDS, find, load
+from hazard_ms.spec.storage.files import make_folder, write_together
 from hazard_ms.validation.charts import Chart, draw
 from hazard_ms.validation.outcome import Outcome, check
 

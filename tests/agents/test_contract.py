@@ -14,12 +14,12 @@ import pytest
 from hazard_ms.agents.base import LONGEST_NOTE, Agent, agent, check_name, counters_of, note_of
 from hazard_ms.agents.greedy import Greedy
 from hazard_ms.hazards.presets import hazard
-from hazard_ms.registry import AGENTS, HAZARDS
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.brief import Brief, HazardBrief, random_seed
 from hazard_ms.skills.decision import STOP, Action, Decision
+from hazard_ms.spec.registry import AGENTS, HAZARDS
 from tests.worlds.playground import Playground, brief
 
 OWN = """

@@ -12,10 +12,10 @@ import torch
 from hazard_ms.agents.base import Agent, agent
 from hazard_ms.agents.learned import players
 from hazard_ms.env import HazardEnv
-from hazard_ms.registry import AGENTS, load
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, WALK_TO, Action, Decision
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.spec.registry import AGENTS, load
 from tests.worlds.policies import ship
 
 HONEST = sorted(name for name, entry in AGENTS.items() if not load(entry.agent).privileged)

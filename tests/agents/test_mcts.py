@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from hazard_ms.agents.mcts import Mcts, Rescue
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
-from hazard_ms.planning.tree import search
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.tree import search
 from hazard_ms.skills.decision import Action
 from tests.worlds.playground import Playground, play
 

@@ -16,8 +16,8 @@ from hazard_ms.agents.base import agent
 from hazard_ms.agents.mitigating import prospects
 from hazard_ms.agents.mitigating.choice import Chooser
 from hazard_ms.evaluation.runner import Runner
-from hazard_ms.planning.problem import Problem
 from hazard_ms.simulation.building import make_world
+from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.sketch.recording import ahead
 from hazard_ms.sketch.travel.ways import Ways
 from hazard_ms.skills.decision import Action

@@ -14,7 +14,6 @@ from hazard_ms.agents.base import Agent, PrivilegedAgent, agent
 from hazard_ms.agents.truth import Truth
 from hazard_ms.evaluation.metrics import Tally
 from hazard_ms.evaluation.runner import Runner, fates
-from hazard_ms.registry import AGENTS, load
 from hazard_ms.sketch.bound import bound
 from hazard_ms.sketch.recording import recorded
 from hazard_ms.skills.brief import Brief
@@ -23,6 +22,7 @@ from hazard_ms.skills.decision import EXPLORE, PICK_UP, STOP, WALK_TO, Action, D
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.failures import UNREACHABLE
 from hazard_ms.spec import AgentStart, Body, Room, SceneSpec, Task
+from hazard_ms.spec.registry import AGENTS, load
 from hazard_ms.tasks.fire import hazard_fire
 from tests.worlds.playground import brief
 from tests.worlds.registering import registered_task

@@ -10,15 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms import __version__, registry
-from hazard_ms.assets.providers import PROVIDERS
+from hazard_ms import __version__
 from hazard_ms.cli import assets, scenes
 from hazard_ms.cli.__main__ import COMMANDS, main
 from hazard_ms.env.hazard_env import EFFECTS
 from hazard_ms.evaluation import choices
 from hazard_ms.hazards.presets import PRESETS
+from hazard_ms.scenes.assets.providers import PROVIDERS
 from hazard_ms.scenes.splits import families, split_names
 from hazard_ms.simulation.drawing.lighting import LIGHTINGS
+from hazard_ms.spec import registry
 
 ROOT = Path(__file__).parents[2]
 COMMAND = f"{sys.executable} -m hazard_ms.cli"

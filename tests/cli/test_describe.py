@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from hazard_ms.cli.__main__ import main
-from hazard_ms.registry import ROBOTS, TASKS
 from hazard_ms.skills.options.interface_page import page
+from hazard_ms.spec.registry import ROBOTS, TASKS
 from tests.worlds.registering import loaded
 
 PAGE = Path(__file__).parents[2] / "docs" / "observations.md"

@@ -12,11 +12,11 @@ import cv2
 import numpy as np
 import pytest
 
-from hazard_ms.cli import scene_checks
 from hazard_ms.cli.__main__ import main
 from hazard_ms.pictures.scene_plan import plan, save
 from hazard_ms.scenes.schema import from_json, to_json
 from hazard_ms.scenes.splits import scene, scene_names
+from hazard_ms.validation import scene_checks
 
 
 def test_list(capsys: pytest.CaptureFixture[str]) -> None:

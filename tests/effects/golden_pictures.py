@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import cv2
 import numpy as np
 
-from hazard_ms.bench.effects import go_on
+from hazard_ms.cli.costs.effects import go_on
 from tests.worlds.watching import made
 
 FOLDER = Path(__file__).parent / "golden"

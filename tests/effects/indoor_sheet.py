@@ -13,7 +13,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
-from hazard_ms.bench.effects import go_on
+from hazard_ms.cli.costs.effects import go_on
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.pictures.frozen_episode import FrozenEpisode
 from hazard_ms.pictures.options import IDLE, RenderOptions

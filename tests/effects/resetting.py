@@ -14,7 +14,7 @@ from typing import Any
 
 from sapien.render import RenderBodyComponent, RenderCameraComponent, RenderPointLightComponent
 
-from hazard_ms.bench.effects import go_on
+from hazard_ms.cli.costs.effects import go_on
 from hazard_ms.effects.entities import PREFIX, materials
 from tests.worlds.watching import made, seen
 

@@ -13,8 +13,8 @@ import pytest
 import torch
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.bench.effects import go_on
-from hazard_ms.bench.gpu.needs import without_physx
+from hazard_ms.cli.costs.effects import go_on
+from hazard_ms.cli.costs.gpu.needs import without_physx
 from tests.worlds.watching import SEED, TASKS
 
 pytestmark = pytest.mark.render

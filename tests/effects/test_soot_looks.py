@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hazard_ms.bench.effects import go_on
+from hazard_ms.cli.costs.effects import go_on
 from hazard_ms.effects.soot import FAINT, _sheets
 from hazard_ms.scenes.splits import scene
 from tests.worlds.watching import made, seen

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import hazard_ms  # noqa: F401  # registers the tasks
-from hazard_ms.assets.index import asset
 from hazard_ms.effects.streets.ground import HIGHEST
 from hazard_ms.effects.streets.hung import ABOVE
 from hazard_ms.effects.streets.plan import town_of
 from hazard_ms.effects.streets.street import CLOUDS, FIRM, LOOSE
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import box_of
 from hazard_ms.scenes.splits import scene
 from hazard_ms.spec import SceneSpec

@@ -13,7 +13,7 @@ import sapien
 import torch
 from mani_skill.render import PREBUILT_SHADER_CONFIGS, set_shader_pack
 
-from hazard_ms.bench.effects import costs
+from hazard_ms.cli.costs.effects import costs
 from hazard_ms.effects.entities import PREFIX, dry_ior, materials
 from hazard_ms.effects.flood import paths_of, surface_corners
 from hazard_ms.effects.looks import Looks, makers

@@ -13,7 +13,7 @@ import torch
 from gymnasium.utils.env_checker import check_env
 
 import hazard_ms  # noqa: F401
-from hazard_ms.wrappers import NumpyEnv
+from hazard_ms import NumpyEnv
 from tests.worlds.registering import registered_task
 
 ALLOWED_WARNINGS = (  # each with its reason

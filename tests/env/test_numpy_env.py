@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import torch
 
-from hazard_ms.wrappers import plain
+from hazard_ms.env.wrappers import plain
 
 
 def test_arrays_belong_to_whoever_gets_them() -> None:

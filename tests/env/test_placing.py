@@ -10,9 +10,9 @@ import pytest
 import torch
 
 import hazard_ms  # noqa: F401
-from hazard_ms.registry import ROBOTS
 from hazard_ms.scenes.floor import FLOOR_CELL, free_floor
 from hazard_ms.simulation.clearance import clear_points
+from hazard_ms.spec.registry import ROBOTS
 from tests.worlds.episodes import feed
 
 SPACING = 0.1  # [m]

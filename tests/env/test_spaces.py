@@ -15,8 +15,8 @@ from gymnasium.spaces.utils import flatten_space
 from mani_skill.utils.common import flatten_state_dict
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.registry import ROBOTS, TASKS
 from hazard_ms.sensing.observation_table import OBSERVATION_VERSION
+from hazard_ms.spec.registry import ROBOTS, TASKS
 
 PINNED = Path(__file__).with_name("layouts.json")
 STATE, IMAGES = ("state", "state_dict"), ("rgb+depth+segmentation", "pointcloud")

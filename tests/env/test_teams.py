@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import torch
 
-from hazard_ms.episode.grasp import PUT_AWAY_HEIGHT, distance_to_boxes
+from hazard_ms.tasks.episode.grasp import PUT_AWAY_HEIGHT, distance_to_boxes
 from tests.env.episode_hashes import feed
 
 PAIR = ("fetch-0", "g1-1")

@@ -24,13 +24,12 @@ import numpy as np
 import torch
 
 from hazard_ms.agents.base import PrivilegedAgent, agent, open_targets
-from hazard_ms.agents.hindsight import Hindsight
+from hazard_ms.agents.judge import Judge
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.regret.appraiser import Appraiser
 from hazard_ms.evaluation.regret.causes import EXECUTION, LATENCY, MEMORY, PARTS, PERCEPTION, PLANNING, EpisodeRegret
 from hazard_ms.evaluation.regret.command import regret_of
 from hazard_ms.evaluation.runner import play
-from hazard_ms.registry import register_task
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sketch.skill_times import SkillRow, SkillTimes, load
@@ -41,6 +40,7 @@ from hazard_ms.skills.decision import PICK_UP, STOP, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.failures import UNREACHABLE
 from hazard_ms.spec.catalogue import CATEGORIES
+from hazard_ms.spec.registry import register_task
 from tests.worlds.plaza import CHEAP, DEAR, FRAMES, TASK, task
 
 NONE, BLIND, FORGETFUL, RANDOM, SLOW, CLUMSY = "none", "perception", "memory", "choice", "clock", "skills"
@@ -163,7 +163,7 @@ def measured(episodes: Sequence[EpisodeOptions]) -> SkillTimes:
 
 def judged(fault: str, episode: EpisodeOptions, times: SkillTimes) -> EpisodeRegret:
     """The regret of the planner with a fault in an episode, where skills usually take the `times`."""
-    appraiser = Appraiser(mind=functools.partial(Hindsight, times=times))
+    appraiser = Appraiser(mind=functools.partial(Judge, times=times))
     result = play(episode, [appraiser], Faulty(fault))
     return regret_of(dataclasses.replace(result, agent=fault), "", appraiser)
 

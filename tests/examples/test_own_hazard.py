@@ -14,7 +14,7 @@ import torch
 from PIL import Image
 
 from hazard_ms.cli.__main__ import main
-from hazard_ms.registry import HAZARDS
+from hazard_ms.spec.registry import HAZARDS
 from hazard_ms.validation import report
 from hazard_ms.validation.outcome import check
 from tests.examples.stopping import FRAMES

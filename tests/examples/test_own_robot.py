@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from hazard_ms.cli.__main__ import main
-from hazard_ms.registry import ROBOTS
+from hazard_ms.spec.registry import ROBOTS
 from tests.worlds.registering import loaded
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "own_robot.py"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 import torch
 
-from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.flood.realistic.floor_plan import CELL
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
@@ -13,6 +12,7 @@ from hazard_ms.scenes.splits import split_names
 from hazard_ms.simulation.building import make_world
 from hazard_ms.spec.severity import SEVERITIES
 from hazard_ms.tasks import task_of
+from hazard_ms.tasks.episode.episode import Episode
 from tests.hazards.fire.test_smoke_balances import LACK, MASS, OXYGEN, PER_OXYGEN, kept
 from tests.worlds.flood_balance import drawn
 

@@ -12,13 +12,13 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hazard_ms.episode.grasp import Hand
-from hazard_ms.episode.records import Damage, Rescue
 from hazard_ms.hazards import presets
 from hazard_ms.hazards.base import DTYPES, Hazard, State, quantity
-from hazard_ms.registry import HAZARDS
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.simulation.world import World
+from hazard_ms.spec.registry import HAZARDS
+from hazard_ms.tasks.episode.grasp import Hand
+from hazard_ms.tasks.episode.records import Damage, Rescue
 from tests.worlds.fire_worlds import room_world
 
 EVERY = [(name, preset) for name in HAZARDS for preset in presets.PRESETS]

@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 import torch
 
-from hazard_ms.episode import snapshot
-from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards import presets
 from hazard_ms.hazards.fire import floor
 from hazard_ms.hazards.fire.realistic.twozone import leaves
@@ -22,6 +20,8 @@ from hazard_ms.hazards.flood.realistic.inundation import Inundation
 from hazard_ms.simulation.walls import blocked
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Partition, Room
+from hazard_ms.tasks.episode import snapshot
+from hazard_ms.tasks.episode.episode import Episode
 from hazard_ms.validation.experiments.basin import SMOOTH, Basin
 from hazard_ms.validation.experiments.smoke_room import INSULATED, Burner, burn, fire_at, rooms
 from hazard_ms.validation.experiments.tank import Thing, begin, room

@@ -12,7 +12,7 @@ import warp as wp
 from hazard_ms.hazards import presets
 from hazard_ms.hazards.base import Hazard
 from hazard_ms.hazards.walls import Partitions, clear, cut_off, within
-from hazard_ms.kernels.launch import Launches
+from hazard_ms.simulation.kernels.launch import Launches
 from hazard_ms.simulation.walls import Walls, blocked
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Partition, Room, SceneSpec

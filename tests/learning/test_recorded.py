@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from hazard_ms.agents.learned.weights import load
 from hazard_ms.cli.__main__ import main
+from hazard_ms.demonstrations.choices import choices
 from hazard_ms.demonstrations.layout import datasets
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.learning.cloning import Student, imitate
-from hazard_ms.learning.recorded import choices
 from hazard_ms.sketch.policies import Policy, nearest
 from hazard_ms.sketch.rescues.features import SketchEncoder
 from hazard_ms.sketch.world import Sketch

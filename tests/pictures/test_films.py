@@ -12,11 +12,11 @@ import cv2
 import numpy as np
 import pytest
 
-from hazard_ms.machine.files import drafts
-from hazard_ms.machine.video import Video
+from hazard_ms.evaluation.video import Video
 from hazard_ms.pictures.files import film, save
 from hazard_ms.pictures.film import Film
 from hazard_ms.skills.decision import WALK_TO, Action, Result
+from hazard_ms.spec.storage.files import drafts
 
 SIZE = (160, 90)
 LIMIT = 20_000  # of a file that a child may write [bytes]; its film has more
@@ -24,8 +24,8 @@ NOISY = """
 import sys
 from pathlib import Path
 import numpy as np
-from hazard_ms.machine.files import drafts
-from hazard_ms.machine.video import Video
+from hazard_ms.spec.storage.files import drafts
+from hazard_ms.evaluation.video import Video
 try:
     with drafts(Path(sys.argv[1])) as (draft,), Video(draft, (160, 90), 24.0) as video:
         for k in range(60):

@@ -15,7 +15,7 @@ from hazard_ms.pictures.frozen_episode import FrozenEpisode
 from hazard_ms.pictures.options import IDLE, RenderOptions
 from hazard_ms.scenes.splits import scene
 from hazard_ms.simulation.drawing.viewpoint import HOUSE_ANGLE, HOUSE_HIGH, house_view
-from hazard_ms.simulation.names import plain_name
+from hazard_ms.spec.names import plain_name
 
 
 def on_picture(pose: np.ndarray, point: np.ndarray, aspect: float) -> tuple[float, float]:

@@ -10,7 +10,6 @@ import pytest
 
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.teams.player import RecordedTeam, play
-from hazard_ms.machine.files import drafts
 from hazard_ms.pictures import team_compositor
 from hazard_ms.pictures.compositor import HEIGHT, MAIN, WIDTH
 from hazard_ms.pictures.drawing import BLUE
@@ -19,6 +18,7 @@ from hazard_ms.pictures.team_compositor import TeamCompositor
 from hazard_ms.pictures.team_film import TeamFilm
 from hazard_ms.simulation.drawing.viewpoint import corner_view, following_view
 from hazard_ms.skills.decision import EXPLORE, STOP
+from hazard_ms.spec.storage.files import drafts
 from hazard_ms.tasks import task_of
 from tests.pictures.test_video import TEMPERATURE, shot
 

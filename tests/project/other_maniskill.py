@@ -15,7 +15,7 @@ import gymnasium as gym
 import numpy as np
 
 from hazard_ms.machine.diagnosis import installed_version
-from hazard_ms.registry import ROBOTS, TASKS
+from hazard_ms.spec.registry import ROBOTS, TASKS
 from tests.env.episode_hashes import RECORD, hashes, key, machine
 from tests.env.episode_hashes import TASKS as HASHED
 

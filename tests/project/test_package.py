@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from hazard_ms.registry.version import __version__
+from hazard_ms.spec.registry.version import __version__
 from tests.worlds.files.checkout import PYTHONS, ROOT, build, installed_uv, source_copy
 
 pytestmark = pytest.mark.setup
@@ -103,7 +103,7 @@ def test_the_wheel_works_without_the_checkout(wheel: Path, tmp_path: Path) -> No
     scripts = [path.read_text() for path in site.glob("*.dist-info/entry_points.txt")]
     assert len(scripts) == 1 and "hazard-ms = hazard_ms.cli.__main__:main" in scripts[0]
     code = (
-        "import hazard_ms, pathlib; from hazard_ms.assets.index import asset_ids, asset, asset_path\n"
+        "import hazard_ms, pathlib; from hazard_ms.scenes.assets.index import asset_ids, asset, asset_path\n"
         "print(pathlib.Path(hazard_ms.__file__).parents[1], len(asset_ids()), all(asset_path(asset(a).visual).is_file()"
         " for a in asset_ids() if asset(a).visual))"
     )

@@ -19,7 +19,7 @@ from pathlib import Path
 import pytest
 
 from hazard_ms.cli import __main__ as cli
-from hazard_ms.registry import TASKS
+from hazard_ms.spec.registry import TASKS
 from tests.worlds.files.checkout import ROOT, run
 from tests.worlds.files.documents import DOCUMENTS, blocks, command_lines, name_of
 

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 import yaml
 
-from hazard_ms.registry.version import __version__
+from hazard_ms.spec.registry.version import __version__
 from tests.worlds.files.checkout import ROOT, THIS_PYTHON, locked, pins
 
 # Of the schema of CFF 1.2.0, https://github.com/citation-file-format/citation-file-format: what is required, and may be

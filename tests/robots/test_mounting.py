@@ -11,7 +11,7 @@ import torch
 from scipy.spatial.transform import Rotation
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.robots import robot_class, skill_control_mode
+from hazard_ms.spec.registry.robots import robot_class, skill_control_mode
 
 pytestmark = pytest.mark.render
 SIDE = 32

@@ -14,8 +14,8 @@ import torch
 from mani_skill.agents.robots.fetch import Fetch
 from mani_skill.agents.robots.unitree_g1.g1_upper_body import UnitreeG1UpperBodyWithHeadCamera
 
-from hazard_ms.registry import ROBOTS
-from hazard_ms.robots import robot_class, robot_uid
+from hazard_ms.spec.registry import ROBOTS
+from hazard_ms.spec.registry.robots import robot_class, robot_uid
 from tests.worlds.arena import Arena, Box
 
 WALK = 1.0 / 62.0  # m per frame (docs/benchmark.md 1)

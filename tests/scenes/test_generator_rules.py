@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hazard_ms.assets.index import asset, asset_ids
+from hazard_ms.scenes.assets.index import asset, asset_ids
 from hazard_ms.scenes.boxes import Box, box_of
 from hazard_ms.scenes.floor import within_walls
 from hazard_ms.scenes.generate.arrangement import Arrangement, space_before

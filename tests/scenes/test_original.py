@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hazard_ms.assets.index import asset
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.original.axes import SouthWestCorner, from_euler, our_rotation
 from hazard_ms.scenes.original.read import read
 from hazard_ms.scenes.original.start import START_HEADING, start

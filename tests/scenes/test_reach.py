@@ -6,11 +6,11 @@ import math
 
 import pytest
 
-from hazard_ms.registry import ROBOTS, load
 from hazard_ms.scenes.floor import cell_of
 from hazard_ms.scenes.reach import floor_of, reachable, share
 from hazard_ms.scenes.splits import scene
 from hazard_ms.spec import AgentStart, Body, Build, Fixture, Room, SceneSpec, Vec2, Vec3
+from hazard_ms.spec.registry import ROBOTS, load
 
 
 def build(robot: str) -> Build:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hazard_ms.assets.index import asset
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.check import check
 from hazard_ms.scenes.solids import corners_of, gap
 from hazard_ms.scenes.splits import all_scene_names, scene

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import torch
 
-from hazard_ms.episode.episode import Episode
 from hazard_ms.scenes.splits import scene
 from hazard_ms.scenes.walls import WALLS
 from hazard_ms.simulation import building
 from hazard_ms.spec import SceneSpec
 from hazard_ms.tasks import task_of
+from hazard_ms.tasks.episode.episode import Episode
 from results.scene_futures import AT, FIRE, FLOOD, Change, losses
 from results.scene_plays import LIMIT, Play, changes, joined, nearest_first, play
 

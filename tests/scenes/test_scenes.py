@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from hazard_ms.assets.index import asset
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.floor import FLOOR_CELL, free_floor, steps_from
 from hazard_ms.scenes.schema import check
 from hazard_ms.scenes.splits import all_scene_names, scene

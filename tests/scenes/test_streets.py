@@ -8,8 +8,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from hazard_ms.assets.index import asset
 from hazard_ms.scenes import splits
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import box_of
 from hazard_ms.scenes.check import check
 from hazard_ms.scenes.floor import connected, free_floor

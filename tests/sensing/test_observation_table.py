@@ -10,9 +10,9 @@ import pytest
 
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.env.interface import actions, describe
-from hazard_ms.registry import ROBOTS, TASKS
+from hazard_ms.env.wrappers import plain
 from hazard_ms.sensing.observation_table import Row, leaves
-from hazard_ms.wrappers import plain
+from hazard_ms.spec.registry import ROBOTS, TASKS
 
 FRAMES = 60
 IMAGES = "rgb+depth+segmentation+position+normal+albedo"

@@ -9,7 +9,7 @@ import pytest
 import torch
 from sapien.physx import PhysxRigidDynamicComponent
 
-from hazard_ms.assets.index import asset, asset_ids
+from hazard_ms.scenes.assets.index import asset, asset_ids
 from hazard_ms.simulation.bare_scene import PHYSICS_RATE, Standalone, build
 from hazard_ms.spec.scene import AgentStart, Body, Room, SceneSpec
 

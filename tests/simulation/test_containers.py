@@ -9,11 +9,11 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hazard_ms.assets.rows import Asset
-from hazard_ms.assets.shipped import shipped_index
 from hazard_ms.hazards.presets import wind
-from hazard_ms.kernels.containers import BASKET_HIGH, BASKET_LOW
+from hazard_ms.scenes.assets.rows import Asset
+from hazard_ms.scenes.assets.shipped import shipped_index
 from hazard_ms.simulation.containers import container_index, in_containers
+from hazard_ms.simulation.kernels.containers import BASKET_HIGH, BASKET_LOW
 from hazard_ms.simulation.world import World
 from tests.worlds.fire_worlds import about_z
 from tests.worlds.wind_worlds import Block, Thing, begin, run, street

@@ -9,12 +9,12 @@ import pytest
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.grasp import Hand, lead_doors
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.simulation.building import make_world
 from hazard_ms.simulation.mitigation.door_grip import DoorGrip
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition, Room, SceneSpec
+from hazard_ms.tasks.episode.grasp import Hand, lead_doors
 
 DT = 1.0 / 30.0  # [s]
 WIDE, FAR, HIGH = 0.9, 0.83, 1.0  # of the leaf; its handle from the hinge, and above the floor [m] [NFPA 92; ADA]

@@ -7,9 +7,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hazard_ms.planning.orienteering import solve
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.sketch.bound import BAG, PICK, STOW, bound
+from hazard_ms.sketch.planning.orienteering import solve
 from hazard_ms.sketch.recording import record
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.spec import AgentStart

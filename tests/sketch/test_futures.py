@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 import torch
 
-from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards.fire.dousing import NEVER
 from hazard_ms.hazards.fire.fire_state import BURNING, FireState, lit
 from hazard_ms.simulation.building import make_world
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, Foreseen, Intervention, fire_of, foresee
 from hazard_ms.spec import AgentStart, Body, Opening, Partition, Room, SceneSpec, Task
+from hazard_ms.tasks.episode.episode import Episode
 from hazard_ms.tasks.fire import hazard_fire
 from hazard_ms.tasks.flood import hazard_flood
 

@@ -16,11 +16,11 @@ import torch
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.env import HazardEnv
 from hazard_ms.hazards.flood.flood import Flood
-from hazard_ms.robots import skill_control_mode
-from hazard_ms.simulation import building
+from hazard_ms.scenes import solids
 from hazard_ms.sketch.recording import ahead, record, recorded, suite_of
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.spec import AgentStart, Body, Room, SceneSpec, Task
+from hazard_ms.spec.registry.robots import skill_control_mode
 from hazard_ms.tasks import task_of
 from tests.worlds.same import same_fields
 
@@ -235,7 +235,7 @@ def test_the_suite_tells_whatever_changes_a_record(task: Task) -> None:
 def test_the_models_of_a_scene_belong_to_the_suite(task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
     spec = task.build("kitchen_b/01")
     before = suite_of(task, "paper", spec)
-    monkeypatch.setattr(building, "mass_of", lambda thing: 7.0)
+    monkeypatch.setattr(solids, "mass_of", lambda thing: 7.0)
     assert suite_of(task, "paper", spec) != before
 
 

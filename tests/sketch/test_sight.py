@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hazard_ms.assets.index import asset
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.sketch import sight as module
 from hazard_ms.sketch.sight import FETCH, Sight
 from hazard_ms.spec import AgentStart, Body, Fixture, Partition, Room, SceneSpec

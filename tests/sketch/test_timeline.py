@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hazard_ms.sketch.columns import DIGEST_BYTES
+from hazard_ms.sketch.array_files import DIGEST_BYTES
 from hazard_ms.sketch.timeline import Timeline, from_bytes, read
 from tests.worlds.same import same_fields
 

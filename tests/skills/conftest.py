@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from hazard_ms.registry import ROBOTS
+from hazard_ms.spec.registry import ROBOTS
 from tests.worlds.arena import Arena
 from tests.worlds.skill_room import BOXES
 

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import torch
 
-from hazard_ms.registry import ROBOTS
 from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.skills import failures
 from hazard_ms.skills.actions import skill
@@ -20,6 +19,7 @@ from hazard_ms.skills.mitigations.handles import home_side
 from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.grasping import GRASP_REACH
 from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition
+from hazard_ms.spec.registry import ROBOTS
 from tests.worlds.two_rooms import DOOR, FAR, HALL, HINGE, ONE, SIZE, TwoRooms, spec, two_rooms
 
 OPEN, SHUT = Action("open", "door_0"), Action("shut", "door_0")

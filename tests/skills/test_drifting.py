@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import sapien
 
-from hazard_ms.registry import ROBOTS
 from hazard_ms.skills import failures
 from hazard_ms.skills.motor.drift import Drift
 from hazard_ms.skills.motor.grasping import pick_up
+from hazard_ms.spec.registry import ROBOTS
 from tests.worlds.arena import Arena, Box
 
 SPEED = 0.02  # a little faster than a robot drives [m per frame]: a hand that goes where it was comes too late

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hazard_ms.assets.index import asset
-from hazard_ms.registry import ROBOTS, load
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import box_of
 from hazard_ms.scenes.floor import OVERHEAD_HEIGHT, boxes_of
 from hazard_ms.scenes.original.read import read
@@ -17,6 +16,7 @@ from hazard_ms.sensing.semantic_map import MAP_CELL
 from hazard_ms.skills.motor.navigation import AT_MOST, Ways
 from hazard_ms.skills.motor.walking import ARRIVED
 from hazard_ms.spec import Build, SceneSpec
+from hazard_ms.spec.registry import ROBOTS, load
 from hazard_ms.spec.robot import GRASP_REACH
 
 ORIGINAL = Path(__file__).parents[3] / "shared" / "hazard_original" / "indoor"

@@ -15,12 +15,12 @@ import pytest
 import torch
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.registry import ROBOTS
 from hazard_ms.scenes import splits
 from hazard_ms.scenes.floor import connected, free_floor
 from hazard_ms.scenes.schema import to_json
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, Action
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.spec.registry import ROBOTS
 
 pytestmark = [pytest.mark.long, pytest.mark.render]
 

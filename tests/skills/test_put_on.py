@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from hazard_ms.registry import ROBOTS
 from hazard_ms.skills import failures
 from hazard_ms.skills.decision import Action
 from hazard_ms.skills.mitigations.shelving import tops
 from hazard_ms.spec import Body, Fixture
+from hazard_ms.spec.registry import ROBOTS
 from tests.worlds.two_rooms import acted, spec, two_rooms
 
 TABLE = Fixture("table_0", "table", "plain_box", (5.0, 2.6, 0.0), scale=(1.0, 0.8, 0.72))

@@ -15,9 +15,9 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.registry import TASKS
 from hazard_ms.skills.options.environment import IDLE
 from hazard_ms.skills.options.options import FIRST, LOOK
+from hazard_ms.spec.registry import TASKS
 
 SMALL = {"sensor_configs": {"width": 64, "height": 64}}
 LOOK_AROUND, STOP = FIRST[LOOK], 44

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import torch
 
-from hazard_ms.registry import ROBOTS
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import LowLevel, Skill, Stage
 from hazard_ms.skills.decision import Result
@@ -18,6 +17,7 @@ from hazard_ms.skills.motor.grasping import come_near, pick_up
 from hazard_ms.skills.motor.routes import Route
 from hazard_ms.skills.motor.stowing import drop
 from hazard_ms.skills.motor.surface import Leg, Surface
+from hazard_ms.spec.registry import ROBOTS
 from tests.worlds.arena import Arena, Box
 
 SIZE = (0.56, 0.94, 1.02)  # of a cart [m]

@@ -10,13 +10,13 @@ import pytest
 import torch
 
 import hazard_ms  # noqa: F401
-from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards.fire import spread
 from hazard_ms.hazards.fire.coupling import PER_WIND, drift
 from hazard_ms.hazards.fire.fire_state import BURNING, BURNT, NORMAL, lit
 from hazard_ms.hazards.presets import hazard
 from hazard_ms.simulation.world import World
 from hazard_ms.tasks.compound import hazard_compound
+from hazard_ms.tasks.episode.episode import Episode
 from tests.worlds.fire_worlds import room_world
 
 FRAME = 1 / 30  # [s]

@@ -11,9 +11,9 @@ import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.evaluation.attempts import Recorded
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.runner import play
-from hazard_ms.registry import TASKS
 from hazard_ms.scenes import splits
 from hazard_ms.scenes.splits import scene
+from hazard_ms.spec.registry import TASKS
 from hazard_ms.tasks import task_of
 
 

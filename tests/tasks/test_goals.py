@@ -17,9 +17,9 @@ from hazard_ms.demonstrations.options import RecordOptions
 from hazard_ms.demonstrations.recording import why_not
 from hazard_ms.evaluation.options import EnvOptions, EpisodeOptions, SweepOptions
 from hazard_ms.evaluation.report import success_line, summary
-from hazard_ms.registry import AGENTS, TASKS
 from hazard_ms.skills.brief import Brief, brief_of
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_TO, Action
+from hazard_ms.spec.registry import AGENTS, TASKS
 from hazard_ms.tasks import task_of
 from tests.worlds.playground import Playground, brief
 from tests.worlds.registering import practising

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 import torch
 
-from hazard_ms.registry import TASKS
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.simulation.clearance import obstacle
 from hazard_ms.skills.context import Stage
 from hazard_ms.skills.mitigations.guiding import guide
 from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.arm import go, posture_for
+from hazard_ms.spec.registry import TASKS
 from hazard_ms.tasks import task_of
 from tests.worlds.practice_rooms import made, reward
 from tests.worlds.registering import practising

@@ -9,11 +9,11 @@ import pytest
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.situation import Situation
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.simulation.building import make_world
 from hazard_ms.simulation.mitigation.door_grip import DoorGrip
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.situation import Situation
 from tests.worlds.registering import practising
 
 ROOMS, SEEDS = ("practice/0", "practice/3", "practice/5"), (11, 12, 13)

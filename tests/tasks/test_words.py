@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from hazard_ms.registry import TASKS
 from hazard_ms.spec.perturbation import MOST_LEVEL, Perturbation
+from hazard_ms.spec.registry import TASKS
 from hazard_ms.tasks import task_of
 from hazard_ms.tasks.perturbing import check, check_perturbation
 from tests.worlds.registering import practising

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hazard_ms import registry
 from hazard_ms.cli.__main__ import main
 from hazard_ms.hazards.case import Case, table
+from hazard_ms.spec import registry
 from hazard_ms.validation import report
 from hazard_ms.validation.charts import Chart, Line, draw, ticks
 from hazard_ms.validation.outcome import Outcome, check

@@ -12,15 +12,15 @@ from mani_skill.envs.sapien_env import BaseEnv
 from mani_skill.utils.registration import REGISTERED_ENVS, register_env
 from mani_skill.utils.structs.types import SimConfig
 
-from hazard_ms.episode.grasp import Hand, places, update
-from hazard_ms.registry import ROBOTS
-from hazard_ms.robots.robot import Robot
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.world import World
 from hazard_ms.skills.context import LowLevel, Skill, Stage
 from hazard_ms.skills.decision import Result
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, SceneSpec
+from hazard_ms.spec.registry import ROBOTS
+from hazard_ms.tasks.episode.grasp import Hand, places, update
 
 ENV_ID = "HazardTestArena-v1"
 BAG_REACH = 0.45  # as in the environment [m]

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
-from hazard_ms.web.app import application
-from hazard_ms.web.options import ServeOptions
+from hazard_ms.cli.web.app import application
+from hazard_ms.cli.web.options import ServeOptions
 
 TOKEN, PORT = "a-token-for-tests-of-24-bytes", 8000
 

@@ -12,7 +12,7 @@ import numpy as np
 import torch
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.robots import robot_class
+from hazard_ms.spec.registry.robots import robot_class
 
 
 def feed(digest: Any, value: Any) -> None:

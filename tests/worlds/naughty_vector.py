@@ -8,8 +8,8 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
-from hazard_ms.vector import make
-from hazard_ms.vector.processes import ProcessVectorEnv
+from hazard_ms.learning.vector import make
+from hazard_ms.learning.vector.processes import ProcessVectorEnv
 
 NAME = "tests.worlds.naughty_env:Naughty-v0"
 SOON = 5.0  # in which whoever waits is told that nothing will come [s]

@@ -10,7 +10,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from hazard_ms import registry
+from hazard_ms.spec import registry
 
 
 @contextmanager

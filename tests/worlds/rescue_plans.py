@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import MovingTravel, StaticTravel, Travel, straight_line
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import MovingTravel, StaticTravel, Travel, straight_line
 
 Spot = tuple[int, int]  # node, index of the recorded frame
 PER_METRE = 62.0  # frames (docs/benchmark.md 1)

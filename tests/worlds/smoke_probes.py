@@ -7,7 +7,7 @@ import warp as wp
 from torch import Tensor
 
 from hazard_ms.hazards.fire.realistic.twozone import combustion, exchange, lining, plumes, vents
-from hazard_ms.kernels.launch import OPTIONS, Launches
+from hazard_ms.simulation.kernels.launch import OPTIONS, Launches
 
 wp.set_module_options(OPTIONS)
 

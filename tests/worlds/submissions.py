@@ -21,9 +21,9 @@ from hazard_ms.evaluation.submissions.report import Report, Seen
 from hazard_ms.evaluation.submissions.signing import sign
 from hazard_ms.evaluation.submissions.tracks import PAIR, TRACKS, Track
 from hazard_ms.evaluation.workers import Job, Word
-from hazard_ms.registry.mitigations import TELL
 from hazard_ms.skills.decision import STOP, WALK_ONE_STEP
 from hazard_ms.skills.team import TeamSkills
+from hazard_ms.spec.registry.mitigations import TELL
 
 TRIAL, TRIAL_TEAMS = TRACKS["trial"], TRACKS["trial-teams"]
 SHORT = "tests.evaluation.test_play:Short"  # looks around, takes a step, and stops

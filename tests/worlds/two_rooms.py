@@ -12,7 +12,6 @@ import numpy as np
 import torch
 
 import hazard_ms
-from hazard_ms.registry import ROBOTS
 from hazard_ms.scenes import floor
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
@@ -22,6 +21,7 @@ from hazard_ms.skills.actions import skill
 from hazard_ms.skills.context import Skill, Stage
 from hazard_ms.skills.decision import Action, Result
 from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition, Room, SceneSpec
+from hazard_ms.spec.registry import ROBOTS
 from tests.worlds.registering import registered_task
 
 SIZE, AT = (7.0, 4.0), 3.5  # of both rooms together, and where the wall between them is [m]

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from hazard_ms.assets.index import asset
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.spec import Body, Fixture, SceneSpec
 
 

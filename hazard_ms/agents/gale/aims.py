@@ -19,8 +19,8 @@ from hazard_ms.agents.gale.stops import PUT_DOWN, SEEKING, put_away
 from hazard_ms.agents.gale.weather import Weather
 from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.search.walks import TURNING
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.travel import StaticTravel
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, Action, Decision

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.travel import Spot, Travel
+from hazard_ms.sketch.planning.travel import Spot, Travel
 
 Array = NDArray[np.float64]
 DETOUR = 1.1  # length of ways in the open over that of straight lines [ours: as for all planning in the open]

@@ -21,9 +21,9 @@ from hazard_ms.agents.gale.stops import PUT_DOWN, SEEKING, put_away
 from hazard_ms.hazards.places import MOVED
 from hazard_ms.hazards.wind.endurance import endurance
 from hazard_ms.hazards.wind.gale import WINDS, Gale
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import MovingTravel, straight_line
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import MovingTravel, straight_line
 from hazard_ms.sketch.rescue_problem import TURNING, Outset, RescueScene
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.decision import Action, Decision

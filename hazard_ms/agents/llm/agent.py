@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from hazard_ms.agents.base import Agent
+from hazard_ms.agents.latency import Thought
 from hazard_ms.agents.llm.answers import (
     ASKS,
     LOGPROB,
@@ -39,11 +40,10 @@ from hazard_ms.agents.llm.rules import RULES
 from hazard_ms.agents.llm.scene_text import Block, block, plain_names
 from hazard_ms.agents.llm.team.radio import Radio
 from hazard_ms.agents.llm.trace import Trace
-from hazard_ms.agents.thinking import Thought
-from hazard_ms.registry.mitigations import TELL
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision
 from hazard_ms.spec.checks import one_of, whole
+from hazard_ms.spec.registry.mitigations import TELL
 
 FEWEST_OPTIONS = 6  # places to search, to look, and to stop [ours]
 MOST_TOKENS = 1_000_000  # of a reply: any more must be a mistake [ours]

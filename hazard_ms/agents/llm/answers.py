@@ -18,8 +18,8 @@ from typing import Any
 
 from hazard_ms.agents.llm.choices import Choice, Menu
 from hazard_ms.agents.llm.prompt import estimate
-from hazard_ms.registry.mitigations import TELL
 from hazard_ms.skills.telling import check_message
+from hazard_ms.spec.registry.mitigations import TELL
 
 JSON, LETTER, LOGPROB, THINK = "json", "letter", "logprob", "think"
 WAYS = (JSON, LETTER, LOGPROB, THINK)

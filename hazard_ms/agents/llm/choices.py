@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from hazard_ms.agents.base import distance, known, open_targets
-from hazard_ms.registry.mitigations import TELL
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, VERBS, WALK_TO, Action, Decision
 from hazard_ms.skills.options.landmarks import Landmark, landmarks
+from hazard_ms.spec.registry.mitigations import TELL
 
 LETTERS = "ABCDEFGHIJKLMNOPQRST"
 MACRO, FULL = "macro", "full"

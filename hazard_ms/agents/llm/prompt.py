@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from hazard_ms.agents.llm.scene_text import Block, as_text, shortened
 from hazard_ms.agents.search.outlook import skill_frames
-from hazard_ms.registry.mitigations import LOOK_AT, MITIGATIONS
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.telling import FRAMES, LONGEST
+from hazard_ms.spec.registry.mitigations import LOOK_AT, MITIGATIONS
 
 VERSIONS = ("llm-1", "llm-2", "llm-3", "llm-2-image")
 HISTORIES = ("llm-2", "llm-3", "llm-2-image")  # versions that tell of earlier sightings

@@ -20,8 +20,8 @@ from hazard_ms.agents.llm.prompt import PICTURE, estimate, text_of
 from hazard_ms.agents.llm.rules import RULES, block_in
 from hazard_ms.agents.llm.scene_text import Block
 from hazard_ms.agents.llm.team.rule import tells
-from hazard_ms.registry.mitigations import TELL
 from hazard_ms.skills.telling import LONGEST
+from hazard_ms.spec.registry.mitigations import TELL
 
 BEHAVIOURS = {
     "first": "the first option",

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from hazard_ms.agents.mitigating.prospects import ANY_WAY, Array, Prospect, as_now
-from hazard_ms.planning.measures import Changed
 from hazard_ms.sketch.futures.interventions import SHUT
 from hazard_ms.sketch.futures.surroundings import across
+from hazard_ms.sketch.planning.measures import Changed
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.sketch.travel.ways import Ways
 from hazard_ms.spec import SceneSpec

@@ -25,15 +25,15 @@ from hazard_ms.agents.mitigating.prospects import (
     tools_of,
     ways_between,
 )
-from hazard_ms.planning.averting import averting
-from hazard_ms.planning.beginning import Course, best_course
-from hazard_ms.planning.measures import Measure, Measures
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.hazards.base import pushes
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, Foreseen, Intervention, foresee
 from hazard_ms.sketch.futures.surroundings import Home
-from hazard_ms.sketch.recording import pushes
+from hazard_ms.sketch.planning.averting import averting
+from hazard_ms.sketch.planning.beginning import Course, best_course
+from hazard_ms.sketch.planning.measures import Measure, Measures
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 from hazard_ms.sketch.rescue_problem import RescueScene
 
 KEPT = 400  # frames for which futures are kept [ours]

@@ -10,11 +10,11 @@ import torch
 from hazard_ms.agents.mitigating.choice import Chooser, Key
 from hazard_ms.agents.mitigating.prospects import FETCH, Array, Part, Prospect, as_now, seats_of
 from hazard_ms.agents.truth import Truth
-from hazard_ms.planning.problem import Problem
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.clutter import reached
 from hazard_ms.sketch.futures.interventions import BLOCK, OPEN, OUT, SHUT, fire_of
 from hazard_ms.sketch.futures.surroundings import charge_of, free_boards, hidden, inlets_of, inner_doors
+from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.sketch.rescue_problem import RescueScene
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action, Decision

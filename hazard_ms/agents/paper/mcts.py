@@ -5,8 +5,8 @@ from __future__ import annotations
 from hazard_ms.agents.base import Agent
 from hazard_ms.agents.paper.memory import Pair, predicted_value
 from hazard_ms.agents.paper.search import TreeSearch
-from hazard_ms.planning.tree import SIMULATIONS
 from hazard_ms.sensing.target_table import Target
+from hazard_ms.sketch.planning.tree import SIMULATIONS
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.spec.checks import whole

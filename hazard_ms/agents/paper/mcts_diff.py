@@ -6,7 +6,7 @@ from hazard_ms.agents.base import Agent
 from hazard_ms.agents.paper.mcts import MOST_SIMULATIONS
 from hazard_ms.agents.paper.memory import changing_value
 from hazard_ms.agents.paper.search import TreeSearch
-from hazard_ms.planning.tree import SIMULATIONS
+from hazard_ms.sketch.planning.tree import SIMULATIONS
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.spec.checks import whole

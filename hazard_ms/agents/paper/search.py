@@ -1,4 +1,4 @@
-"""Tree search of the paper's agents over the rescue that they imagine: `hazard_ms.planning.tree` on a `View`."""
+"""Tree search of the paper's agents over the rescue that they imagine: `hazard_ms.sketch.planning.tree` on a `View`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from hazard_ms.agents.paper.memory import Memory, Worth
 from hazard_ms.agents.paper.view import Option, State, View
-from hazard_ms.planning.tree import search
+from hazard_ms.sketch.planning.tree import search
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.creeping_fire import FLAME, ROOM, STEP, Flames, Things, burning_from, found
 from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.sketch.planning.creeping_fire import FLAME, ROOM, STEP, Flames, Things, burning_from, found
 from hazard_ms.skills.decision import Decision
 from hazard_ms.spec.catalogue import CATEGORIES
 

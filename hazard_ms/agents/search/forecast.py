@@ -12,11 +12,11 @@ from hazard_ms.agents.search.fire_watch import FireWatch
 from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
 from hazard_ms.agents.search.house_fire import HouseFire
 from hazard_ms.agents.search.house_water import HouseWater, floats_at, soaked_at
-from hazard_ms.planning.belief import WaterPlane, extended, last_whole
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
+from hazard_ms.sketch.planning.belief import WaterPlane, extended, last_whole
 from hazard_ms.skills.brief import Brief, HazardBrief
 from hazard_ms.skills.decision import Decision
 

@@ -18,7 +18,7 @@ from scipy import ndimage
 from hazard_ms.agents.search.fire_watch import WARM, things_of, warm_floor
 from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
 from hazard_ms.agents.search.stands import in_sight
-from hazard_ms.planning.creeping_fire import CELL, STEP, Flames, Things, burning_from, found
+from hazard_ms.sketch.planning.creeping_fire import CELL, STEP, Flames, Things, burning_from, found
 from hazard_ms.skills.decision import Decision
 
 FUTURES = 6  # that are drawn for each fire that may be put out [ours]

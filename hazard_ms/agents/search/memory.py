@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from hazard_ms.agents.base import ends_belief
 from hazard_ms.agents.search.fire_watch import FireWatch
 from hazard_ms.agents.search.house_fire import HouseFire
-from hazard_ms.registry.mitigations import MITIGATIONS
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import NOT_A_TARGET, TOO_FAR, UNFINISHED
+from hazard_ms.spec.registry.mitigations import MITIGATIONS
 
 PROGRESS = 0.2  # a walk that got it this far is not a failure, even if it did not arrive [m]
 LEGS = 12  # walks without arrival to one thing that together count as a failure: 19 m, longer than any way [ours]

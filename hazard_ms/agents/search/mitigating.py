@@ -1,7 +1,7 @@
 """Chooses what an agent does about the hazards of a home before it rescues, by what is averted, and says why.
 
 An extinguisher is fetched where a fire that is known threatens more than the way there costs; a door is shut where what
-is behind it would be wet before it is saved (`hazard_ms.planning.beginning`). What was begun is gone on with as long as
+is behind it would be wet before it is saved (`sketch/planning/beginning.py`). What was begun is gone on with as long as
 it averts anything, whatever else would avert more. What is shut is opened only where nothing else is left to do.
 """
 
@@ -16,10 +16,10 @@ from hazard_ms.agents.search.forecast import WATER
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.search.walks import frames_between
-from hazard_ms.planning.averting import kept
-from hazard_ms.planning.beginning import Course, best_course
-from hazard_ms.planning.measures import Measure, Measures, with_unseen
 from hazard_ms.sensing.door_memory import KnownOpening
+from hazard_ms.sketch.planning.averting import kept
+from hazard_ms.sketch.planning.beginning import Course, best_course
+from hazard_ms.sketch.planning.measures import Measure, Measures, with_unseen
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision, Tool
 from hazard_ms.skills.failures import NO_PATH, NOT_BURNING, UNFINISHED

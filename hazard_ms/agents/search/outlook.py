@@ -1,4 +1,4 @@
-"""The rescue that lies ahead, as an agent believes: a problem for `hazard_ms.planning`, and what its numbers stand for.
+"""The rescue that lies ahead, as an agent believes: a problem for `sketch/planning`, and what its numbers stand for.
 
 Beside the targets that it knows, the problem has the places to search as targets of their own: to go there and look
 around is worth what is expected to be found, and takes the time of fetching that.
@@ -19,12 +19,12 @@ from hazard_ms.agents.search.forecast import Forecast
 from hazard_ms.agents.search.lookouts import Lookout, lookouts
 from hazard_ms.agents.search.memory import Memory, Place, Seen
 from hazard_ms.agents.search.walks import TURNING, frames_between
-from hazard_ms.planning.averting import BESIDE, averting
-from hazard_ms.planning.belief import drifted, speed_of
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.sketch import skill_times
+from hazard_ms.sketch.planning.averting import BESIDE, averting
+from hazard_ms.sketch.planning.belief import drifted, speed_of
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import WALK_ONE_STEP, WALK_TO, Action, Decision

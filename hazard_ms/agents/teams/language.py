@@ -10,10 +10,10 @@ from concurrent.futures import ThreadPoolExecutor
 
 from hazard_ms.agents.llm.agent import Llm
 from hazard_ms.agents.team import TeamAgent
-from hazard_ms.registry.mitigations import TELL
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.spec.parameters import parameters
+from hazard_ms.spec.registry.mitigations import TELL
 
 TOLD = "told"  # the counter of messages, beside those of the agent `llm`, which are summed over all robots
 

@@ -17,9 +17,9 @@ from hazard_ms.agents.oracle import LOYALTY_ADRIFT, Oracle
 from hazard_ms.agents.team import PrivilegedTeam
 from hazard_ms.agents.teams.sharing import APART, TURNS, WALKS, Sharing, place_of
 from hazard_ms.agents.truth import Future, Truth
-from hazard_ms.planning.averting import averting
-from hazard_ms.planning.problem import Problem
 from hazard_ms.sensing.semantic_map import SemanticMap
+from hazard_ms.sketch.planning.averting import averting
+from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.context import Stage
 from hazard_ms.skills.decision import EXPLORE, STOP, Action, Decision

@@ -20,12 +20,12 @@ import numpy as np
 from hazard_ms.agents.base import Agent
 from hazard_ms.agents.planner import BEAM
 from hazard_ms.agents.team import APPROACH, TeamAgent
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Plan, Problem
-from hazard_ms.registry.mitigations import PUBLISHED, TELL
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Plan, Problem
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import UNFINISHED
+from hazard_ms.spec.registry.mitigations import PUBLISHED, TELL
 
 MOST_LABELS = 2_000  # of the search for the plan of one robot, while it is open who fetches what [ours]
 APART = 2.0  # distance from where another robot works within which none begins to [m] [ours: twice a reach of 1 m]

@@ -10,8 +10,8 @@ from pathlib import Path
 from hazard_ms.demonstrations.export import chat, lerobot, maniskill, minari, tar
 from hazard_ms.demonstrations.export.options import ExportOptions
 from hazard_ms.demonstrations.export.source import Source
-from hazard_ms.machine.files import make_folder
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.storage.files import make_folder
 
 # Each writes the episodes of a source into an empty folder, and returns the name in it that readers open.
 WRITERS: dict[str, Callable[[Source, Path], str]] = {

@@ -17,7 +17,7 @@ from hazard_ms.demonstrations.export.source import STATE, Source, needed
 from hazard_ms.demonstrations.layout import plain
 
 ROOT = "MINARI_DATASETS_PATH"  # environment variable that names the folder in which Minari keeps its datasets
-NUMPY = "hazard_ms.wrappers:NumpyEnv"  # Minari's environments are not batched
+NUMPY = "hazard_ms:NumpyEnv"  # Minari's environments are not batched
 
 
 def write(source: Source, folder: Path) -> str:

@@ -11,12 +11,12 @@ import numpy as np
 from torch import Tensor
 
 from hazard_ms.demonstrations.layout import DEPTH, FILM, HEAD, LABEL_SHIFT, LABELS, NO_LABEL
+from hazard_ms.evaluation.video import Video
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.machine.files import drafts
-from hazard_ms.machine.video import Video
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import Decision
 from hazard_ms.skills.executor import SkillEnv
+from hazard_ms.spec.storage.files import drafts
 
 MILLIMETRES = 1000.0  # in a metre
 MOST_DEPTH = 65535  # that 16 bits hold [mm]

@@ -7,8 +7,8 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.agents.courses import State, mean
-from hazard_ms.agents.hindsight import Hindsight
+from hazard_ms.agents.action_values import State, mean
+from hazard_ms.agents.judge import Judge
 from hazard_ms.demonstrations.watching.recorder import Recorder
 from hazard_ms.evaluation.result import Played
 from hazard_ms.evaluation.watchers import Watcher
@@ -16,7 +16,7 @@ from hazard_ms.skills.decision import DROP, EXPLORE, WALK_TO, Action, Decision, 
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.options.options import CART, COUNT, END, FIRST, LOOK, TARGET
 
-MIDDLE = slice(1, 3)  # of the paces of `agents.courses`: those next to the usual one [ours]
+MIDDLE = slice(1, 3)  # of the paces of `agents.action_values`: those next to the usual one [ours]
 MOST_TARGETS = 10  # left to rescue, up to which each option is worked out: more take seconds [ours]
 
 
@@ -31,7 +31,7 @@ class Foresight(Watcher):
 
     def begin(self, env: SkillEnv, decision: Decision) -> None:
         """Take the environment at the start of an episode."""
-        self._env, self._mind, self._brief = env, Hindsight(env), env.brief()
+        self._env, self._mind, self._brief = env, Judge(env), env.brief()
         self._total = sum(self._mind.truth.values.values())
         self._positions: list[NDArray[np.float32]] = []
         self._damaged: list[NDArray[np.bool_]] = []

@@ -154,10 +154,10 @@ def _standing(kind: Array, seed: Array, anchor: Array, size: Array, eye: Array, 
     aloft = np.array([0.0, 0.0, 1.0])
     toward = eye - anchor
     far = np.linalg.norm(toward, axis=-1, keepdims=True)
-    lean = _unit(aloft + 0.45 * upward)
+    lean = meshes.unit(aloft + 0.45 * upward)
     flame = (kind == FLAME)[:, None]
     turned = np.stack([np.cos(6.28 * seed), np.sin(6.28 * seed), np.zeros_like(seed)], -1)
-    across = np.where(flame, _unit(np.cross(lean, toward)), turned)
+    across = np.where(flame, meshes.unit(np.cross(lean, toward)), turned)
     up = np.where(flame, lean, np.cross(aloft, turned))
     # not cut by the thing that burns
     anchor += np.where(flame, toward / far * np.minimum(0.6 * size[:, :1], 0.3 * far), 0.0)
@@ -178,7 +178,3 @@ def _risen(kind: Array, seed: Array, home: Array, size: Array, pose: Array) -> t
     anchor = pose[:3, 3] + home + np.column_stack([drift + spread, height])
     half = size[:, 0] * np.where(ember, 1.0 - 0.6 * age, 0.35 + 1.3 * age)
     return anchor, np.stack([half, half], -1), age
-
-
-def _unit(vectors: Array) -> Array:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from sapien.render import RenderMaterial, RenderShapeTriangleMesh
 
+from hazard_ms.effects.meshes import unit
 from hazard_ms.effects.raytracing import hits
 
 TRANSPARENT, REFRACTION, SMOOTH = 0.97, 1.33, 0.02  # water's transmission, index of refraction, roughness
@@ -79,7 +80,7 @@ def _waves(grid: Array, time: float) -> Array:
         )
         grid[:, 2] += WAVE_SLOPE / number * np.sin(phase)
         slope += WAVE_SLOPE * way * np.cos(phase)[:, None]
-    return _unit(np.column_stack([-slope, np.ones(len(grid))])).astype(np.float32)
+    return unit(np.column_stack([-slope, np.ones(len(grid))])).astype(np.float32)
 
 
 def soot(data: Array, places: Array, effect: RenderMaterial, time: float) -> RenderShapeTriangleMesh:
@@ -97,7 +98,3 @@ def soot(data: Array, places: Array, effect: RenderMaterial, time: float) -> Ren
     material.transmission_roughness = hits.EFFECT + time
     faces = (4 * np.arange(len(data) // 4)[:, None] + np.array([[0, 1, 2, 0, 2, 3]])).reshape(-1, 3)
     return shape(corners, faces, np.column_stack([code, extent, ceiling]), np.zeros_like(places), material)
-
-
-def _unit(vectors: Array) -> Array:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)

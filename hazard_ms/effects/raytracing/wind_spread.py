@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hazard_ms.effects.meshes import NOWHERE
+from hazard_ms.effects.meshes import NOWHERE, unit
 from hazard_ms.effects.shaders.common import STREAK
 from hazard_ms.effects.shaders.wind import BOX
 
@@ -32,15 +32,11 @@ def carried(kind: Array, seed: Array, home: Array, pose: Array, eye: Array) -> t
     calm = seed * 97.0 % 1.0 > 0.35 + 0.9 * front  # between two gusts
     anchor = np.column_stack([at, np.where(calm, 10.0 * NOWHERE, height)])
     ahead = np.column_stack([np.broadcast_to(heading, at.shape), 0.05 * np.sin(swing)])
-    axis = _unit(np.column_stack([np.cos(swing * 0.7), np.sin(swing * 0.7), 0.6 * np.sin(swing * 0.31)]))
-    side = _unit(np.cross(axis, [0.3, 0.5, 0.81]))
+    axis = unit(np.column_stack([np.cos(swing * 0.7), np.sin(swing * 0.7), 0.6 * np.sin(swing * 0.31)]))
+    side = unit(np.cross(axis, [0.3, 0.5, 0.81]))
     angle = (time * (2.0 + 4.0 * (seed * 53.0 % 1.0)) + 6.28 * (seed * 31.0 % 1.0))[:, None]
     along = np.cross(axis, side) * np.cos(angle) + axis * np.sin(angle)
-    across = np.where(streak[:, None], _unit(np.cross(ahead, eye - anchor)), side)
+    across = np.where(streak[:, None], unit(np.cross(ahead, eye - anchor)), side)
     up = np.where(streak[:, None], ahead, along)
     shade = np.where(streak, 1.0, 0.45 + 0.55 * np.abs(np.cross(across, up) @ SUN))
     return anchor, across, up, shade
-
-
-def _unit(vectors: Array) -> Array:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)

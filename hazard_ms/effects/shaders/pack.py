@@ -29,8 +29,8 @@ from hazard_ms.effects.shaders.shadow import PCF, SOFT
 from hazard_ms.effects.shaders.shimmer import AIR_FRAG, AIR_VERT, BEND
 from hazard_ms.effects.shaders.sway import STILL, SWAY_FRAG, SWAY_VERT
 from hazard_ms.effects.shaders.water import IMMERSE, IMMERSE_DEFERRED, IMMERSE_FORWARD
-from hazard_ms.machine.cache import kept_folder
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.storage.cache import kept_folder
 from hazard_ms.spec.undocumented import PREBUILT_SHADER_CONFIGS
 
 NAMES = {"full": "hazard", "fast": "hazard-fast", "off": "default"}  # effects mode -> shader pack of the cameras

@@ -11,7 +11,7 @@ from hazard_ms.effects.streets import cloth
 from hazard_ms.effects.streets.mesh import Frame
 from hazard_ms.effects.streets.town import Town, paint
 from hazard_ms.scenes.generate.draw import Draw
-from hazard_ms.simulation.building import extent_of
+from hazard_ms.scenes.solids import extent_of
 from hazard_ms.spec import Fixture, SceneSpec
 
 ABOVE = 2.2  # what hangs in the area where things can be is at least as high [m]: robots look from 1.1 m

@@ -20,8 +20,8 @@ from hazard_ms.effects.streets import painting
 from hazard_ms.effects.streets.mesh import Frame, Mesh
 from hazard_ms.effects.streets.plan import town_of
 from hazard_ms.scenes.shell import shell
-from hazard_ms.simulation.names import plain_name
 from hazard_ms.spec import SceneSpec
+from hazard_ms.spec.names import plain_name
 
 FIRM, LOOSE, CLOUDS = "town_firm", "town_loose", "town_clouds"  # names of the entities
 CLOUD_HEIGHT, CLOUD_REACH, CLOUD_SPAN = 13.0, 58.0, 34.0  # height, extent and size of the texture of clouds [m] [ours]

@@ -13,7 +13,7 @@ from hazard_ms.evaluation.averted.burden import Burden
 from hazard_ms.evaluation.averted.loss import Loads, Loss
 from hazard_ms.evaluation.metrics import Fate
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.hazards.base import Hazard
+from hazard_ms.hazards.base import pushes
 from hazard_ms.hazards.places import SETTLING, follow, strayed
 from hazard_ms.skills.actions import wait
 from hazard_ms.skills.decision import Decision
@@ -76,8 +76,7 @@ class Account(Watcher):
     def strayed(self) -> torch.Tensor:
         """Things that a hazard has carried off from where they were put, bool [B]: none where no hazard pushes."""
         moved = strayed(self._place, self._base.world)[0]
-        pushed = any(type(hazard).force is not Hazard.force for hazard in self._base.task.hazards)
-        return moved if pushed else torch.zeros_like(moved)
+        return moved if pushes(self._base.task.hazards) else torch.zeros_like(moved)
 
     def closed(self, fates: Callable[[], tuple[Fate, ...]]) -> dict[str, Any]:
         """The fields of a result that tell of loads, loss and targets, whose `fates` are asked for at the end.

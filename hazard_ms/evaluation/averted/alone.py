@@ -13,18 +13,18 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.agents.thinking import OFF
+from hazard_ms.agents.latency import OFF
 from hazard_ms.evaluation.averted.loss import Loss
 from hazard_ms.evaluation.choices import AVERTED
 from hazard_ms.evaluation.options import EpisodeOptions, SweepOptions
 from hazard_ms.evaluation.result import ALONE, versions
 from hazard_ms.evaluation.spread import spread
 from hazard_ms.evaluation.workers import SILENCE, Job
-from hazard_ms.machine.files import write
-from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.skills.decision import STOP
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.foreign import plain
+from hazard_ms.spec.registry.detectors import TRUTH
+from hazard_ms.spec.storage.files import write
 from hazard_ms.tasks import task_of
 
 FORMAT = 1  # goes up when a field changes its meaning

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from hazard_ms.simulation.names import plain_name
+from hazard_ms.spec.names import plain_name
 
 FORCE = 10.0  # from which a contact is a collision: more than brushing past, an impulse of 0.08 N s a step [N] [ours]
 GAP = 0.5  # time without contact after which touching the same thing is a new collision [s] [ours]

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hazard_ms.agents.thinking import OFF
+from hazard_ms.agents.latency import OFF
 from hazard_ms.evaluation.comparison.pairing import Episode
 from hazard_ms.evaluation.metrics import value
 from hazard_ms.evaluation.regret.causes import EpisodeRegret, beside
 from hazard_ms.evaluation.result import DamagedResultError, EpisodeResult, result_files
-from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.sensing.detection.eyes import EYES
+from hazard_ms.spec.registry.detectors import TRUTH
 
 
 @dataclass(frozen=True)

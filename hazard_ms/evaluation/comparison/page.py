@@ -13,7 +13,7 @@ from hazard_ms.evaluation import page as episode_page
 from hazard_ms.evaluation.comparison import charts, curves, losses
 from hazard_ms.evaluation.comparison.folders import Group, Kept
 from hazard_ms.evaluation.comparison.summary import interval
-from hazard_ms.machine.files import make_folder, write
+from hazard_ms.spec.storage.files import make_folder, write
 
 TEMPLATE = Path(__file__).with_name("comparison.html")
 OTHER_VERB = "#c8ced8"  # colour of a verb that is not one of ours

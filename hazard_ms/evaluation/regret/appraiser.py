@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.agents.courses import Notion, mean
-from hazard_ms.agents.hindsight import Hindsight
+from hazard_ms.agents.action_values import Notion, mean
+from hazard_ms.agents.judge import Judge
 from hazard_ms.evaluation.metrics import Tally
 from hazard_ms.evaluation.regret.causes import LATENCY, LEAST, MEMORY, MITIGATION, PERCEPTION, Appraisal, Without
 from hazard_ms.evaluation.regret.identities import Identities, Meant
@@ -45,9 +45,7 @@ class Appraiser(Watcher):
     averts       whether shares are of what is not lost when time is up, as in homes, and plans have measures
     """
 
-    def __init__(
-        self, count: int | None = None, mind: Callable[[SkillEnv], Hindsight] = Hindsight, told: bool = False
-    ) -> None:
+    def __init__(self, count: int | None = None, mind: Callable[[SkillEnv], Judge] = Judge, told: bool = False) -> None:
         """`count`: see above; `mind` makes the judge; `told`: whether the agent knows of all fires and tools."""
         self._count, self._made, self._told_all, self.averts = count, mind, told, False
         self.appraisals: list[Appraisal] = []

@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import Annotated
 
 from hazard_ms.evaluation.result import LARGEST, LIMITS, REGRET, Frame
-from hazard_ms.machine.files import write
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.foreign import plain
 from hazard_ms.spec.foreign.files import printable, sha256_of
 from hazard_ms.spec.foreign.plain import Within
+from hazard_ms.spec.storage.files import write
 
 FORMAT = 2  # goes up when a field changes its meaning
 LEAST = 0.02  # share of the value of all targets, beyond which a decision's regret has a cause

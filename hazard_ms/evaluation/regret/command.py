@@ -19,7 +19,7 @@ from hazard_ms.evaluation.result import FAILED, DamagedResultError, EpisodeResul
 from hazard_ms.evaluation.runner import play
 from hazard_ms.evaluation.spread import Where, spread
 from hazard_ms.evaluation.workers import Job, Outcome, Say
-from hazard_ms.registry import AGENTS, load
+from hazard_ms.spec.registry import AGENTS, load
 
 
 @dataclass(frozen=True)

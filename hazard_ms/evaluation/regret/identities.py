@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from hazard_ms.agents.courses import Place
+from hazard_ms.agents.action_values import Place
 from hazard_ms.skills.decision import Action
 from hazard_ms.skills.executor import SkillEnv
 

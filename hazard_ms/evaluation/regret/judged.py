@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from hazard_ms.agents.courses import Notion, Reach, State, mean
-from hazard_ms.agents.hindsight import Hindsight
+from hazard_ms.agents.action_values import Notion, Reach, State, mean
+from hazard_ms.agents.judge import Judge
 from hazard_ms.evaluation.regret.identities import Meant
 from hazard_ms.evaluation.regret.measures import MeasureWorth
 from hazard_ms.skills.decision import STOP
@@ -15,7 +15,7 @@ from hazard_ms.skills.decision import STOP
 class Judged:
     """One choice between the state in which the agent saw the world, and that in which it had chosen."""
 
-    def __init__(self, mind: Hindsight, seen: State, now: State, meant: Meant, total: float) -> None:
+    def __init__(self, mind: Judge, seen: State, now: State, meant: Meant, total: float) -> None:
         self._mind, self.seen, self._now, self._meant, self._total = mind, seen, now, meant, total
         self._limits = mind.limits(seen)
 

@@ -1,6 +1,6 @@
 """The worth of measures about the hazard of a home beyond rescues, with the true future: for judging decisions.
 
-Limits: those of `hazard_ms.planning.beginning`; a measure that is done later than foreseen (offers.py) spares as much.
+Limits: those of `sketch/planning/beginning.py`; a measure that is done later than foreseen (offers.py) spares as much.
 """
 
 from __future__ import annotations
@@ -9,18 +9,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from hazard_ms.agents.action_values import EASE, Place, State
 from hazard_ms.agents.aims import LITTLE
-from hazard_ms.agents.courses import EASE, Place, State
-from hazard_ms.agents.hindsight import Hindsight
+from hazard_ms.agents.judge import Judge
 from hazard_ms.agents.mitigating import costs
 from hazard_ms.agents.mitigating.prospects import FETCH, Prospect, seats_of
 from hazard_ms.evaluation.regret.offers import Offers
-from hazard_ms.planning.beginning import best_course
-from hazard_ms.planning.begun import begun
-from hazard_ms.planning.measures import Measures
-from hazard_ms.planning.problem import Problem
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, fire_of
+from hazard_ms.sketch.planning.beginning import best_course
+from hazard_ms.sketch.planning.begun import begun
+from hazard_ms.sketch.planning.measures import Measures
+from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.skills.decision import DROP, PICK_UP, WALK_TO, Action, Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.mitigations.extinguish import AROUND
@@ -35,7 +35,7 @@ NOTHING = 1e-3  # value of the targets up to which nothing is lost [ours]
 class MeasureWorth:
     """The worth of measures in one episode, in units of the targets' values."""
 
-    def __init__(self, env: SkillEnv, mind: Hindsight) -> None:
+    def __init__(self, env: SkillEnv, mind: Judge) -> None:
         """Take an environment in which an episode has just begun, and its judge."""
         self._env, self._base, self._mind = env, env.base, mind
         self._offers = Offers(env, mind)

@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from hazard_ms.agents.courses import State
-from hazard_ms.agents.hindsight import Hindsight
+from hazard_ms.agents.action_values import State
+from hazard_ms.agents.judge import Judge
 from hazard_ms.agents.mitigating import costs
 from hazard_ms.agents.mitigating.prospects import (
     FETCH,
@@ -26,10 +26,10 @@ from hazard_ms.agents.mitigating.prospects import (
     tools_of,
     ways_between,
 )
-from hazard_ms.planning.measures import Measure, Measures
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.sketch.futures.interventions import OUT, SHUT, Foreseen, Intervention, foresee
+from hazard_ms.sketch.planning.measures import Measure, Measures
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 from hazard_ms.skills.executor import SkillEnv
 
 KEPT = 600  # frames for which futures are kept [ours]
@@ -38,7 +38,7 @@ KEPT = 600  # frames for which futures are kept [ours]
 class Offers:
     """Finds the measures about the hazard in one episode, and foresees the outcome of each."""
 
-    def __init__(self, env: SkillEnv, mind: Hindsight) -> None:
+    def __init__(self, env: SkillEnv, mind: Judge) -> None:
         """Take an environment in which an episode has just begun, and its judge."""
         self._env, self._base, self._mind = env, env.base, mind
         self._foreseen: Foreseen | None = None

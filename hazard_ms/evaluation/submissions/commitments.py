@@ -18,11 +18,11 @@ from typing import Annotated
 
 from hazard_ms.evaluation.submissions.packing import Hash
 from hazard_ms.evaluation.submissions.tracks import PUBLISHED, TRACKS, Track, hidden_track
-from hazard_ms.machine.files import make_folder, write
 from hazard_ms.spec.checks import whole
 from hazard_ms.spec.foreign import plain
 from hazard_ms.spec.foreign.files import folder_name, read_foreign, sha256_of
 from hazard_ms.spec.foreign.plain import Within
+from hazard_ms.spec.storage.files import make_folder, write
 from hazard_ms.tasks.spare import file_of
 
 FORMAT = 1  # goes up when a field changes its meaning, goes away or is new

@@ -9,16 +9,16 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from hazard_ms.agents.base import PrivilegedAgent
-from hazard_ms.agents.thinking import OFF, frames_of
+from hazard_ms.agents.latency import OFF, frames_of
 from hazard_ms.evaluation.result import BROKEN, FAILED, FORMAT, EpisodeResult
 from hazard_ms.evaluation.submissions.packing import MANIFEST, Entry, Submission, mean_values, name_of
 from hazard_ms.evaluation.submissions.tracks import Track
 from hazard_ms.evaluation.teams.fields import TEAM_FORMAT
-from hazard_ms.registry import AGENTS, load
-from hazard_ms.registry.version import __version__
 from hazard_ms.sensing.detection.perception import eyes_of
 from hazard_ms.skills.options.features import FRAMES_PER_SECOND
 from hazard_ms.spec.foreign.plain import Within
+from hazard_ms.spec.registry import AGENTS, load
+from hazard_ms.spec.registry.version import __version__
 
 DAMAGED = "damaged file"
 ORDER = "wrong order"

@@ -29,10 +29,10 @@ from hazard_ms.evaluation.submissions.report import Claim, Report, Sample, Seen
 from hazard_ms.evaluation.submissions.tracks import TRACKS, Place, Track
 from hazard_ms.evaluation.workers import SILENCE, Job, Outcome, Say
 from hazard_ms.machine.cores import maker
-from hazard_ms.registry import AGENTS, load
 from hazard_ms.skills.decision import STOP
 from hazard_ms.spec.checks import whole
 from hazard_ms.spec.foreign.files import sha256_of
+from hazard_ms.spec.registry import AGENTS, load
 
 NOBODY = "random"  # an agent that is never asked: decisions are those of the record
 UNASKED = ("time", "failed", BROKEN, STUCK)  # ends of episodes that no agent chooses

@@ -14,7 +14,7 @@ from hazard_ms.evaluation.comparison import charts
 from hazard_ms.evaluation.metrics import Score
 from hazard_ms.evaluation.submissions.standings import FILM, Row, apart
 from hazard_ms.evaluation.submissions.tracks import TRACKS
-from hazard_ms.machine.files import make_folder, write
+from hazard_ms.spec.storage.files import make_folder, write
 
 BOARD = Path(__file__).with_name("board.html")
 ENTRY = Path(__file__).with_name("entry.html")

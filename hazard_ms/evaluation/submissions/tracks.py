@@ -7,11 +7,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from hazard_ms.agents.thinking import OFF, TOKENS
+from hazard_ms.agents.latency import OFF, TOKENS
 from hazard_ms.evaluation.options import EpisodeOptions
-from hazard_ms.registry.detectors import TRUTH
 from hazard_ms.sensing.detection.perception import parts
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.registry.detectors import TRUTH
 from hazard_ms.tasks import task_of
 from hazard_ms.tasks.spare import file_of
 

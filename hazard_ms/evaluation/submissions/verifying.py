@@ -14,7 +14,7 @@ from hazard_ms.evaluation.submissions.signing import sign
 from hazard_ms.evaluation.submissions.simulating import HERE
 from hazard_ms.evaluation.submissions.simulating import verify as simulated
 from hazard_ms.evaluation.submissions.tracks import HIDDEN, TRACKS, Track, track_of
-from hazard_ms.machine.files import make_folder, write
+from hazard_ms.spec.storage.files import make_folder, write
 
 SHOWN = 20  # faults that are printed [ours]
 

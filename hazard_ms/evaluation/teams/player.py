@@ -20,12 +20,12 @@ from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.result import BROKEN, DecisionRecord, EpisodeResult, Link, Played
 from hazard_ms.evaluation.runner import RUNNING, fates, result_of
 from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.registry import load
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.context import LowLevel
 from hazard_ms.skills.decision import STOP, Action, Decision, Result
 from hazard_ms.skills.failures import EPISODE_OVER
 from hazard_ms.skills.team import TeamSkills
+from hazard_ms.spec.registry import load
 
 STOPPED = "stopped"  # how an episode ends that all robots have stopped
 CUT_OFF = "end of record"  # how the simulation of a record ends where a robot has no decision left

@@ -21,8 +21,8 @@ from hazard_ms.hazards.fire.declared import TELLS, ignites
 from hazard_ms.hazards.fire.fire_state import BURNING, BURNT, NORMAL, FireState, lit, some_flames
 from hazard_ms.hazards.fire.kernels import Heat, temperature_at
 from hazard_ms.hazards.walls import Partitions
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.launch import of_environments
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.launch import of_environments
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.hazards.walls import Partitions, clear
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.boxes import axes_of, base_of
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.boxes import axes_of, base_of
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 
@@ -44,7 +44,7 @@ def immersion(height: float, slope: wp.vec2, axes: wp.mat33, half: wp.vec3, shap
     Args:
         height: Height of the surface above the body's centre [m].
         slope: Rise of the surface along x and y [-].
-        axes: Axes of the body, see hazard_ms.kernels.boxes.
+        axes: Axes of the body, see hazard_ms.simulation.kernels.boxes.
         half: Half edges of the body's box [m].
         shape: BOX, CYLINDER or BALL.
     """

@@ -2,7 +2,7 @@
 
     lift      rho g V f upwards, at the middle of the immersed part (f, the middle: hazard_ms.hazards.flood.buoyancy)
     drag      quadratic, per face, on the share f of each face, at the same point; and of turning
-              (hazard_ms.kernels.drag)
+              (hazard_ms.simulation.kernels.drag)
     damping   by waves: 2 zeta sqrt(rho g A m) of heaving at a waterline A, and the same rate of turning
     inertia   net force, and torque of lift and drag, are divided by 1 + Ca rho V f / m: some of the water moves along
 
@@ -17,9 +17,9 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.hazards.flood.buoyancy import BALL, CYLINDER, FILLS, Immersion
-from hazard_ms.kernels.boxes import face_areas, spans
-from hazard_ms.kernels.drag import drag, spin_drag
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.boxes import face_areas, spans
+from hazard_ms.simulation.kernels.drag import drag, spin_drag
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

@@ -32,7 +32,7 @@ from hazard_ms.hazards.flood.flood_state import FloodState
 from hazard_ms.hazards.flood.reach import PathArrays
 from hazard_ms.hazards.flood.soaking import ELECTRONIC, SHAPES, SOAKING, porosity
 from hazard_ms.hazards.flood.water import Water
-from hazard_ms.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.bodies import Bodies
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
 from hazard_ms.spec.catalogue import CATEGORIES

@@ -22,9 +22,9 @@ from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.flood import reach
 from hazard_ms.hazards.flood.flood_state import FloodState
 from hazard_ms.hazards.flood.reach import NEVER
-from hazard_ms.kernels.launch import Launches, of_environments
 from hazard_ms.scenes.inlets import inlets
 from hazard_ms.scenes.walls import WALLS, on_wall
+from hazard_ms.simulation.kernels.launch import Launches, of_environments
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Partition, Room, SceneSpec, Vec2
 

@@ -7,9 +7,9 @@ import warp as wp
 from hazard_ms.hazards.flood import floating, slab
 from hazard_ms.hazards.flood.buoyancy import immersion
 from hazard_ms.hazards.flood.reach import PathArrays, reach
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.boxes import axes_of, base_of, spans
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.boxes import axes_of, base_of, spans
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

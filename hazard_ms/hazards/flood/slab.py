@@ -6,14 +6,14 @@
 So the original's water has 0.4 of water's density, on the box along the world's axes (docs/physics.md 0.1, 1.2). At the
 centre of mass: nothing turns. A step never takes more than the whole slip, and lift is limited as in
 hazard_ms.hazards.flood.floating: the original's could blow up. `box` is always the edges of the bounding box along the
-world's axes [m], hazard_ms.kernels.boxes.spans.
+world's axes [m], hazard_ms.simulation.kernels.boxes.spans.
 """
 
 from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import warp as wp
 
-from hazard_ms.kernels.boxes import face_areas
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.boxes import face_areas
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

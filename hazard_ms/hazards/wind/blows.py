@@ -10,8 +10,8 @@ import warp as wp
 
 from hazard_ms.hazards.wind import air as laws
 from hazard_ms.hazards.wind.kernels import Air, Rules, speed_at
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

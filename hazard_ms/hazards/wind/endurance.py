@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from hazard_ms.assets.index import asset, asset_ids
 from hazard_ms.hazards.wind.air import DENSITY
+from hazard_ms.scenes.assets.index import asset, asset_ids
 from hazard_ms.simulation.building import FRICTION
 from hazard_ms.spec.catalogue import CATEGORIES, IMMOVABLE
 

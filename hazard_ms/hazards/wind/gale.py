@@ -36,8 +36,8 @@ from hazard_ms.hazards.wind.gale_state import GaleState
 from hazard_ms.hazards.wind.sweeping import sweeping_speed
 from hazard_ms.hazards.wind.wind import Wind
 from hazard_ms.hazards.wind.wind_state import WindState
-from hazard_ms.kernels.bodies import Bodies
 from hazard_ms.simulation.containers import CATEGORY, container_index
+from hazard_ms.simulation.kernels.bodies import Bodies
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import SceneSpec, rounding
 

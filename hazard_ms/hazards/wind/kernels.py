@@ -5,11 +5,11 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.hazards.wind import air as laws
-from hazard_ms.kernels import draws
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.boxes import axes_of, face_areas, spans, to_body
-from hazard_ms.kernels.drag import spin_drag
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels import draws
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.boxes import axes_of, face_areas, spans, to_body
+from hazard_ms.simulation.kernels.drag import spin_drag
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

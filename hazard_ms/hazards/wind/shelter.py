@@ -17,7 +17,7 @@ from torch import Tensor
 from hazard_ms.hazards.fire.floor import half_spans
 from hazard_ms.hazards.wind import wakes
 from hazard_ms.hazards.wind.air import CELL, LOWEST
-from hazard_ms.kernels.launch import Launches
+from hazard_ms.simulation.kernels.launch import Launches
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.catalogue import CATEGORIES
 

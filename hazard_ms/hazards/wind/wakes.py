@@ -15,7 +15,7 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.hazards.wind.air import CELL
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

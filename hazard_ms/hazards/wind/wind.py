@@ -32,11 +32,11 @@ from hazard_ms.hazards.wind import blows, breaking, gusts, kernels, shelter
 from hazard_ms.hazards.wind.air import REFERENCE
 from hazard_ms.hazards.wind.sweeping import sweeping_speed, toppling_speed
 from hazard_ms.hazards.wind.wind_state import WindState
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.draws import word
-from hazard_ms.kernels.launch import of_environments
-from hazard_ms.kernels.structs import Argument
 from hazard_ms.simulation.containers import container_index, in_containers
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.draws import word
+from hazard_ms.simulation.kernels.launch import of_environments
+from hazard_ms.simulation.kernels.structs import Argument
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity, rounding
 from hazard_ms.spec.catalogue import IMMOVABLE

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from hazard_ms.machine.files import write
 from hazard_ms.perception import layout
 from hazard_ms.perception.calibration.measuring import confusion_of
 from hazard_ms.perception.calibration.observing import observed
@@ -18,6 +17,7 @@ from hazard_ms.perception.calibration.thinned import Thinned
 from hazard_ms.perception.training.pictures import read
 from hazard_ms.sensing.detection.perception import perception as perception_of
 from hazard_ms.spec.checks import whole
+from hazard_ms.spec.storage.files import write
 
 MOST_EVERY = 64  # pixels; any larger number must be a mistake [ours]
 

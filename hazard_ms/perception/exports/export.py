@@ -6,14 +6,14 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-from hazard_ms.machine.files import flush, make_folder
-from hazard_ms.machine.parts import part_of
 from hazard_ms.perception.coco import tools
 from hazard_ms.perception.exports import coco_folder, huggingface, yolo
 from hazard_ms.perception.exports.source import Source
 from hazard_ms.perception.layout import LICENCES
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.foreign.files import read_foreign
+from hazard_ms.spec.storage.files import flush, make_folder
+from hazard_ms.spec.storage.parts import part_of
 
 WRITERS: dict[str, Callable[[Source, Path], None]] = {
     "yolo": yolo.write,

@@ -19,7 +19,6 @@ import numpy as np
 import torch
 from safetensors.torch import save
 
-from hazard_ms.machine.files import make_folder, write_together
 from hazard_ms.perception import coco
 from hazard_ms.perception.detectors.mask_rcnn import NETWORKS
 from hazard_ms.perception.detectors.small import NETWORK
@@ -32,6 +31,7 @@ from hazard_ms.perception.training.student import Student
 from hazard_ms.perception.training.validation import results_of, spread
 from hazard_ms.spec.checks import whole
 from hazard_ms.spec.foreign.plain import made
+from hazard_ms.spec.storage.files import make_folder, write_together
 
 MAX_GRADIENT_NORM = 10.0  # to which longer gradients are cut [ours]
 SCORED = 60  # validation pictures on which a network is scored on the way; at the end it is on all of them [ours]

@@ -6,9 +6,9 @@ import functools
 import math
 from dataclasses import dataclass, field
 
-from hazard_ms.assets.index import asset, asset_ids
-from hazard_ms.assets.rows import Asset
 from hazard_ms.scenes import boxes
+from hazard_ms.scenes.assets.index import asset, asset_ids
+from hazard_ms.scenes.assets.rows import Asset
 from hazard_ms.scenes.boxes import Box
 from hazard_ms.scenes.floor import RUG_HEIGHT
 from hazard_ms.scenes.generate.draw import Draw

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.generate.arrangement import Arrangement, NoPlaceError, space_before
 from hazard_ms.scenes.generate.draw import Draw
 from hazard_ms.scenes.generate.layout import Layout, RoomPart

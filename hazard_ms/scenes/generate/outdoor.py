@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.floor import cell_of, centre_of, free_for
 from hazard_ms.scenes.generate.arrangement import Arrangement, NoPlaceError, models_of
 from hazard_ms.scenes.generate.draw import STREAM, Draw

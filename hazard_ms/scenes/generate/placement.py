@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from hazard_ms.assets.index import asset
-from hazard_ms.assets.rows import Asset
+from hazard_ms.scenes.assets.index import asset
+from hazard_ms.scenes.assets.rows import Asset
 from hazard_ms.scenes.boxes import Box
 from hazard_ms.scenes.generate.arrangement import MIN_GAP, RESTING_HEIGHT, YAW_AT_WALL, Arrangement
 from hazard_ms.scenes.generate.layout import (

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import Box
 from hazard_ms.scenes.generate.arrangement import Arrangement, models_of
 from hazard_ms.scenes.generate.draw import Draw

@@ -9,8 +9,8 @@ from typing import Protocol
 
 import numpy as np
 
-from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import Box
 from hazard_ms.scenes.floor import (
     RUG_HEIGHT,

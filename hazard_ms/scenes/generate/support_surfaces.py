@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from hazard_ms.assets.rows import Asset
+from hazard_ms.scenes.assets.rows import Asset
 from hazard_ms.scenes.boxes import Box
 from hazard_ms.spec import Vec2, Vec3
 

@@ -14,8 +14,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from hazard_ms.assets import primitives
-from hazard_ms.assets.index import asset, asset_ids
+from hazard_ms.scenes.assets import primitives
+from hazard_ms.scenes.assets.index import asset, asset_ids
 from hazard_ms.scenes.original.things import Thing
 from hazard_ms.spec import Vec3
 from hazard_ms.spec.catalogue import CATEGORIES

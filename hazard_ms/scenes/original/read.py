@@ -18,8 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
-from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes, schema
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.generate.arrangement import RESTING_HEIGHT
 from hazard_ms.scenes.original.axes import (
     AXES,

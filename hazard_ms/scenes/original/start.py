@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import ndimage
 
-from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import Box
 from hazard_ms.scenes.floor import RUG_HEIGHT, Grid, cell_of, free_for
 from hazard_ms.spec import AgentStart, Body, Fixture, Room, Vec2

@@ -10,8 +10,8 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 
-from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.generate.arrangement import YAW_AT_WALL, models_of
 from hazard_ms.scenes.generate.draw import Draw
 from hazard_ms.scenes.generate.regions import BEYOND, SKY

@@ -12,8 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hazard_ms.registry import load
-from hazard_ms.registry.detectors import DETECTORS, TRUTH
 from hazard_ms.sensing.detection.detector import Detector
 from hazard_ms.sensing.detection.eyes import EYES, FAR, Eyes
 from hazard_ms.sensing.detection.labeller import THRESHOLD, DetectingLabeller, Labeller, PublishedLabeller
@@ -21,6 +19,8 @@ from hazard_ms.sensing.detection.own import OwnLabeller
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.parameters import parameters
+from hazard_ms.spec.registry import load
+from hazard_ms.spec.registry.detectors import DETECTORS, TRUTH
 
 OWN, PAPER = "own", "paper"
 ASSOCIATIONS: dict[str, type[DetectingLabeller]] = {OWN: OwnLabeller, PAPER: PublishedLabeller}

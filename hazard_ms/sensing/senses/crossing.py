@@ -10,8 +10,8 @@ import torch
 import warp as wp
 from torch import Tensor
 
-from hazard_ms.kernels.launch import OPTIONS
 from hazard_ms.sensing.senses.signals import Flames
+from hazard_ms.simulation.kernels.launch import OPTIONS
 from hazard_ms.simulation.world import World
 
 wp.set_module_options(OPTIONS)

@@ -8,13 +8,13 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.situation import Situation
 from hazard_ms.sensing.camera import points_of_depth
 from hazard_ms.sensing.senses import degraded, thermal
 from hazard_ms.sensing.senses.crossing import through
 from hazard_ms.sensing.senses.of_others import AMBIENT, WindSignals
 from hazard_ms.sensing.senses.signals import Murk, signals_of
 from hazard_ms.simulation.chance import Chance
+from hazard_ms.tasks.episode.situation import Situation
 
 THERMAL, DEGRADED = "thermal", "degraded"
 SENSES = (THERMAL, DEGRADED)

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 from torch import Tensor
 
 from hazard_ms.hazards.base import Hazard
-from hazard_ms.registry import load
 from hazard_ms.simulation.world import World
+from hazard_ms.spec.registry import load
 
 
 class Flames(NamedTuple):

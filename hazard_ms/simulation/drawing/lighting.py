@@ -17,14 +17,15 @@ import torch
 from sapien.render import RenderBodyComponent
 from torch import Tensor
 
-from hazard_ms.assets.index import asset, asset_path
-from hazard_ms.simulation.building import extent_of, lamp_places
+from hazard_ms.scenes.assets.index import asset, asset_path
+from hazard_ms.scenes.solids import extent_of
+from hazard_ms.simulation.building import lamp_places
 from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.drawing import relighting
 from hazard_ms.simulation.drawing.moods import Mood, moods_of
-from hazard_ms.simulation.names import plain_name
 from hazard_ms.spec import SceneSpec, Vec3
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.names import plain_name
 
 DRAWN = ("day", "evening", "night", "failing")  # what "random" chooses from
 LIGHTINGS = (*DRAWN, "random")

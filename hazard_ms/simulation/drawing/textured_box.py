@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import sapien
 
-from hazard_ms.assets.index import asset, asset_ids, asset_path
+from hazard_ms.scenes.assets.index import asset, asset_ids, asset_path
 from hazard_ms.scenes.materials import MATERIALS
 
 TEXTURE_EDGE = 2.0  # edge of the square that one texture covers [m]

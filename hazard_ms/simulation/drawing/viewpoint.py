@@ -12,7 +12,7 @@ import numpy as np
 import sapien
 from mani_skill.utils.sapien_utils import look_at
 
-from hazard_ms.assets.index import asset
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import Box, box_of
 from hazard_ms.spec import SceneSpec
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from hazard_ms.registry import TASKS
 from hazard_ms.sketch.fires.making import has_measures
 from hazard_ms.sketch.rescues.scene import SketchScene
 from hazard_ms.sketch.scenes import EYES, MOST_SCENES, level_ranges, more_scenes, scenes_of
 from hazard_ms.sketch.skill_times import SkillTimes, shipped
 from hazard_ms.spec.checks import one_of, whole
+from hazard_ms.spec.registry import TASKS
 from hazard_ms.tasks import task_of
 
 LONGEST = 2**31  # of an episode [frames]

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.hazards.presets import FREQUENCIES
-from hazard_ms.registry.mitigations import tools_of
 from hazard_ms.simulation.mitigation.equipment import kind_of
 from hazard_ms.sketch.fires.alone import Fires, fires_alone
 from hazard_ms.sketch.sight import Sight
@@ -19,6 +18,7 @@ from hazard_ms.skills.options.features import JET_WAY
 from hazard_ms.skills.options.fires import EXTINGUISH, measured
 from hazard_ms.spec import SceneSpec, Task
 from hazard_ms.spec.extinguishers import EXTINGUISHERS
+from hazard_ms.spec.registry.mitigations import tools_of
 
 SEEN_FROM = 6.0  # distance up to which heat around a fire is seen on the map [m] [ours]
 LOW = 0.1  # height of flames on the floor [m] [ours]

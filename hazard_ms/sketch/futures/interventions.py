@@ -14,14 +14,15 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from hazard_ms.episode.episode import Episode
+from hazard_ms.hazards.base import pushes
 from hazard_ms.hazards.fire.fire_state import FireState
 from hazard_ms.simulation.world import World
 from hazard_ms.sketch.futures import seats
 from hazard_ms.sketch.futures.surroundings import free_boards
-from hazard_ms.sketch.recording import Running, course_of, pushes
+from hazard_ms.sketch.recording import Running, rollout_of
 from hazard_ms.sketch.timeline import STRIDE
 from hazard_ms.spec.checks import one_of
+from hazard_ms.tasks.episode.episode import Episode
 
 OUT, SHUT, OPEN, BLOCK = "out", "shut", "open", "block"
 KINDS = (OUT, SHUT, OPEN, BLOCK)
@@ -76,7 +77,7 @@ def foresee(env: Running, sets: Sequence[Sequence[Intervention]], frames: int | 
             one_of(intervention.kind, KINDS, "kind")
             due.setdefault(intervention.frame, []).append((row, intervention))
     first = int(env.world.frame[0])
-    course = course_of(env, len(sets) + 1)
+    course = rollout_of(env, len(sets) + 1)
     burning = np.zeros(len(sets) + 1, np.int64)
     last = env.task.max_frames if frames is None else first + frames
     pushing = [k for k, hazard in enumerate(env.task.hazards) if pushes([hazard])]

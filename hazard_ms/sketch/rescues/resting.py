@@ -9,11 +9,11 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
-from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards.presets import FREQUENCIES
 from hazard_ms.simulation import building
 from hazard_ms.simulation.world import World
 from hazard_ms.tasks import task_of
+from hazard_ms.tasks.episode.episode import Episode
 
 SPLIT = "train"  # whose scenes a batch has, each in turn [ours]
 

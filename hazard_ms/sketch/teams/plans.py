@@ -10,14 +10,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.bound import never_damaged
-from hazard_ms.planning.problem import Problem
-from hazard_ms.robots import robot_class
 from hazard_ms.sketch.bound import easiest
+from hazard_ms.sketch.planning.bound import never_damaged
+from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.sketch.rescue_problem import Outset, RescueScene
 from hazard_ms.sketch.teams.split import split
 from hazard_ms.sketch.timeline import Timeline
 from hazard_ms.spec import Build, SceneSpec
+from hazard_ms.spec.registry.robots import robot_class
 
 Place = tuple[float, float]  # x, y [m]
 

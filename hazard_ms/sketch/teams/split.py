@@ -1,7 +1,7 @@
 """Plans of teams whose future is known: who fetches what, and in which order, for the most value in sum.
 
-For each robot the best order of every set of targets is found, by labels as in `hazard_ms.planning.orienteering` but
-without its cuts; then the sets are given out, which is exact: no other division is worth more. In these plans robots do
+For each robot the best order of every set of targets is found, by labels as in `hazard_ms.sketch.planning.orienteering`
+but without its cuts; then the sets are given out, which is exact: no other division is worth more. In these plans robots do
 not wait for one another, and none takes what another one put down.
 """
 
@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.planning.problem import PlannedRescue, Problem
-from hazard_ms.planning.travel import Spot
+from hazard_ms.sketch.planning.problem import PlannedRescue, Problem
+from hazard_ms.sketch.planning.travel import Spot
 
 MOST_TARGETS = 16  # all sets of these are looked at [ours: streets have 15]
 

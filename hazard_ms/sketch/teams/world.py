@@ -18,7 +18,6 @@ import numpy as np
 import torch
 from numpy.typing import ArrayLike
 
-from hazard_ms.robots import robot_class
 from hazard_ms.simulation.chance import Chance
 from hazard_ms.sketch.rescues import menu
 from hazard_ms.sketch.rescues.looking import stands
@@ -30,6 +29,7 @@ from hazard_ms.sketch.teams.starts import starts
 from hazard_ms.skills.options.environment import IDLE
 from hazard_ms.skills.options.options import END, FIRST, LOOK, TARGET_SLOTS
 from hazard_ms.spec.checks import whole
+from hazard_ms.spec.registry.robots import robot_class
 
 MOST_ROBOTS = 4  # of a team, as in the simulator
 MOST = 100_000  # rescues at once: any larger number must be a mistake [ours]

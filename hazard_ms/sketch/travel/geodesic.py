@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from hazard_ms.kernels.launch import Launches
+from hazard_ms.simulation.kernels.launch import Launches
 from hazard_ms.sketch.travel import straightening
 from hazard_ms.skills.motor.motion import ALONG
 from hazard_ms.skills.motor.navigation import AT_MOST, OBSTACLE_COST, SHORT

@@ -1,1 +1,1 @@
-"""Mitigations: skills with which agents act on hazards themselves; by verb: hazard_ms.registry.mitigations."""
+"""Mitigations: skills with which agents act on hazards themselves; by verb: hazard_ms.spec.registry.mitigations."""

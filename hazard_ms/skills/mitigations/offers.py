@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hazard_ms.registry import load
-from hazard_ms.registry.mitigations import LOOK_AT, MITIGATIONS, TELL
 from hazard_ms.sensing.detection.labeller import Labeller
 from hazard_ms.simulation.jet import KINDS
 from hazard_ms.skills.context import Stage
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, VERBS, Action, Tool
 from hazard_ms.skills.telling import check_message
 from hazard_ms.spec.checks import one_of
+from hazard_ms.spec.registry import load
+from hazard_ms.spec.registry.mitigations import LOOK_AT, MITIGATIONS, TELL
 
 
 def verbs_of(labeller: Labeller, mitigations: Sequence[str]) -> tuple[str, ...]:

@@ -7,7 +7,6 @@ from collections.abc import Generator
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.episode.grasp import GRASP_REACH
 from hazard_ms.skills import failures
 from hazard_ms.skills.context import LowLevel, Skill, Stage
 from hazard_ms.skills.decision import Result
@@ -20,6 +19,7 @@ from hazard_ms.skills.motor.routes import CLOSELY
 from hazard_ms.skills.motor.standing import better_place
 from hazard_ms.skills.motor.surface import NEARLY, Surface, place_of
 from hazard_ms.skills.motor.walking import behind_wall, known, way_to
+from hazard_ms.tasks.episode.grasp import GRASP_REACH
 
 LIMIT = 2.5  # greatest distance from the shoulder to the thing at which a pick-up begins (docs/benchmark.md 3) [m]
 APPROACH_FRAMES = 120  # budget for coming near enough [frames]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.robots.robot import Robot
+from hazard_ms.simulation.robot import Robot
 
 DAMPING = 0.05  # damping [m]; a smaller value is faster but shakes near singular postures
 WEIGHT = 0.15  # position error that weighs as much as a radian of direction error [m]

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.episode.grasp import GRASP_REACH
 from hazard_ms.skills.context import Stage
 from hazard_ms.skills.motor.arm import before, lacking, postures
 from hazard_ms.skills.motor.drift import Drift
@@ -20,6 +19,7 @@ from hazard_ms.skills.motor.motion import turned
 from hazard_ms.skills.motor.navigation import LOW
 from hazard_ms.skills.motor.routes import HIT_COST, Route, quickest
 from hazard_ms.skills.motor.surface import Leg, Surface, place_of
+from hazard_ms.tasks.episode.grasp import GRASP_REACH
 
 GRASP = 0.8 * GRASP_REACH  # the hand shuts this close to the thing [m]
 CLEAR = 0.05  # the hand aims this far off the thing, so that it does not push it away [m]

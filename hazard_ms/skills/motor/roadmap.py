@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from hazard_ms.robots.robot import Robot
+from hazard_ms.simulation.robot import Robot
 
 POSTURES = 500  # that are drawn [ours]
 NEIGHBOURS = 8  # nearest postures to which each has a line [ours]

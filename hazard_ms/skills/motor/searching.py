@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from hazard_ms.kernels.launch import OPTIONS, Launches
+from hazard_ms.simulation.kernels.launch import OPTIONS, Launches
 
 wp.set_module_options(OPTIONS)
 

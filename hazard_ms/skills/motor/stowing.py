@@ -12,8 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.episode.grasp import conjugate
-from hazard_ms.episode.safe_places import BAG_REACH
 from hazard_ms.simulation.containers import BASKET_HIGH, BASKET_LOW
 from hazard_ms.simulation.world import rotate
 from hazard_ms.skills import failures
@@ -27,6 +25,8 @@ from hazard_ms.skills.motor.reaching import standings
 from hazard_ms.skills.motor.routes import Route, quickest
 from hazard_ms.skills.motor.surface import NEARLY, Leg, Place, Surface
 from hazard_ms.skills.motor.walking import known
+from hazard_ms.tasks.episode.grasp import conjugate
+from hazard_ms.tasks.episode.safe_places import BAG_REACH
 
 OVER_BAG = 0.8 * BAG_REACH  # the hand opens this close to the mouth of the bag [m]
 INSETS = (0.16, 0.09)  # least distances from the walls of a basket to where a thing is put, in turn [m] [ours]

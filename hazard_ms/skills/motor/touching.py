@@ -11,7 +11,7 @@ import warp as wp
 from numpy.typing import NDArray
 from torch import Tensor
 
-from hazard_ms.kernels.launch import OPTIONS, Launches
+from hazard_ms.simulation.kernels.launch import OPTIONS, Launches
 
 wp.set_module_options(OPTIONS)
 

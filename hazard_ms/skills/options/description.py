@@ -8,12 +8,12 @@ from typing import Any
 import gymnasium as gym
 
 from hazard_ms.env import interface
-from hazard_ms.robots import robot_class
 from hazard_ms.sensing.modes import needs_pictures
 from hazard_ms.sensing.observation_table import Row
 from hazard_ms.skills.options.features import Encoder
 from hazard_ms.skills.options.fires import measured
 from hazard_ms.skills.options.interface import describe as describe_skills
+from hazard_ms.spec.registry.robots import robot_class
 from hazard_ms.tasks import task_of
 
 SKILLS = "Skills-v"  # in the ids of environments of skills

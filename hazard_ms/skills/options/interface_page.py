@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from hazard_ms.episode.rewards import FOR_HOLDING, FOR_NEARNESS, PER_RESCUE
 from hazard_ms.sensing.observation_table import JOINT_MARGIN, OBSERVATION_VERSION, Row
 from hazard_ms.skills.options.description import bounds, entries, sections_of
 from hazard_ms.skills.options.feature_columns import FEATURES_VERSION, MEASURED_VERSION
 from hazard_ms.skills.options.features import Encoder
 from hazard_ms.skills.options.interface import describe
+from hazard_ms.tasks.episode.rewards import FOR_HOLDING, FOR_NEARNESS, PER_RESCUE
 
 HEAD = f"""# What a learner sees, does and gets
 

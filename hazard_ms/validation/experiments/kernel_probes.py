@@ -6,9 +6,9 @@ import warp as wp
 
 from hazard_ms.hazards.flood import buoyancy, slab
 from hazard_ms.hazards.flood.realistic import cylinders
-from hazard_ms.kernels import drag as drags
-from hazard_ms.kernels.boxes import axes_of
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels import drag as drags
+from hazard_ms.simulation.kernels.boxes import axes_of
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from hazard_ms.kernels.launch import Launches
+from hazard_ms.simulation.kernels.launch import Launches
 from hazard_ms.validation.experiments import kernel_probes
 
 _launches = Launches()
@@ -36,7 +36,7 @@ def immersion(
 
 
 def drag(slip: Tensor, rotation: Tensor, pull: Tensor, mass: Tensor, ball: Tensor, dt: float) -> Tensor:
-    """Force [N], [N, 3], of hazard_ms.kernels.drag.drag on N bodies over a step of `dt` [s].
+    """Force [N], [N, 3], of hazard_ms.simulation.kernels.drag.drag on N bodies over a step of `dt` [s].
 
     `slip` [m/s] and `pull` [kg/m] are [N, 3], `rotation` is [N, 4], `mass` [kg] and `ball` are [N].
     """
@@ -46,7 +46,7 @@ def drag(slip: Tensor, rotation: Tensor, pull: Tensor, mass: Tensor, ball: Tenso
 
 
 def spin_drag(spin: Tensor, rotation: Tensor, extent: Tensor, mass: Tensor, density: float, dt: float) -> Tensor:
-    """Torque [N m], [N, 3], of hazard_ms.kernels.drag.spin_drag on N bodies over a step of `dt` [s].
+    """Torque [N m], [N, 3], of hazard_ms.simulation.kernels.drag.spin_drag on N bodies over a step of `dt` [s].
 
     `spin` [rad/s] and `extent` [m] are [N, 3], `rotation` is [N, 4], `mass` [kg] is [N], `density` [kg/m^3] one number.
     """

@@ -9,7 +9,7 @@ import math
 import numpy as np
 import torch
 
-from hazard_ms.registry import ROBOTS, find, load
+from hazard_ms.spec.registry import ROBOTS, find, load
 from hazard_ms.validation.experiments.wind import REAL, gusty, three_seconds
 from hazard_ms.validation.experiments.yard import Block, Thing, Yard, begin, run, street
 

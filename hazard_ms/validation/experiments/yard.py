@@ -11,13 +11,13 @@ import sapien
 import torch
 from sapien.physx import PhysxCpuSystem, PhysxRigidDynamicComponent
 
-from hazard_ms.episode.episode import Episode
 from hazard_ms.hazards.base import Push
 from hazard_ms.hazards.wind.wind import Wind
 from hazard_ms.hazards.wind.wind_state import WindState
 from hazard_ms.simulation.physx import CpuHandles
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import UPRIGHT, AgentStart, Body, Fixture, Quat, Room, SceneSpec, Vec2, Vec3
+from hazard_ms.tasks.episode.episode import Episode
 from hazard_ms.validation.experiments.fire_room import repeat
 
 STILL: dict[str, Any] = {"turbulence": 0.0, "torque": 0.0}  # the main force alone

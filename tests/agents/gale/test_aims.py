@@ -12,11 +12,11 @@ from hazard_ms.agents.gale.aims import GaleAims, aims_of
 from hazard_ms.agents.gale.course import Course, Front, Lees
 from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.hazards.presets import gale, wind
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 from hazard_ms.skills.brief import HazardBrief
 from hazard_ms.skills.decision import DROP, Action, Result
 

@@ -12,7 +12,7 @@ import pytest
 from hazard_ms.agents.gale.aims import GaleAims
 from hazard_ms.agents.gale.carts import FAILURES, Pushing, pushes
 from hazard_ms.hazards.presets import gale
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.travel import StaticTravel
 from hazard_ms.skills.decision import WALK_TO, Action, Result
 from tests.agents.gale.test_aims import NAMES, ahead, aims, brief, decision
 

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from hazard_ms.agents.gale.sites import OnGround, sites
 from hazard_ms.agents.gale.stops import PUT_DOWN, SURER, put_away, stops
-from hazard_ms.planning.orienteering import solve
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import MovingTravel, straight_line
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.sketch.planning.orienteering import solve
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import MovingTravel, straight_line
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.decision import DROP, WALK_TO, Action
 

@@ -10,7 +10,7 @@ import pytest
 from hazard_ms.agents.base import agent
 from hazard_ms.agents.learned.players import SHIPPED
 from hazard_ms.agents.learned.weights import ENDING, load, load_map, sees_map
-from hazard_ms.registry import TASKS
+from hazard_ms.spec.registry import TASKS
 from tests.worlds.playground import Playground, brief
 
 FILES = sorted(SHIPPED.glob(f"*{ENDING}"))

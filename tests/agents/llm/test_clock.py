@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from hazard_ms.agents.base import Agent
-from hazard_ms.agents.thinking import Thought, frames_of, seconds_of
+from hazard_ms.agents.latency import Thought, frames_of, seconds_of
 from hazard_ms.evaluation.metrics import Fate
 from hazard_ms.evaluation.options import EpisodeOptions, SweepOptions
 from hazard_ms.evaluation.replay import job_of

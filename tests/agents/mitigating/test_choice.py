@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from hazard_ms.agents.mitigating.choice import LEAST_GAIN, LEAST_IN_WATER, UNPLANNED, Chooser
-from hazard_ms.planning.beginning import Course, Step
-from hazard_ms.planning.problem import Plan, Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.beginning import Course, Step
+from hazard_ms.sketch.planning.problem import Plan, Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 from hazard_ms.spec import Task
 from hazard_ms.tasks.house import hazard_house_fire, hazard_house_flood
 

@@ -8,8 +8,8 @@ import pytest
 
 from hazard_ms.agents.base import agent, note_of
 from hazard_ms.agents.paper.mcts import Mcts
-from hazard_ms.registry import AGENTS
 from hazard_ms.skills.decision import EXPLORE, Action
+from hazard_ms.spec.registry import AGENTS
 from tests.worlds.playground import Playground, brief, play
 
 NAMES = ("paper/greedy", "paper/rule", "paper/mcts", "paper/mcts_diff")

@@ -9,7 +9,7 @@ import pytest
 
 from hazard_ms.agents.search import candidates, mitigating
 from hazard_ms.agents.search.lookouts import Lookout
-from hazard_ms.planning.beginning import Course, best_course
+from hazard_ms.sketch.planning.beginning import Course, best_course
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action, Result
 from hazard_ms.skills.failures import MAX_FRAMES, NOT_BURNING
 from tests.agents.search.test_mitigating import NAMES, PLACES, begun, decision, home, on_fire

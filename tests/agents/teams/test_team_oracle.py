@@ -16,10 +16,10 @@ from hazard_ms.evaluation.replay import EXACT, compare, job_of
 from hazard_ms.evaluation.result import EpisodeResult
 from hazard_ms.evaluation.teams.player import privileged_team
 from hazard_ms.evaluation.workers import Job, Word
-from hazard_ms.registry import AGENTS, load
 from hazard_ms.skills.decision import EXPLORE, WALK_TO
 from hazard_ms.skills.team import TeamSkills
 from hazard_ms.spec import AgentStart, Body, Room, SceneSpec, Task
+from hazard_ms.spec.registry import AGENTS, load
 from hazard_ms.tasks.fire import hazard_fire
 from tests.agents.teams.test_teams_divide import decision
 from tests.worlds.playground import brief

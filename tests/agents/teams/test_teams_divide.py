@@ -14,8 +14,8 @@ from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.teams.auction import Auction
 from hazard_ms.agents.teams.joint import Joint
 from hazard_ms.agents.teams.sharing import places_of
-from hazard_ms.planning.problem import Problem
-from hazard_ms.planning.travel import StaticTravel
+from hazard_ms.sketch.planning.problem import Problem
+from hazard_ms.sketch.planning.travel import StaticTravel
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action, Result
 from hazard_ms.skills.failures import MAX_FRAMES
 

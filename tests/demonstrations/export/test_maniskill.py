@@ -126,7 +126,7 @@ def test_the_tool_of_maniskill_replays_it(real: Path, tmp_path: Path, how: list[
     again = tmp_path / "again.h5"
     for suffix in (".h5", ".json"):
         again.with_suffix(suffix).write_bytes(path.with_suffix(suffix).read_bytes())
-    tool = ["-m", "hazard_ms.maniskill", "replay_trajectory", "--traj-path", str(again)]
+    tool = ["-m", "hazard_ms.cli.maniskill", "replay_trajectory", "--traj-path", str(again)]
     wanted = ["--save-traj", "--allow-failure", "--obs-mode", "state", *how]
     out = subprocess.run([sys.executable, *tool, *wanted], capture_output=True, text=True, cwd=ROOT, check=False)
     assert "Replayed 1 episodes, 1/1" in out.stdout, out.stderr[-2000:]

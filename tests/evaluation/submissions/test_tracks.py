@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from hazard_ms.agents.base import Agent
-from hazard_ms.agents.thinking import TOKENS, Thought
+from hazard_ms.agents.latency import TOKENS, Thought
 from hazard_ms.cli.__main__ import main
 from hazard_ms.evaluation.attempts import attempt
 from hazard_ms.evaluation.averted.alone import losses

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hazard_ms.hazards.fire.realistic import burning, fuels, radiation, tenability, thermometer
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.presets import fire
-from hazard_ms.kernels.launch import OPTIONS, Launches
+from hazard_ms.simulation.kernels.launch import OPTIONS, Launches
 from hazard_ms.simulation.walls import Walls
 from hazard_ms.spec.catalogue import CATEGORIES
 

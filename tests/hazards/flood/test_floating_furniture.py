@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 import torch
 
-from hazard_ms.assets.index import asset
 from hazard_ms.hazards.flood.realistic import buoyant
 from hazard_ms.hazards.flood.realistic.floor_plan import CELL
 from hazard_ms.hazards.presets import flood
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.simulation.building import make_world
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition, Room, SceneSpec

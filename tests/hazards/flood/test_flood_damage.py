@@ -8,13 +8,13 @@ import math
 import pytest
 import torch
 
-from hazard_ms.episode.records import Damage
 from hazard_ms.hazards.flood import wading
 from hazard_ms.hazards.flood.flood import Flood, FloodState
 from hazard_ms.hazards.presets import flood
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Partition
+from hazard_ms.tasks.episode.records import Damage
 from tests.worlds.flood_worlds import Tank, Thing, begin, frames, on_a_plane, room
 
 EVERY = ["paper", "shipped", "realistic"]

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from hazard_ms.bench import kernels
 from hazard_ms.hazards.flood.buoyancy import BALL, BOX, CYLINDER
 from hazard_ms.hazards.presets import flood
+from hazard_ms.validation import kernel_costs as kernels
 from hazard_ms.validation.experiments.probes import Immersion, drag, immersion, spin_drag
 from tests.worlds import polyhedra
 from tests.worlds.flood_worlds import Thing, begin, room

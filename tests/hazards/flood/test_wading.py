@@ -9,14 +9,14 @@ from typing import Any, cast
 import pytest
 import torch
 
-from hazard_ms.episode.episode import Episode
-from hazard_ms.episode.rewards import told
-from hazard_ms.episode.situation import Situation
 from hazard_ms.hazards.flood.realistic import footing
 from hazard_ms.hazards.presets import flood, wind
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.robots.g1 import HazardG1
 from hazard_ms.spec import Build
+from hazard_ms.tasks.episode.episode import Episode
+from hazard_ms.tasks.episode.rewards import told
+from hazard_ms.tasks.episode.situation import Situation
 from hazard_ms.validation.experiments.basin import Basin
 
 LAW = dataclasses.replace(flood("realistic"), outside=0.0, roughness=0.0)

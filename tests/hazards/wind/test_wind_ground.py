@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 import torch
 
-from hazard_ms.assets.shipped import shipped_index
 from hazard_ms.hazards.presets import wind
+from hazard_ms.scenes.assets.shipped import shipped_index
 from hazard_ms.spec.catalogue import CATEGORIES, WIND_POOL
 from tests.worlds.wind_worlds import GRAVITY, LAW, SHIPPED, STILL, Thing, Yard, apart, box
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from hazard_ms.registry import load
-from hazard_ms.registry.detectors import DETECTORS, TRUTH, register_detector
 from hazard_ms.sensing.detection.detector import Detection, Detector
 from hazard_ms.sensing.detection.noisy import Noisy
 from hazard_ms.sensing.detection.perception import parts, perception
+from hazard_ms.spec.registry import load
+from hazard_ms.spec.registry.detectors import DETECTORS, TRUTH, register_detector
 
 
 class Blind(Detector):
@@ -25,7 +25,7 @@ class Blind(Detector):
 
 @pytest.fixture(autouse=True)
 def blind(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("hazard_ms.registry.detectors._detectors", {**DETECTORS})
+    monkeypatch.setattr("hazard_ms.spec.registry.detectors._detectors", {**DETECTORS})
     monkeypatch.setattr("hazard_ms.sensing.detection.perception.DETECTORS", {**DETECTORS, "blind": Blind})
 
 

@@ -11,9 +11,9 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.registry import TASKS
 from hazard_ms.skills.options.interface import INFO
 from hazard_ms.skills.options.paper_actions import COUNT, LET_GO, LOOK
+from hazard_ms.spec.registry import TASKS
 
 ID = "hazard_ms:HazardFireSkills-v1"
 SCENE = {"scenes": ["kitchen_a/00"], "actions": "paper", "reward": "paper"}

@@ -11,11 +11,11 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import hazard_ms  # noqa: F401 registers the environments
-from hazard_ms.registry import TASKS
 from hazard_ms.sketch.environments.settings import Settings
 from hazard_ms.sketch.environments.single import SketchSkills
 from hazard_ms.skills.options.interface import INFO
 from hazard_ms.skills.options.options import COUNT, END, FIRST, LOOK
+from hazard_ms.spec.registry import TASKS
 from hazard_ms.tasks import task_of
 
 ID = "hazard_ms:HazardFireSkills-v1"

@@ -9,7 +9,7 @@ import struct
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.assets.intake.model import Model, model_of_file
+from hazard_ms.scenes.assets.intake.model import Model, model_of_file
 
 TRIANGLE = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
 INSIDE = "data:application/octet-stream;base64," + base64.b64encode(TRIANGLE).decode()

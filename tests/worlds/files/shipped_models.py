@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
-from hazard_ms.assets.index import asset, asset_ids, asset_path
-from hazard_ms.assets.rows import Asset
+from hazard_ms.scenes.assets.index import asset, asset_ids, asset_path
+from hazard_ms.scenes.assets.rows import Asset
 
 
 def models() -> list[Asset]:

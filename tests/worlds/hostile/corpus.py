@@ -56,8 +56,8 @@ class Outcome:
 
 def read_model(number: int, folder: Path) -> tuple[str, Callable[[], int]]:
     """The hostile model of a number, and what converts it as the package does."""
-    from hazard_ms.assets.intake import worker
-    from hazard_ms.assets.intake.model import UPRIGHT
+    from hazard_ms.scenes.assets.intake import worker
+    from hazard_ms.scenes.assets.intake.model import UPRIGHT
     from tests.worlds.hostile.models import model
 
     kind, files = model(number)

@@ -23,23 +23,23 @@ from hazard_ms.agents.learned import weights
 from hazard_ms.agents.learned.map_policy import MapPolicy, MapShape
 from hazard_ms.agents.learned.set_policy import SetPolicy, Shape
 from hazard_ms.agents.llm.cache import Cache, Stored
+from hazard_ms.cli.web import rescue
 from hazard_ms.demonstrations import reading
 from hazard_ms.demonstrations.layout import MANIFEST, content_of, hashes_of
 from hazard_ms.demonstrations.merging import merge
 from hazard_ms.demonstrations.repair import repair
 from hazard_ms.demonstrations.stats import stats
 from hazard_ms.demonstrations.verify import verify
-from hazard_ms.evaluation.decision_page import decision_page, read_trace
 from hazard_ms.evaluation.options import EpisodeOptions
 from hazard_ms.evaluation.page import page
 from hazard_ms.evaluation.regret.causes import PARTS, DecisionRegret, EpisodeRegret, beside, digest, place_of
+from hazard_ms.evaluation.regret.decision_page import decision_page, read_trace
 from hazard_ms.evaluation.result import DecisionRecord, EpisodeResult, Link
 from hazard_ms.learning.checks import Check, curve_of
-from hazard_ms.sketch import columns, fit_times, keeping, skill_times, timeline
+from hazard_ms.sketch import array_files, fit_times, scene_cache, skill_times, timeline
 from hazard_ms.skills.options.options import COUNT
 from hazard_ms.spec.foreign.arrays import read_arrays
 from hazard_ms.spec.foreign.files import read_foreign
-from hazard_ms.web import rescue
 from tests.worlds.halls import future, hall
 from tests.worlds.hostile import sights
 from tests.worlds.hostile.mutations import mutated, replaced
@@ -176,8 +176,8 @@ KINDS = {
         lambda f: future(hall(1.0, 2.0)).write(f / "a.timeline"), lambda f: timeline.read(f / "a.timeline")
     ),
     "sketches": Kind(
-        lambda f: (f / "a.scene").write_bytes(keeping.to_bytes(scene([(0.0, 0.0), (1.0, 2.0)], (1,)))),
-        lambda f: keeping.from_bytes(read_foreign(f / "a.scene", columns.LARGEST)),
+        lambda f: (f / "a.scene").write_bytes(scene_cache.to_bytes(scene([(0.0, 0.0), (1.0, 2.0)], (1,)))),
+        lambda f: scene_cache.from_bytes(read_foreign(f / "a.scene", array_files.LARGEST)),
     ),
     "skill-times": Kind(
         lambda f: shutil.copyfile(skill_times.SHIPPED, f / "times.json"),

@@ -9,9 +9,9 @@ from typing import Any
 
 from hazard_ms.agents.llm.homes.rooms import Rooms
 from hazard_ms.agents.llm.scene_text import Block, plain_names
-from hazard_ms.registry.mitigations import TELL
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Decision, Message
+from hazard_ms.spec.registry.mitigations import TELL
 
 MOST = 10  # messages that are told, the newest [ours]
 NEAR = 3.0  # distance of a robot from a thing within which it is told to be near it [m] [ours]

@@ -10,8 +10,8 @@ from collections.abc import Collection
 from hazard_ms.agents.llm.choices import FETCH
 from hazard_ms.agents.llm.rules import greedy, rows
 from hazard_ms.agents.llm.scene_text import Block
-from hazard_ms.registry.mitigations import TELL
 from hazard_ms.skills.telling import LONGEST, named_in
+from hazard_ms.spec.registry.mitigations import TELL
 
 FETCHING, SEEING = "I fetch ", "I see "  # before names of things in a message
 

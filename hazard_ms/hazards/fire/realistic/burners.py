@@ -16,8 +16,8 @@ from hazard_ms.hazards.fire.fire_state import BURNING
 from hazard_ms.hazards.fire.realistic import burning, fuels
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.radiation import Fires
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.launch import OPTIONS
 from hazard_ms.simulation.world import World
 
 wp.set_module_options(OPTIONS)

@@ -15,7 +15,7 @@ from hazard_ms.hazards.fire.realistic import radiation, touching
 from hazard_ms.hazards.fire.realistic.twozone.balance import Rooms
 from hazard_ms.hazards.fire.realistic.twozone.zones import zone_at
 from hazard_ms.hazards.walls import Partitions, clear
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

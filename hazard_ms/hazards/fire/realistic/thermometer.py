@@ -18,7 +18,7 @@ from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.twozone.balance import Rooms
 from hazard_ms.hazards.fire.realistic.twozone.zones import zone_at
 from hazard_ms.hazards.walls import Partitions, clear
-from hazard_ms.kernels.launch import OPTIONS, of_environments
+from hazard_ms.simulation.kernels.launch import OPTIONS, of_environments
 from hazard_ms.simulation.world import World
 
 wp.set_module_options(OPTIONS)

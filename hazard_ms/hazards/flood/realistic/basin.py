@@ -5,8 +5,8 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.hazards.flood.realistic.floor_plan import BEYOND, CELL
-from hazard_ms.kernels.launch import OPTIONS
-from hazard_ms.kernels.rows import at, put
+from hazard_ms.simulation.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.rows import at, put
 
 wp.set_module_options(OPTIONS)
 

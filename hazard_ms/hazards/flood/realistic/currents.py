@@ -8,9 +8,9 @@ from hazard_ms.hazards.flood import floating
 from hazard_ms.hazards.flood.kernels import Flooded, body_at, wet
 from hazard_ms.hazards.flood.realistic.basin import Basin, here
 from hazard_ms.hazards.flood.realistic.cylinders import immersed
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.boxes import axes_of
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.boxes import axes_of
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

@@ -14,7 +14,7 @@ import numpy as np
 import warp as wp
 
 from hazard_ms.hazards.flood.buoyancy import CYLINDER, Immersion, immersion
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

@@ -18,7 +18,7 @@ from torch import Tensor
 
 from hazard_ms.hazards.flood.realistic.basin import Basin, here
 from hazard_ms.hazards.flood.wading import DRAG_COEFFICIENT
-from hazard_ms.kernels.launch import OPTIONS, Launches
+from hazard_ms.simulation.kernels.launch import OPTIONS, Launches
 from hazard_ms.spec import Build
 
 wp.set_module_options(OPTIONS)

@@ -40,8 +40,8 @@ from hazard_ms.hazards.flood.realistic import (
 )
 from hazard_ms.hazards.flood.realistic.basin import Basin
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
-from hazard_ms.kernels.bodies import Bodies
-from hazard_ms.kernels.launch import of_environments
+from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.launch import of_environments
 from hazard_ms.simulation.openings import Strain
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity, SceneSpec

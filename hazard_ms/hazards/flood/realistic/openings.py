@@ -18,7 +18,7 @@ from torch import Tensor
 from hazard_ms.hazards.base import none_set
 from hazard_ms.hazards.flood.realistic import inlets
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
-from hazard_ms.kernels.launch import Launches
+from hazard_ms.simulation.kernels.launch import Launches
 from hazard_ms.simulation.openings import GAP, Strain
 from hazard_ms.simulation.world import World
 

@@ -30,8 +30,8 @@ from hazard_ms.hazards.flood.realistic.basin import (
     per_cube_root,
 )
 from hazard_ms.hazards.flood.realistic.inlets import hold_back, let_in, orifice
-from hazard_ms.kernels.launch import OPTIONS
-from hazard_ms.kernels.rows import at, put
+from hazard_ms.simulation.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.rows import at, put
 
 wp.set_module_options(OPTIONS)
 

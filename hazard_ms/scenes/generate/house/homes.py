@@ -10,8 +10,8 @@ import dataclasses
 import hashlib
 import math
 
-from hazard_ms.assets.index import asset
 from hazard_ms.scenes import boxes
+from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.floor import doorways, free_for, take
 from hazard_ms.scenes.generate.arrangement import MIN_GAP, RESTING_HEIGHT, NoPlaceError, models_of
 from hazard_ms.scenes.generate.draw import STREAM, Draw

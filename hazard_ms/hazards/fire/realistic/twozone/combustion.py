@@ -12,7 +12,7 @@ import warp as wp
 
 from hazard_ms.hazards.fire.realistic.twozone import balance, gas, plumes
 from hazard_ms.hazards.fire.realistic.twozone.balance import Rooms
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

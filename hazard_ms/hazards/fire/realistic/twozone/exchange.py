@@ -16,7 +16,7 @@ from hazard_ms.hazards.fire.realistic import radiation
 from hazard_ms.hazards.fire.realistic.twozone import balance, gas, vents
 from hazard_ms.hazards.fire.realistic.twozone.balance import Rooms
 from hazard_ms.hazards.fire.realistic.twozone.gas import Gas
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import warp as wp
 
 from hazard_ms.hazards.fire.realistic import radiation
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

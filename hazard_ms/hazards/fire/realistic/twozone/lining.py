@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import warp as wp
 
-from hazard_ms.kernels.launch import OPTIONS
+from hazard_ms.simulation.kernels.launch import OPTIONS
 
 wp.set_module_options(OPTIONS)
 

@@ -1,7 +1,0 @@
-"""The page's third part: results of folders beside one another."""
-
-from __future__ import annotations
-
-from hazard_ms.web.compare.answers import routes
-
-__all__ = ["routes"]

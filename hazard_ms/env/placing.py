@@ -10,7 +10,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from hazard_ms.scenes.floor import FLOOR_CELL
+from hazard_ms.scenes.floor import FLOOR_CELL, open_leaves, touches
 from hazard_ms.scenes.reach import floor_of
 from hazard_ms.simulation import clearance
 from hazard_ms.simulation.robot import Robot
@@ -28,14 +28,15 @@ def starts(world: World, env: int, builds: Sequence[Build]) -> list[tuple[float,
     """
     spec = world.specs[env]
     first = spec.agent_start.position
-    found = [first]
+    found, leaves = [first], open_leaves(spec.room)
     for number, build in enumerate(builds[1:], 1):
         cells = (np.argwhere(floor_of(spec, build.radius)) + 0.5) * FLOOR_CELL
         for place, other in zip(found, builds, strict=False):
             cells = cells[np.hypot(*(cells - place).T) >= build.radius + other.radius + APART]
         order = np.argsort(np.hypot(*(cells - first).T), kind="stable")
         sorted_cells = [(float(x), float(y)) for x, y in cells[order]]
-        clear = (cell for cell in sorted_cells if not clearance.obstacle(world, env, cell, build.radius))
+        outside = (cell for cell in sorted_cells if not touches(leaves, cell, build.radius + clearance.MARGIN))
+        clear = (cell for cell in outside if not clearance.obstacle(world, env, cell, build.radius))
         nearest = next(clear, None)
         if nearest is None:
             raise ValueError(f"robot_uids must be at most {number} robots in {spec.name}, got {len(builds)}")

@@ -25,7 +25,9 @@ from hazard_ms.scenes.floor import (
     free_floor,
     free_for,
     halls,
+    open_leaves,
     partitions,
+    touches,
 )
 from hazard_ms.scenes.generate.scatter import MAX_TOP_HEIGHT, REACH_DISTANCE, ROBOT_RADIUS
 from hazard_ms.scenes.solids import Corners, corners_of, gap
@@ -50,7 +52,7 @@ def check(spec: SceneSpec) -> list[str]:
     missing = list(_missing(spec))
     if missing:
         return missing
-    return [*_sizes(spec), *_inside(spec), *_apart(spec), *_ways(spec), *_fires(spec)]
+    return [*_sizes(spec), *_inside(spec), *_apart(spec), *_leaves(spec), *_ways(spec), *_fires(spec)]
 
 
 def _missing(spec: SceneSpec) -> Iterator[str]:
@@ -110,6 +112,17 @@ def _apart(spec: SceneSpec) -> Iterator[str]:
                 yield f"{a.name} and {b.name} are inside each other by {-gap(solid[i], solid[j]):.3f} m"
         if any(gap(solid[i], wall) < -DEEP for wall in walls):
             yield f"{a.name} is inside a wall"
+
+
+def _leaves(spec: SceneSpec) -> Iterator[str]:
+    """What is in the way of a door's leaf that stands open at frame 0: the robot, or things."""
+    leaves = open_leaves(spec.room)
+    if touches(leaves, spec.agent_start.position, ROBOT_RADIUS):
+        yield f"the robot starts in a door's open leaf, at {spec.agent_start.position}"
+    solid = [_corners(b) for b in leaves]
+    for t in spec.bodies:
+        if any(gap(corners_of(t), leaf) < -DEEP for leaf in solid):
+            yield f"{t.name} is inside a door's open leaf"
 
 
 def _stands_on(upper: Body | Fixture, lower: Body | Fixture) -> bool:

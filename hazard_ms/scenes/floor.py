@@ -16,8 +16,8 @@ from scipy import ndimage
 
 from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import Array, Box, box_of
-from hazard_ms.scenes.shell import leaf, shell
-from hazard_ms.scenes.walls import WALLS, on_wall, runs_along_x, thickness_of
+from hazard_ms.scenes.shell import LEAF, leaf, shell
+from hazard_ms.scenes.walls import WALLS, angle, hinge, on_wall, runs_along_x, thickness_of
 from hazard_ms.spec import Opening, Room, SceneSpec, Vec2
 
 FLOOR_CELL = 0.05  # edge of a cell [m]; cell (i, j) is centred on ((i + 0.5) FLOOR_CELL, (j + 0.5) FLOOR_CELL)
@@ -76,6 +76,25 @@ def partitions(room: Room) -> list[Box]:
 def _shut(o: Opening) -> Opening:
     """The part of a door that is closed at frame 0: its lower end along the wall."""
     return dataclasses.replace(o, width=(1.0 - o.share) * o.width, centre=o.centre - o.share * o.width / 2)
+
+
+def open_leaves(room: Room) -> list[Box]:
+    """The boxes of leaves of doors in inner walls that stand open at frame 0, more or less, on their hinges."""
+    made = []
+    for o in room.openings:
+        if o.wall in WALLS or o.kind != "door" or o.share == 0.0:
+            continue
+        (start, along, out), turn = hinge(room, o), angle(o.share)
+        way = math.cos(turn) * along + math.sin(turn) * out
+        x, y = (start + o.width / 2 * way).tolist()
+        made.append(Box(x, y, o.width / 2, LEAF / 2, math.atan2(way[1], way[0]), o.sill, o.sill + o.height))
+    return made
+
+
+def touches(boxes: Iterable[Box], place: Vec2, radius: float) -> bool:
+    """Whether a disc of `radius` [m] around `place` [m] touches the footprint of any of the `boxes`."""
+    x, y = np.array(place)
+    return any(float(box.distance(x, y)) < radius for box in boxes)
 
 
 def doorways(room: Room) -> list[Box]:

@@ -5,7 +5,12 @@ The inner faces of the outer walls are at x = 0, x = size[0], y = 0, y = size[1]
 
 from __future__ import annotations
 
-from hazard_ms.spec import Partition, Room, Vec3
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hazard_ms.spec import Opening, Partition, Room, Vec3
 
 WALL_THICKNESS = 0.12  # of the outer walls [m]
 WALLS = ("south", "east", "north", "west")
@@ -86,3 +91,15 @@ def thickness_of(room: Room, wall: str) -> float:
     """The thickness of a wall or partition [m]."""
     inner = partition(room, wall)
     return WALL_THICKNESS if inner is None else inner.thickness
+
+
+def angle(share: float) -> float:
+    """Angle of a leaf [rad] that leaves `share` of the width open: 0 where it is shut, a quarter turn where open."""
+    return math.acos(min(1.0, max(0.0, 1.0 - share)))
+
+
+def hinge(room: Room, o: Opening) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """The place of the hinge on the floor [m], and the directions of the shut leaf and of its swing, [2] each."""
+    start = on_wall(room, o.wall, o.centre - o.width / 2, 0.0, thickness_of(room, o.wall) / 2)
+    along = np.array([1.0, 0.0] if runs_along_x(room, o.wall) else [0.0, 1.0])
+    return np.array(start[:2]), along, -along[::-1]

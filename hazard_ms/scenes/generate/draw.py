@@ -14,7 +14,7 @@ import numpy as np
 
 T = TypeVar("T")
 
-GENERATOR = "2.3"  # goes up whenever the same name would give another scene
+GENERATOR = "2.4"  # goes up whenever the same name would give another scene
 STREAM = "2"  # of random numbers; goes up when all scenes shall be drawn anew
 
 

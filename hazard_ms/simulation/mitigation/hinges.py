@@ -19,7 +19,9 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from hazard_ms.scenes.shell import LEAF
-from hazard_ms.scenes.walls import WALLS, on_wall, runs_along_x, thickness_of
+from hazard_ms.scenes.walls import WALLS, on_wall, thickness_of
+from hazard_ms.scenes.walls import angle as angle
+from hazard_ms.scenes.walls import hinge as hinge
 from hazard_ms.spec import Opening, Room
 
 Number = TypeVar("Number", float, Tensor)
@@ -35,21 +37,9 @@ REST_FORCE = 22.2
 LOWEST = 0.1  # height of the handle of a window above its lower edge, at least [m] [ours]
 
 
-def angle(share: float) -> float:
-    """Angle of a leaf [rad] that leaves `share` of the width open."""
-    return math.acos(min(1.0, max(0.0, 1.0 - share)))
-
-
 def share(angle: float) -> float:
     """Share of the width that a leaf at this `angle` [rad] leaves open."""
     return 1.0 - math.cos(angle)
-
-
-def hinge(room: Room, o: Opening) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """The place of the hinge on the floor [m], and the directions of the shut leaf and of its swing, [2] each."""
-    start = on_wall(room, o.wall, o.centre - o.width / 2, 0.0, thickness_of(room, o.wall) / 2)
-    along = np.array([1.0, 0.0] if runs_along_x(room, o.wall) else [0.0, 1.0])
-    return np.array(start[:2]), along, -along[::-1]
 
 
 def on_leaf(room: Room, o: Opening, angle: float, far: float) -> NDArray[np.float64]:

@@ -1,8 +1,8 @@
 """Plans of teams whose future is known: who fetches what, and in which order, for the most value in sum.
 
-For each robot the best order of every set of targets is found, by labels as in `hazard_ms.sketch.planning.orienteering`
-but without its cuts; then the sets are given out, which is exact: no other division is worth more. In these plans robots do
-not wait for one another, and none takes what another one put down.
+For each robot the best order of every set of targets is found, by labels as in
+`hazard_ms.sketch.planning.orienteering` but without its cuts; then the sets are given out, which is exact: no other
+division is worth more. In these plans robots do not wait for one another, and none takes what another one put down.
 """
 
 from __future__ import annotations

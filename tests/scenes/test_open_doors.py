@@ -76,8 +76,8 @@ def test_a_second_robot_of_a_team_does_not_begin_in_a_leaf_either() -> None:
     import hazard_ms  # noqa: F401
 
     options = {"obs_mode": "none", "render_backend": "none", "effects": "off", "control_mode": "pd_joint_pos"}
-    env = gym.make("HazardHouseFire-v1", robot_uids=("fetch", "fetch"), scenes=["house_test_1/07"], **options)
-    env.reset(seed=0)
+    env = gym.make("HazardHouseFire-v1", robot_uids=("fetch", "fetch"), split="test", **options)
+    env.reset(seed=0, options={"scene": "house_test_1/07"})
     spec = env.unwrapped.specs[0]
     places = np.array([robot.base()[:2] for robot in env.unwrapped.robots.values()])
     env.close()

@@ -55,8 +55,8 @@ Made by `./run python results/teams.py`. First scenes of the split `test`, Fetch
 robots in homes and gales alone. Two robots are on their own, each `greedy` (`2 independent`), hold auctions, or plan
 together; `2 oracle`, where it was played, sees what is hidden. Value and what was averted in percent, with 95 %
 bootstrap intervals over scenes, averted only of scenes where it is defined; collisions are contacts between robots at
-more than 0.1 m/s, of all episodes together. teams.csv has every episode; those of others than `2 joint` are of commits
-from 991ca80 on, after which nothing changed that any of them did.
+more than 0.1 m/s, of all episodes together. teams.csv has every episode. Those of `2 independent` and `2 auction` are
+of commits from 991ca80 on, before arms looked out for other robots; nothing else changed that they do.
 Written at
 {machine}.
 

@@ -52,7 +52,7 @@ def check(spec: SceneSpec) -> list[str]:
     missing = list(_missing(spec))
     if missing:
         return missing
-    return [*_sizes(spec), *_inside(spec), *_apart(spec), *_leaves(spec), *_ways(spec), *_fires(spec)]
+    return [*_sizes(spec), *_inside(spec), *_apart(spec), *in_leaves(spec), *_ways(spec), *_fires(spec)]
 
 
 def _missing(spec: SceneSpec) -> Iterator[str]:
@@ -114,7 +114,7 @@ def _apart(spec: SceneSpec) -> Iterator[str]:
             yield f"{a.name} is inside a wall"
 
 
-def _leaves(spec: SceneSpec) -> Iterator[str]:
+def in_leaves(spec: SceneSpec) -> Iterator[str]:
     """What is in the way of a door's leaf that stands open at frame 0: the robot, or things."""
     leaves = open_leaves(spec.room)
     if touches(leaves, spec.agent_start.position, ROBOT_RADIUS):

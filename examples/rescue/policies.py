@@ -1,7 +1,8 @@
 """A whole rescue without a planned motion: three small networks walk, reach and stow, and an agent decides what for.
 
-    python examples/rescue/learn.py demonstrate demos.npz --tasks HazardFire-v1 HazardFlood-v1
-    python examples/rescue/learn.py train demos.npz --out learned/rescue
+    python examples/rescue/learn.py reach reaches.npz
+    python examples/rescue/learn.py demonstrate rescues.npz
+    python examples/rescue/learn.py train reaches.npz rescues.npz --out learned/rescue
     hazard-ms evaluate -e HazardFire-v1 --split test \\
         --agents greedy examples/rescue/policies.py:Policies:weights=learned/rescue
 
@@ -10,7 +11,8 @@ Here `greedy`, or any other agent, still decides what to fetch, but a network pl
 numbers and says, thirty times a second, how base, arm and hand move. A search over the map tells walks where the way
 leads, once in two seconds, as in a navigation stack. Only `explore`, a turn once around, is as it was.
 
-Reaches and stows are those of clone_pick_up.py; a walk reads the map around the robot as pictures that turn with it.
+Reaches and stows read the numbers of clone_pick_up.py and the heights before the base (hands.py); a walk reads the map
+around the robot as pictures that turn with it (walks.py). After a reach that failed, the walk leads to another side.
 They are for Fetch, for tasks whose safe place is its bag, and for things that are told as they are (no detector).
 """
 

@@ -76,12 +76,14 @@ def train(demos: list[Path], out: Path, seed: int = 0) -> None:
     fit("walk", Walker(), data["walk"], strayed, out)
 
 
-def demonstrate(out: Path, tasks: list[str], seeds: list[int], weights: Path | None, seed: int = 0) -> None:
+def demonstrate(out: Path, tasks: list[str], seeds: list[int], weights: Path | None = None, seed: int = 0) -> None:
     """Record whole rescues."""
     teach.rescues(teach.teacher_of(seed, weights), out, tasks, seeds)
 
 
-def reach(out: Path, tasks: list[str], seeds: list[int], weights: Path | None, each: int, seed: int = 0) -> None:
+def reach(
+    out: Path, tasks: list[str], seeds: list[int], weights: Path | None = None, each: int = 4, seed: int = 0
+) -> None:
     """Record reaches and stows from places all around targets."""
     teach.reaches(teach.teacher_of(seed, weights), out, tasks, seeds, each)
 

@@ -64,8 +64,10 @@ RESCUED = """
 
 {decides} decides in all rows; in the others each of its walks, reaches and stows is flown by a policy, that of
 `examples/rescue`. `value` is the benchmark's Value in percent with its 95 % interval, then as a share of {decides}'s in
-the same rooms of `test`. The policies learned from the same frames of rooms of `train`, recorded by the commands of
-docs/imitation.md, with the seed in their names.
+the same rooms of `test`. Reaches and stows learned from the frames that the commands of docs/imitation.md record in
+rooms of `train`, with the seed in the name, from end to end; walks from theirs and from 30 rescues that `demonstrate`
+had recorded before labels of arms changed, as it demonstrated ten then, and 30 now. Their code is that of commit
+d86a28f.
 
 | | {tasks} |
 |---|---|---|

@@ -124,7 +124,8 @@ def restore(env: SkillEnv, state: dict[str, Any]) -> None:
     """Put everything back into `state`; only what the robot has seen by now stays."""
     env.base.set_state_dict(state)
     env.seen.frame = int(env.base.world.frame[0])  # a map refuses looks that are older than its last one
-    env.stage = Stage(env.base, env.seen, env.look)
+    env.stage.bumps.clear()
+    env.stage._arm = env.stage.robot.arm()
 
 
 def demonstrate(env: SkillEnv, count: int, chance: np.random.Generator) -> list[Frame]:
@@ -177,17 +178,17 @@ def loss(output: Tensor, label: Tensor) -> Tensor:
     return off[:, :7].mean() + 0.5 * off[:, 7:9].mean() + shut
 
 
-def train(frames: Sequence[Frame], seed: int, made: Any = Policy, off: Any = loss) -> Any:
-    """A policy of the class `made` that has learnt from all `frames`; `off`: the error of what it says."""
+def train(frames: Sequence[Frame], seed: int) -> Policy:
+    """A policy that has learnt from all `frames`."""
     torch.manual_seed(seed)
     seen, labels = (torch.from_numpy(np.stack(part)) for part in zip(*frames, strict=True))
-    policy = made(seen)
+    policy = Policy(seen)
     optimiser = torch.optim.AdamW(policy.parameters(), RATE)
     rates = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=EPOCHS * -(-len(seen) // BATCH))
     for _ in range(EPOCHS):
         for some in torch.randperm(len(seen)).split(BATCH):
             optimiser.zero_grad()
-            off(policy(seen[some]), labels[some]).backward()
+            loss(policy(seen[some]), labels[some]).backward()
             optimiser.step()
             rates.step()
     return policy.eval()

@@ -105,11 +105,16 @@ MAKERS = (
            f"hazard-ms demos record -e HazardStow-v1 {TEACH} -n 300 -o {IMITATION}/demos",
            f"python examples/act_from_pictures.py train {IMITATION}/demos/HazardStow-v1/oracle"
            f" --out {IMITATION}/fetch-0/take",
-           f"python examples/rescue/learn.py demonstrate {IMITATION}/rescue.npz",
-           f"python examples/rescue/learn.py train {IMITATION}/rescue.npz --out {IMITATION}/first",
-           f"python examples/rescue/learn.py correct {IMITATION}/more.npz --weights {IMITATION}/first",
-           f"python examples/rescue/learn.py train {IMITATION}/rescue.npz {IMITATION}/more.npz"
-           f" --out {IMITATION}/rescue-0",
+           f"python examples/rescue/learn.py reach {IMITATION}/reaches.npz",
+           f"python examples/rescue/learn.py demonstrate {IMITATION}/rescues.npz",
+           f"python examples/rescue/learn.py train {IMITATION}/reaches.npz {IMITATION}/rescues.npz"
+           f" --out {IMITATION}/first",
+           f"python examples/rescue/learn.py reach {IMITATION}/more_reaches.npz --weights {IMITATION}/first"
+           " --seeds 2 75 20 --seed 1",
+           f"python examples/rescue/learn.py demonstrate {IMITATION}/more_rescues.npz --weights {IMITATION}/first"
+           " --seeds 7 75 25 --seed 1",
+           f"python examples/rescue/learn.py train {IMITATION}/reaches.npz {IMITATION}/rescues.npz"
+           f" {IMITATION}/more_reaches.npz {IMITATION}/more_rescues.npz --out {IMITATION}/rescue-0",
            f"python results/imitation.py {IMITATION}/pick_up-0 {IMITATION}/fetch-0 --rescues {IMITATION}/rescue-0",
            f"cp {IMITATION}/pick_up-0/curve.csv results/imitation_curve.csv"),
           ("results/imitation.md", "results/imitation.csv", "results/rescues.csv", "results/imitation_curve.csv"), 12.0,

@@ -140,7 +140,10 @@ def tables(every: list[Row]) -> str:
             each = set.intersection(*(set(values[name]) for name in (BEST, *ONES)))
             sums = {name: sum(values[name][e] for e in each) for name in (BEST, *ONES)}
             over = " | ".join(f"{sums[BEST] / sums[one] if sums[one] else math.nan:.2f}" for one in ONES)
-            less = " | ".join(words(difference(values[BEST], values[name])) for name in (APART, AUCTION))
+            less = " | ".join(
+                f"{words(difference(values[BEST], values[name]))} of {len(values[BEST].keys() & values[name].keys())}"
+                for name in (APART, AUCTION)
+            )
             compared += f"| {task} | {over} | {less} | {len(each)} |\n"
     return text + COMPARED + compared
 

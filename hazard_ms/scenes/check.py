@@ -115,7 +115,7 @@ def _apart(spec: SceneSpec) -> Iterator[str]:
 
 
 def in_leaves(spec: SceneSpec) -> Iterator[str]:
-    """What is in the way of a door's leaf that stands open at frame 0: the robot, or things."""
+    """Robots and things in the way of leaves of doors that stand open at frame 0."""
     leaves = open_leaves(spec.room)
     if touches(leaves, spec.agent_start.position, ROBOT_RADIUS):
         yield f"the robot starts in a door's open leaf, at {spec.agent_start.position}"

@@ -13,7 +13,7 @@ import numpy as np
 from hazard_ms.scenes import boxes
 from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import Box, box_of, free_of, turned, yaw_of
-from hazard_ms.scenes.floor import cell_of, connected, doorways, free_floor, partitions
+from hazard_ms.scenes.floor import cell_of, connected, doorways, free_floor, open_leaves, partitions, touches
 from hazard_ms.scenes.generate.arrangement import MIN_GAP
 from hazard_ms.scenes.generate.draw import Draw
 from hazard_ms.scenes.generate.scatter import EDGE_MARGIN, ROBOT_RADIUS
@@ -92,12 +92,13 @@ def _started(spec: SceneSpec, seed: int, level: int) -> AgentStart:
     heading = round(start.heading + sign * amount(TURNS[level], draw.uniform()), 4)
     free = connected(free_floor(spec, ROBOT_RADIUS), start.position)
     gaps = [min(FIRE_DISTANCE, math.dist(start.position, fire)) for fire in spec.fires]
+    leaves = open_leaves(spec.room)
     for _ in range(TRIES):
         x, y = _step(draw, STEPS[level])
         there = (round(start.position[0] + x, 4), round(start.position[1] + y, 4))
         way = [(start.position[0] + k / SAMPLES * x, start.position[1] + k / SAMPLES * y) for k in range(SAMPLES + 1)]
         safe = all(math.dist(there, fire) >= gap for fire, gap in zip(spec.fires, gaps, strict=True))
-        if safe and all(_is_free(free, point) for point in way):
+        if safe and not touches(leaves, there, ROBOT_RADIUS) and all(_is_free(free, point) for point in way):
             return AgentStart(there, heading)
     return replace(start, heading=heading)
 

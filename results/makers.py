@@ -116,8 +116,11 @@ MAKERS = (
            f"python examples/rescue/learn.py train {IMITATION}/reaches.npz {IMITATION}/rescues.npz"
            f" {IMITATION}/more_reaches.npz {IMITATION}/more_rescues.npz --out {IMITATION}/rescue-0",
            f"python results/imitation.py {IMITATION}/pick_up-0 {IMITATION}/fetch-0 --rescues {IMITATION}/rescue-0",
-           f"cp {IMITATION}/pick_up-0/curve.csv results/imitation_curve.csv"),
-          ("results/imitation.md", "results/imitation.csv", "results/rescues.csv", "results/imitation_curve.csv"), 12.0,
+           f"cp {IMITATION}/pick_up-0/curve.csv results/imitation_curve.csv",
+           *(f"cp {IMITATION}/fetch-0/{part}/curve.csv results/curves/fetch-0-{part}.csv" for part in ("walk", "take")),
+           *(f"cp {IMITATION}/rescue-0/{n}.csv results/curves/rescue-0-{n}.csv" for n in ("walk", "reach", "stow"))),
+          ("results/imitation.md", "results/imitation.csv", "results/rescues.csv", "results/imitation_curve.csv",
+           "results/curves/*.csv"), 12.0,
           ("imitation",), ("results/imitation.csv", "results/rescues.csv")),
     Maker("detector", ("python results/detector.py",), ("results/detector.md",), 12.0,
           kept="the training of the weights of the package; results/eyes.md and results/perceived.md score these"),

@@ -40,8 +40,8 @@ def missed(model: Hand, seen: Tensor, wanted: Tensor) -> Tensor:
 
 
 def fit(name: str, model: nn.Module, data: list[Tensor], off: Callable[..., Tensor], out: Path) -> None:
-    """Train `model` by the error `off` on all rows of `data`, and write it into the folder `out`."""
-    epochs, rows = EPOCHS[name], len(data[0])
+    """Train `model` by the error `off` on all rows of `data`; write it, and its curve, into the folder `out`."""
+    epochs, rows, curve = EPOCHS[name], len(data[0]), ["epoch,loss"]
     optimiser = torch.optim.AdamW(model.parameters(), RATE)
     rates = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=epochs * -(-rows // BATCH))
     for epoch in range(epochs):
@@ -54,7 +54,9 @@ def fit(name: str, model: nn.Module, data: list[Tensor], off: Callable[..., Tens
             rates.step()
             losses.append(loss.item())
         print(f"{name}: {rows} frames, epoch {epoch + 1} of {epochs}, loss {np.mean(losses):.4f}", flush=True)
+        curve.append(f"{epoch + 1},{np.mean(losses):.4f}")
     save_file(model.state_dict(), out / f"{name}.safetensors")
+    (out / f"{name}.csv").write_text("\n".join(curve) + "\n", encoding="utf-8")
 
 
 def train(demos: list[Path], out: Path, seed: int = 0) -> None:

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from hazard_ms.simulation.robot import Robot
 from hazard_ms.skills.context import Stage
+from hazard_ms.skills.motor.surface import OTHERS_TOP
 
 APART = 2.5  # distance of two bases beyond which arms cannot meet: both are 1.1 m long at most [m] [ours]
 AHEAD = 4  # frames that are looked ahead: a hand moves by up to 0.08 m in each, and needs two to stop [ours]
 GAP = 0.15  # room that an arm's middle keeps to a base and to another arm's middle; arms are 0.12 m thick [m] [ours]
-TALL = 1.2  # height up to which a base's disc is taken up by the robot; Fetch is 1.1 m high, the G1 1.3 [m] [ours]
 TUCKED = 0.1  # joints that are all this close to those of the tucked arm leave it within the base [rad] [ours]
 SPACING = 5  # points on each link of an arm that are looked at [ours]
 
@@ -26,7 +26,7 @@ def along(joints: NDArray[np.float64]) -> NDArray[np.float64]:
 def gap(points: NDArray[np.float64], other: Robot) -> float:
     """Smallest distance [m] of `points`, [N, 3] [m], world frame, from a robot's base and from its arm's middle."""
     x, y, _ = other.base()
-    low = points[points[:, 2] < TALL]
+    low = points[points[:, 2] < OTHERS_TOP]
     base = float(np.hypot(low[:, 0] - x, low[:, 1] - y).min(initial=np.inf)) - other.build.radius
     arm = along(other.arm_places(other.arm()))
     return min(base, float(np.linalg.norm(points[:, None] - arm[None], axis=-1).min()))

@@ -23,6 +23,7 @@ BUMP_RADIUS = 0.2  # radius of the obstacle that is assumed where the robot got 
 BUMP_MEMORY = 300  # frames for which such an obstacle is remembered
 HALT = 0.2  # gap to another robot, in the direction of the drive, at which the base stops: it brakes within 0.06 m [m]
 SIDE = np.cos(np.deg2rad(60.0))  # of the angle from the direction of the drive within which another robot stops it
+GRAZE = 0.08  # gap at which another robot stops it in any direction that brings them closer [m] [ours]
 HAND_RADIUS = 0.2  # of the disc on the floor that another robot's hand takes up [m] [ours]
 
 
@@ -153,13 +154,18 @@ class Stage:
         return bases + hands
 
     def faces_another(self, forward: float) -> bool:
-        """Whether another robot of its team is within HALT ahead, or behind if `forward` [m] is negative."""
+        """Whether driving `forward` [m], backwards if negative, leads at another robot of its team that is close.
+
+        That is one within HALT ahead, or one within GRAZE to the side that the drive brings closer.
+        """
         x, y, heading = self.robot.base()
         heading += np.pi if forward < 0.0 else 0.0
         for other_x, other_y, radius in self.discs():
             away = np.array([other_x - x, other_y - y])
             far = float(np.hypot(*away))
-            if far < self.robot.build.radius + radius + HALT and away @ (np.cos(heading), np.sin(heading)) > SIDE * far:
+            gap = far - self.robot.build.radius - radius
+            closer = float(away @ (np.cos(heading), np.sin(heading)))
+            if (gap < HALT and closer > SIDE * far) or (gap < GRAZE and closer > 0.0):
                 return True
         return False
 

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+import torch
 
 from hazard_ms.skills import spacing
-from hazard_ms.skills.context import Skill, Stage
+from hazard_ms.skills.context import GRAZE, Skill, Stage
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, Action
 from hazard_ms.skills.doing import Doing
 from hazard_ms.skills.motor.arm import posture_for
@@ -118,6 +119,25 @@ def test_the_gap_is_that_to_the_base_or_to_the_arm(pair: TeamSkills) -> None:
     highest = spacing.along(other.arm_places(other.arm()))
     assert spacing.gap(above, other) == pytest.approx(float(np.linalg.norm(highest - above, axis=1).min()))
     assert spacing.gap(np.array([[x, y, 0.2]]), other) == pytest.approx(-0.29, abs=0.01)
+
+
+@pytest.mark.parametrize("graze", [GRAZE, -1.0])
+def test_a_base_does_not_slide_along_another_robot(
+    pair: TeamSkills, monkeypatch: pytest.MonkeyPatch, graze: float
+) -> None:
+    """Robot 1 starts 0.58 m beside robot 0 with its course 25 degrees towards it, and would slide along it."""
+    monkeypatch.setattr("hazard_ms.skills.context.GRAZE", graze)
+    pair.reset(seed=1)
+    stage, other = pair.knowledge["fetch-1"].stage, pair.knowledge["fetch-0"].stage
+    x, y, heading = other.robot.base()
+    ahead, aside = np.array([math.cos(heading), math.sin(heading)]), np.array([-math.sin(heading), math.cos(heading)])
+    start = torch.tensor(np.array([[x, y]]) + 0.58 * aside, dtype=torch.float32)
+    stage.robot.place(torch.tensor([0]), start, torch.tensor([heading - math.radians(25.0)]))
+    for _ in range(60):
+        pair.base.advance({"fetch-0": other.act(), "fetch-1": stage.act(0.04)})
+    moved = np.hypot(*(np.array(stage.robot.base()[:2]) - start[0].numpy()))
+    assert (pair.collisions > 0) == (graze < 0.0)
+    assert stage.act(-0.02).any() and (graze < 0.0 or moved < 0.2)
 
 
 def test_points_lie_on_the_links() -> None:

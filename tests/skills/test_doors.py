@@ -15,7 +15,7 @@ from hazard_ms.skills import failures
 from hazard_ms.skills.actions import skill
 from hazard_ms.skills.decision import Action
 from hazard_ms.skills.mitigations.doors import open_ones, shut_ones
-from hazard_ms.skills.mitigations.handles import home_side
+from hazard_ms.skills.mitigations.handles import home_side, stand
 from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.motor.grasping import GRASP_REACH
 from hazard_ms.spec import AgentStart, Body, Fixture, Opening, Partition
@@ -197,3 +197,15 @@ def test_a_door_is_shut_from_the_side_from_which_the_robot_comes(start: tuple[fl
         assert home_side(rooms.stage, leaf) == side
         assert turning(rooms, SHUT)[0].ok  # type: ignore[attr-defined]
         assert np.sign(leaf.side(*rooms.stage.robot.base()[:2])) == side
+
+
+def test_where_no_floor_around_a_door_was_seen_there_is_no_place_to_stand_at() -> None:
+    """The floor within 1.5 m of the handle, which is farther than arms reach."""
+    with two_rooms(spec()) as rooms:
+        leaf, seen = Leaf(rooms.world, 0), rooms.stage.seen
+        sides = (1.0, -1.0)
+        assert any(stand(rooms.stage, leaf, 0.0, side) for side in sides)
+        y, x = np.indices(seen.explored.shape)
+        middles = seen.origin + (np.stack([x, y], -1) + 0.5) * seen.cell
+        seen.explored &= np.linalg.norm(middles - leaf.handle()[:2], axis=-1) > 1.5
+        assert [stand(rooms.stage, leaf, 0.0, side) for side in sides] == [None, None]

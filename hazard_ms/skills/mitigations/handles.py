@@ -51,7 +51,8 @@ def stand(stage: Stage, leaf: Leaf, goal: float, home: float, without: Collectio
     gap = np.full(len(places), build.radius + ASIDE)
     meets = leaf.in_the_way(leaf.angle, goal, places, gap)
     sides = np.array([leaf.side(*place) for place in places]) * home
-    kept = (meets & passes | (sides > 0.0)) & [all(np.hypot(*(p - w)) > ENOUGH for w in without) for p in places]
+    fresh = np.array([all(np.hypot(*(p - w)) > ENOUGH for w in without) for p in places], dtype=bool)
+    kept = (meets & passes | (sides > 0.0)) & fresh
     places, cost = places[kept], STEPPING * meets[kept]
     if not len(places):
         return None

@@ -92,6 +92,8 @@ class GaleAims:
         wanted = [name for name, worth in zip(ahead.targets, plain.values, strict=False) if worth > 0.0]
 
         def after(push: Push) -> float:
+            if decision.names[push.cart] not in ahead.carts:  # it was given up: no rescue would use it
+                return -np.inf
             late = dataclasses.replace(
                 plain, travel=self._with_cart_at(decision, ahead, push), frame=plain.frame + push.frames
             )

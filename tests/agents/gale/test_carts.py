@@ -75,6 +75,14 @@ def test_the_cart_comes_where_targets_lie_far_from_it() -> None:
         assert (action is not None and action.verb == "push") is pushed, speed
 
 
+def test_a_cart_that_was_given_up_is_not_pushed() -> None:
+    """The nearest cart is the one that a push moves; plans count on another one."""
+    outlook, known = far_from_the_cart(), aims()
+    known.see(now())
+    assert known.push(now(), outlook) is not None
+    assert known.push(now(), dataclasses.replace(outlook, carts=("cart_2",))) is None
+
+
 def test_without_measures_nothing_is_pushed_or_put_into_the_lee() -> None:
     plain = GaleAims(brief(gale("paper")), mitigate=False)
     plain._weather = aims()._weather

@@ -26,7 +26,7 @@ def missing(driver: Path = DRIVER) -> str:
 @cache
 def without_physx() -> str:
     """Say in a line why nothing can be simulated on the GPU, which must be there; empty if it can."""
-    from hazard_ms.cli.costs.gpu.apart import StoppedError, apart
+    from results.gpu.apart import StoppedError, apart
 
     try:
         apart("physics", PHYSICS_BUDGET)

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.machine.survey import without_gpu
 from hazard_ms.spec.storage.files import write
+from results.gpu.needs import without_gpu
 
 
 def rate_job(**keywords: Any) -> Any:

@@ -9,9 +9,9 @@ from typing import Any
 
 import torch
 
-from hazard_ms.sketch.rescues.resting import Batch
 from results.gpu.comparison import CHECKED, Course, differences_table, records
 from results.gpu.rates import FRAMES, WARM_UP, Rate, memory, pace, settle
+from results.gpu.resting import Batch
 from results.gpu.waits import FRAMES as COUNTED
 from results.gpu.waits import counted
 

@@ -33,7 +33,6 @@ KNOWN: dict[str, tuple[set[str], str]] = {
     "scenes.assets.intake.worker": ({"json.load"}, HERE),
     "scenes.assets.providers.base": ({"gzip.GzipFile"}, BYTES),
     "scenes.assets.providers.partnet": ({"xml.etree.ElementTree.fromstring"}, BYTES + "; entities are refused"),
-    "scenes.assets.providers.scenes": ({".read_text", "json.loads"}, OWN),
     "scenes.assets.shipped": ({".read_text", "json.loads"}, OWN),
     "cli.costs.resets": ({".read_text"}, SYSTEM),
     "cli.costs.serving": ({".read_text", "json.load", "json.loads"}, SYSTEM + "; the bench's own server"),

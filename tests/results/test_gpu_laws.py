@@ -13,11 +13,11 @@ from hazard_ms.hazards.fire import coupling, fire
 from hazard_ms.hazards.fire.realistic import blaze, front
 from hazard_ms.hazards.presets import PRESETS
 from hazard_ms.sketch.recording import record
-from hazard_ms.sketch.rescues.resting import SPLIT, Batch
 from hazard_ms.tasks import task_of
 from results.gpu.__main__ import TASKS
 from results.gpu.laws import DEVICES, course, laws, rate
 from results.gpu.rates import Rate
+from results.gpu.resting import SPLIT, Batch
 
 CHECKED = (0, 1, 30)
 ROUNDING = 1e-6  # of what is below one, in its own unit

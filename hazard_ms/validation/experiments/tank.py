@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -72,11 +72,6 @@ def room(
     world = World.of((spec,), [[t.size for t in things]], [[t.kilograms for t in things]])
     world.position[0] = torch.tensor([t.at for t in things])
     return repeat(world, copies)
-
-
-def on_a_plane(law: Flood) -> Flood:
-    """A flood whose surface is a plane, and whose water acts on things as that of `law` does."""
-    return Flood(**{part.name: getattr(law, part.name) for part in fields(Flood)})
 
 
 def begin(flood: Flood, world: World) -> FloodState:

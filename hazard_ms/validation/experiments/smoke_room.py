@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import torch
 
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.fire.realistic import kindling, radiation, smoke
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
@@ -49,9 +50,7 @@ def rooms(room: Room, lining: Lining = GYPSUM) -> tuple[BlazeState, World]:
     """The smoke of `room` as an episode begins, and its world."""
     world = room_world(size=room.size)
     world = dataclasses.replace(world, specs=tuple(dataclasses.replace(s, room=room) for s in world.specs))
-    blaze = Blaze()
-    state = BlazeState.allocate({"E": 1, "B": world.num_bodies, **blaze.sizes(world)}, world.device)
-    blaze.reset(state, world, torch.arange(1))
+    state = begin(Blaze(), world)
     state.lining_conductivity[:], state.lining_capacity[:] = lining.conductivity, lining.capacity
     state.lining_thickness[:] = lining.thickness
     return state, world

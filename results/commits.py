@@ -15,6 +15,7 @@ MADE = "results/made.csv"  # commits of what names none itself: where `./run res
 NAMED = re.compile(r"\bcommit ([0-9a-f]{7,40})(-dirty)?\b")
 DIRTY = "-dirty"
 SCRIPTS = re.compile(r"(?:results|examples)/[\w/]+\.py")
+FOLDER = re.compile(r"-m results\.(\w+)$")  # of results/, which runs as a whole
 RELEASE = (1, 0)  # from this version on, no number may be older than its release
 
 
@@ -120,6 +121,7 @@ class Checkout:
 def code(maker: Maker) -> tuple[str, ...]:
     """What the files of `maker` depend on: the package, and the scripts that it runs."""
     scripts = {name for command in maker.commands for name in SCRIPTS.findall(command)}
+    scripts |= {f"results/{name}" for command in maker.commands for name in FOLDER.findall(command)}
     return ("hazard_ms", *sorted(scripts))
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hazard_ms.agents.search.memory import ELSEWHERE, SAME_AGAIN, after
+from hazard_ms.agents.search.memory import ELSEWHERE, PROGRESS, SAME_AGAIN, Place, after, apart
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import NO_PATH, UNFINISHED
 
@@ -22,10 +22,7 @@ COUNTED = (WALK_TO, WALK_ONE_STEP, PICK_UP, EXPLORE)
 FEW = 2  # failures of one action from one place, after which something else is done [ours]
 MANY = 4  # the same in tasks without mitigations, whose agents then have given up what they count [ours]
 HERE = 0.5  # distance up to which it is the same place [m] [ours]
-PROGRESS = 0.2  # an action that ended unfinished, and came no farther, has failed [m] [ours]
 ELSEWHERE_FROM = 1.2  # distance of things towards which it goes from there [m] [ours]
-
-Place = tuple[float, float]  # [m], world frame
 
 
 @dataclass
@@ -93,7 +90,7 @@ class Repeats:
         self._enter(decision)
         self._began = decision.agent_position
         times, place = self._failed.get(action, (0, decision.agent_position))
-        if times < self._most or _apart(place, decision.agent_position) > HERE:
+        if times < self._most or apart(place, decision.agent_position) > HERE:
             return None
         self.note = f"{action} failed {times} times from here: go on from elsewhere"
         name = self._elsewhere(decision, action)
@@ -112,21 +109,17 @@ class Repeats:
         if result.ok:
             self._failed.pop(last, None)
             self._tried.clear()
-        elif result.reason not in UNFINISHED or _apart(began, here) <= PROGRESS:
+        elif result.reason not in UNFINISHED or apart(began, here) <= PROGRESS:
             times, place = self._failed.get(last, (0, began))
-            self._failed[last] = (times + 1 if _apart(place, began) <= HERE else 1, here)
+            self._failed[last] = (times + 1 if apart(place, began) <= HERE else 1, here)
 
     def _elsewhere(self, decision: Decision, action: Action) -> str | None:
         """The name of the thing to go towards: another cart for what belongs there, else the nearest; None: none."""
         away = {
-            decision.names[index]: _apart((float(seen.position[0]), float(seen.position[1])), decision.agent_position)
+            decision.names[index]: apart((float(seen.position[0]), float(seen.position[1])), decision.agent_position)
             for index, seen in decision.map.objects.items()
         }
         others = [n for n in away if n not in (action.target, decision.held) and n not in self._tried]
         carts = [n for n in others if action.verb == DROP and action.target is not None and n in decision.containers]
         far = [n for n in others if away[n] >= ELSEWHERE_FROM and n not in decision.containers]
         return min(carts or far, key=lambda n: away[n], default=None)
-
-
-def _apart(one: Place, other: Place) -> float:
-    return float(np.hypot(one[0] - other[0], one[1] - other[1]))

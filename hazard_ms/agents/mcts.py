@@ -15,11 +15,9 @@ from hazard_ms.agents.search.outlook import Outlook, Weights
 from hazard_ms.agents.search.searcher import GIVE_UP, REACH, First, Searcher
 from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.sketch.planning.travel import Spot
-from hazard_ms.sketch.planning.tree import SIMULATIONS, search
+from hazard_ms.sketch.planning.tree import MOST_SIMULATIONS, SIMULATIONS, search
 from hazard_ms.skills.brief import Brief
 from hazard_ms.spec.checks import whole
-
-MOST_SIMULATIONS = 10**6  # of a decision: any larger number must be a mistake [ours]
 
 
 class Moment(NamedTuple):

@@ -16,7 +16,7 @@ from typing import Any
 import tyro
 
 from hazard_ms.cli.assets import AssetCommand
-from hazard_ms.cli.bench import bench, danger, gpu_check
+from hazard_ms.cli.bench import bench, danger
 from hazard_ms.cli.demos import DemosCommand
 from hazard_ms.cli.describe import describe
 from hazard_ms.cli.episodes import evaluate, play, replay, serve
@@ -116,7 +116,6 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "commitments": commitments,
     "describe": describe,
     "bench": bench,
-    "gpu-check": gpu_check,
     "danger": danger,
     "validate": validate,
     "scenes": scenes,

@@ -9,7 +9,7 @@ import tyro
 
 from hazard_ms.evaluation.choices import flag, offer
 
-PROVIDERS = ("ycb", "partnet-mobility", "objaverse", "replicacad", "architecthor", "robocasa")
+PROVIDERS = ("ycb", "partnet-mobility", "objaverse")
 
 
 def add(

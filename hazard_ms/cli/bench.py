@@ -1,8 +1,7 @@
-"""The commands `hazard-ms bench`, `gpu-check` and `danger`; each imports what it needs when it is called."""
+"""The commands `hazard-ms bench` and `danger`; each imports what it needs when it is called."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -12,8 +11,6 @@ from hazard_ms.spec import registry
 PICTURES_SHARE = 10  # frames for one picture: pictures take that much longer [ours]
 FEWEST_PICTURES = 3  # of which a median is taken [ours]
 OTHERS = ("stock",)  # what frames and resets can be compared with
-GPU_TASKS = ("HazardFire-v1", "HazardFlood-v1", "HazardWind-v1")
-GPU_PARTS = ("tests", "laws", "looks", "state", "pictures", "comparison", "waits")  # those of bench.gpu.report
 
 
 def bench(
@@ -94,40 +91,6 @@ def bench(
 
         print(report(env_id, frames, seed, episode, physics, severity))
     return 0
-
-
-def gpu_check(
-    env_id: Annotated[tuple[str, ...], flag("-e")] = GPU_TASKS,
-    parts: tuple[str, ...] = GPU_PARTS,
-    most: int = 4096,
-    budget: float = 300.0,
-    seed: Annotated[int, flag("-s")] = 0,
-    output: Annotated[Path, flag("-o")] = Path("docs/gpu.md"),
-) -> int:
-    """Check an NVIDIA GPU and measure it: tests, rates of batches, differences from the CPU, waits of the host.
-
-    Writes a page in Markdown that grows with every part. Ends with 1 without a GPU, and if a part failed. Tests, laws
-    and looks need no PhysX on the GPU.
-
-    Args:
-        env_id: Tasks to measure.
-        parts: Some of tests, laws, looks, state, pictures, comparison, waits; all if not given.
-        most: Largest number of environments in a batch; 1, 4, 16, 64, 256, 1,024, 4,096 are measured up to it.
-        budget: Time that one measurement may take [s]; a table ends at the first number that takes longer.
-        seed: Seed of episodes and actions.
-        output: The page.
-    """
-    from hazard_ms.cli.costs.gpu.needs import missing, without_physx
-
-    if lack := missing():
-        what = "runs the tests marked gpu, and measures batches of environments on a GPU"
-        print(f"hazard-ms gpu-check {what}; this machine lacks {lack}", file=sys.stderr)
-        return 1
-    from hazard_ms.cli.costs.gpu.report import PHYSX, SIZES, report
-
-    sizes = [size for size in SIZES if size <= most]
-    lack = without_physx() if any(part in PHYSX for part in parts) else ""
-    return int(report(output, env_id, parts, sizes, budget, seed, lack=lack) > 0)
 
 
 def danger(

@@ -20,7 +20,7 @@ from hazard_ms.spec import Level, Quantity, SceneSpec
 if TYPE_CHECKING:
     from hazard_ms.simulation.world import World
 
-__all__ = ["DTYPES", "Hazard", "Level", "Push", "State", "loosened", "none_set", "quantity"]
+__all__ = ["DTYPES", "Hazard", "Level", "Push", "State", "begin", "loosened", "none_set", "quantity"]
 
 
 def loosened(hazards: Iterable[Hazard], spec: SceneSpec) -> frozenset[str]:
@@ -169,3 +169,11 @@ class Hazard(abc.ABC):
     def agent_info(self, state: Any, world: World) -> dict[str, Tensor]:
         """The numbers of `info` about the agent, by name, [E] each; with units as the hazard declares."""
         return {}
+
+
+def begin(hazard: Hazard, world: World) -> Any:
+    """The state of `hazard` in an episode that begins in all environments of `world`."""
+    sizes = {"E": world.num_envs, "B": world.num_bodies, **hazard.sizes(world)}
+    state = hazard.state_type.allocate(sizes, world.device)
+    hazard.reset(state, world, torch.arange(world.num_envs))
+    return state

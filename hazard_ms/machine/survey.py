@@ -118,20 +118,6 @@ def manifest_paths(root: Path, environ: Mapping[str, str]) -> list[Path]:
     return files
 
 
-def without_gpu(root: Path = Path("/"), environ: Mapping[str, str] | None = None) -> dict[str, str]:
-    """The variables under which a process sees no other Vulkan driver than lavapipe, which draws on the CPU.
-
-    SAPIEN draws on a GPU where it sees one, also for render_backend="cpu". Lavapipe is looked for among the drivers
-    that the loader reads now, then in the system's folders. Empty if there is none.
-    """
-    for variables in (os.environ if environ is None else environ, {}):
-        paths = manifest_paths(root, variables)
-        found = [str(path) for path in paths if LAVAPIPE in read_manifest(path, frozenset()).library]
-        if found:
-            return {name: ":".join(found) for name in MANIFEST_VARIABLES}
-    return {}
-
-
 def read_manifest(path: Path, libraries: frozenset[str]) -> Manifest:
     """Read one driver description and say what is wrong with it."""
     try:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import abc
 from contextlib import ExitStack
 from types import TracebackType
+from typing import Any
 
 import numpy as np
 
@@ -31,25 +33,53 @@ LAST_SHOTS = 45  # pictures for which the end stays
 PATH_STEP = 0.05  # shortest piece of the drawn path [m]
 
 
-class Film(Watcher):
-    """The film of one episode, written to a draft. A context manager, so that a broken episode stops the encoder."""
+class Filming(Watcher, abc.ABC):
+    """A film that is written to a draft. A context manager, so that a broken episode stops the encoder."""
 
     def __init__(self, draft: Draft, subtitle: str, every: int) -> None:
         """`every`: frames of the episode from one picture to the next. The film's speed is added to `subtitle`."""
         self._draft, self._subtitle, self._every = draft, subtitle, every
-        self._files = ExitStack()
+        self._files, self._news, self._shots = ExitStack(), News(), 0
+
+    def start(self, base: Any) -> tuple[str, str]:
+        """Start the encoder, for an episode in the HazardEnv `base`. Returns the title and the subtitle of the film."""
+        speed = self._every * RATE * base.control_timestep
+        self._video = self._files.enter_context(Video(self._draft, (WIDTH, HEIGHT), RATE))
+        return f"{base.task.name}   {base.specs[0].name}", f"{self._subtitle}, {speed:g}x speed"
+
+    @abc.abstractmethod
+    def shoot(self) -> Pixels:
+        """Take a picture now, and add it to the film."""
+
+    def finish(self, reason: str) -> None:
+        """Hold the last picture for a while, and finish the film."""
+        last = self.shoot()
+        for _ in range(LAST_SHOTS):
+            self._video.add(last)
+        self._files.close()
+
+    def __enter__(self) -> Filming:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._files.__exit__(kind, error, trace)
+
+
+class Film(Filming):
+    """The film of one episode of one robot."""
+
+    def __init__(self, draft: Draft, subtitle: str, every: int) -> None:
+        """As `Filming`."""
+        super().__init__(draft, subtitle, every)
         self._action, self._note = Action(EXPLORE), ""
         self._way: list[tuple[float, float]] = []
-        self._news, self._shots = News(), 0
 
     def begin(self, env: SkillEnv, decision: Decision) -> None:
         """Start the encoder."""
-        base = env.base
-        speed = self._every * RATE * base.control_timestep
-        title, subtitle = f"{base.task.name}   {base.specs[0].name}", f"{self._subtitle}, {speed:g}x speed"
         self._env, self._spectator = env, Spectator(env)
-        self._video = self._files.enter_context(Video(self._draft, (WIDTH, HEIGHT), RATE))
-        self._compositor = Compositor(title, subtitle, tuple(h.shown_level for h in base.task.hazards))
+        self._compositor = Compositor(*self.start(env.base), tuple(h.shown_level for h in env.base.task.hazards))
         self._look()
 
     def decided(self, decision: Decision, action: Action, note: str) -> None:
@@ -67,24 +97,9 @@ class Film(Watcher):
         if not self._way or np.hypot(x - self._way[-1][0], y - self._way[-1][1]) > PATH_STEP:
             self._way.append((x, y))
         if self._env.frame % self._every == 0:
-            self._shoot()
+            self.shoot()
 
-    def finish(self, reason: str) -> None:
-        """Hold the last picture for a while, and finish the film."""
-        last = self._shoot()
-        for _ in range(LAST_SHOTS):
-            self._video.add(last)
-        self._files.close()
-
-    def __enter__(self) -> Film:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._files.__exit__(kind, error, trace)
-
-    def _shoot(self) -> Pixels:
+    def shoot(self) -> Pixels:
         """Take a picture now, and add it to the film."""
         env, base = self._env, self._env.base
         if self._shots % LOOK_EVERY == 0:

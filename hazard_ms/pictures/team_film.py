@@ -2,47 +2,32 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
 from dataclasses import replace
-from types import TracebackType
 from typing import Any
 
 import numpy as np
 
 from hazard_ms.evaluation.metrics import Fate, Tally
 from hazard_ms.evaluation.runner import fates
-from hazard_ms.evaluation.video import Video
-from hazard_ms.evaluation.watchers import Watcher
-from hazard_ms.pictures.compositor import HEIGHT, WIDTH, Shot
+from hazard_ms.pictures.compositor import Shot
 from hazard_ms.pictures.drawing import Pixels
-from hazard_ms.pictures.film import LAST_SHOTS, LOOK_EVERY, PATH_STEP, RATE, known_targets
-from hazard_ms.pictures.news import News
+from hazard_ms.pictures.film import LOOK_EVERY, PATH_STEP, Filming, known_targets
 from hazard_ms.pictures.spectator import Spectator
 from hazard_ms.pictures.team_compositor import TeamCompositor
 from hazard_ms.skills.decision import Decision
 from hazard_ms.skills.mitigations.offers import tools
 from hazard_ms.skills.team import TeamSkills
-from hazard_ms.spec.storage.files import Draft
 
 
-class TeamFilm(Watcher):
-    """The film of one episode of a team, written to a draft; a context manager, as `hazard_ms.pictures.film.Film`."""
-
-    def __init__(self, draft: Draft, subtitle: str, every: int) -> None:
-        """`every`: frames of the episode from one picture to the next. The film's speed is added to `subtitle`."""
-        self._draft, self._subtitle, self._every = draft, subtitle, every
-        self._files, self._news, self._shots = ExitStack(), News(), 0
+class TeamFilm(Filming):
+    """The film of one episode of a team."""
 
     def begin(self, env: TeamSkills, decision: Decision) -> None:
         """Start the encoder."""
-        base = env.base
-        speed = self._every * RATE * base.control_timestep
-        title, subtitle = f"{base.task.name}   {base.specs[0].name}", f"{self._subtitle}, {speed:g}x speed"
         self._env, self._spectator = env, Spectator(env)
         self._ways: dict[str, list[tuple[float, float]]] = {name: [] for name in env.names}
-        self._video = self._files.enter_context(Video(self._draft, (WIDTH, HEIGHT), RATE))
-        levels = tuple(h.shown_level for h in base.task.hazards)
-        self._compositor = TeamCompositor(title, subtitle, levels, env.names)
+        levels = tuple(h.shown_level for h in env.base.task.hazards)
+        self._compositor = TeamCompositor(*self.start(env.base), levels, env.names)
 
     def frame(self, action: Any) -> None:
         """Take a picture where one is due; `action`, by robot, in its controllers' units, is not looked at."""
@@ -52,24 +37,9 @@ class TeamFilm(Watcher):
             if not way or np.hypot(x - way[-1][0], y - way[-1][1]) > PATH_STEP:
                 way.append((x, y))
         if self._env.frame % self._every == 0:
-            self._shoot()
+            self.shoot()
 
-    def finish(self, reason: str) -> None:
-        """Hold the last picture for a while, and finish the film."""
-        last = self._shoot()
-        for _ in range(LAST_SHOTS):
-            self._video.add(last)
-        self._files.close()
-
-    def __enter__(self) -> TeamFilm:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._files.__exit__(kind, error, trace)
-
-    def _shoot(self) -> Pixels:
+    def shoot(self) -> Pixels:
         """Take a picture now, and add it to the film."""
         env, base = self._env, self._env.base
         if self._shots % LOOK_EVERY == 0:

@@ -1,8 +1,8 @@
 """The blurred hazard images: levels of the hazards at 16 x 16 points of the depth image, enlarged without smoothing.
 
 As in the original, a sample is the first pixel of its block, `[::H // 16]`; images may have any size from 16 pixels a
-side, square or not. The original stores the natural logarithm of the temperature, which its agents undo with exp. Ours
-hold degrees Celsius, or metres of water, unless `logarithm` is applied.
+side, square or not. The original stores the natural logarithm of the temperature, which its agents undo with exp; ours
+hold degrees Celsius, or metres of water.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from torch import Tensor
 from hazard_ms.sensing.camera import points_of_depth
 
 SIDE = 16  # samples along each side of the image (docs/benchmark.md 2)
-COLDEST = 1.0  # lower temperatures have the logarithm of this one [C]
 
 
 def sample_points(depth: Tensor, intrinsic: Tensor, cam2world: Tensor) -> Tensor:
@@ -42,8 +41,3 @@ def enlarge(images: Tensor, height: int, width: int) -> Tensor:
     rows = torch.arange(height, device=images.device) * SIDE // height
     columns = torch.arange(width, device=images.device) * SIDE // width
     return images[:, :, rows][..., columns].permute(0, 2, 3, 1).contiguous()
-
-
-def logarithm(temperature: Tensor) -> Tensor:
-    """Natural logarithm of a `temperature` [C], [...], as the original's agents observe it."""
-    return torch.log(temperature.clamp(min=COLDEST))

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import torch
 
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.fire.realistic import burning, fuels
 from hazard_ms.validation import blaze_cases, correlations, fire_cases, flood_cases
 from hazard_ms.validation.charts import Chart, Line
@@ -59,8 +60,7 @@ def _room() -> Chart:
     world = room_world(
         [("sofa", (2.5, 2.0, 0.0))], [(2.0, 2.0)], size=(5.0, 4.0), agent=(4.5, 3.5), extent=(0.9, 0.8, 0.8)
     )
-    state = blaze.state_type.allocate({"E": 1, "B": world.num_bodies, **blaze.sizes(world)}, "cpu")
-    blaze.reset(state, world, torch.arange(1))
+    state = begin(blaze, world)
     seen = []
     for step in range(1200):
         world.chance.tick()

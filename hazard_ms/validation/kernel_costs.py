@@ -12,6 +12,7 @@ from functools import partial
 import torch
 
 from hazard_ms.hazards import presets
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.flood.buoyancy import BALL
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.hazards.presets import PRESETS
@@ -58,8 +59,7 @@ def flood_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
     made: dict[str, Kernel] = {}
     for name in PRESETS:
         hazard = presets.flood(name)
-        state = hazard.state_type.allocate({"E": environments, "B": bodies, **hazard.sizes(world)}, "cpu")
-        hazard.reset(state, world, torch.arange(environments))
+        state = begin(hazard, world)
         state.time[:] = 20.0
         if isinstance(state, InundationState):
             state.depth[state.bed < WATER] = WATER
@@ -75,8 +75,7 @@ def fire_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
     made: dict[str, Kernel] = {}
     for name in PRESETS:
         hazard = presets.fire(name)
-        state = hazard.state_type.allocate({"E": environments, "B": bodies, **hazard.sizes(world)}, "cpu")
-        hazard.reset(state, world, torch.arange(environments))
+        state = begin(hazard, world)
         made[f"fire: an update, {name}"] = partial(hazard.advance, state, world, 1 / 30)
     return made
 
@@ -109,8 +108,7 @@ def wind_kernels(environments: int, bodies: int) -> dict[str, Kernel]:
     made: dict[str, Kernel] = {}
     for name in PRESETS:
         hazard = presets.wind(name)
-        state = hazard.state_type.allocate({"E": environments, "B": len(extents), **hazard.sizes(world)}, "cpu")
-        hazard.reset(state, world, torch.arange(environments))
+        state = begin(hazard, world)
         world.chance.tick()
         hazard.advance(state, world, STEP)
         made[f"wind: force, {name}"] = partial(hazard.force, state, world, STEP)

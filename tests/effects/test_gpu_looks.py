@@ -14,7 +14,7 @@ import torch
 
 import hazard_ms  # noqa: F401 registers the environments
 from hazard_ms.cli.costs.effects import go_on
-from hazard_ms.cli.costs.gpu.needs import without_physx
+from results.gpu.needs import without_physx
 from tests.worlds.watching import SEED, TASKS
 
 pytestmark = pytest.mark.render

@@ -11,6 +11,7 @@ import pytest
 import torch
 
 from hazard_ms.hazards import presets
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.fire import floor
 from hazard_ms.hazards.fire.realistic.twozone import leaves
 from hazard_ms.hazards.flood import flow_paths
@@ -24,7 +25,7 @@ from hazard_ms.tasks.episode import snapshot
 from hazard_ms.tasks.episode.episode import Episode
 from hazard_ms.validation.experiments.basin import SMOOTH, Basin
 from hazard_ms.validation.experiments.smoke_room import INSULATED, Burner, burn, fire_at, rooms
-from hazard_ms.validation.experiments.tank import Thing, begin, room
+from hazard_ms.validation.experiments.tank import Thing, room
 from tests.hazards.test_walls import DOORWAY, burning_beside, played
 from tests.worlds.fire_worlds import repeat
 

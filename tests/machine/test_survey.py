@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
-from hazard_ms.machine.survey import manifest_paths, without_gpu
+from hazard_ms.machine.survey import manifest_paths
 
 
 def test_a_variable_replaces_the_folders_of_the_system(tmp_path: Path) -> None:
@@ -21,16 +20,3 @@ def test_a_variable_replaces_the_folders_of_the_system(tmp_path: Path) -> None:
     assert manifest_paths(tmp_path, {"VK_ICD_FILENAMES": str(own / "c.json")}) == [own / "c.json"]
     both = {"VK_ICD_FILENAMES": str(own / "c.json"), "VK_DRIVER_FILES": f"{own / 'd.json'}:{system}"}
     assert manifest_paths(tmp_path, both) == [own / "d.json", *usual]
-
-
-def test_a_process_sees_no_driver_but_lavapipe(tmp_path: Path) -> None:
-    folder = tmp_path / "usr/share/vulkan/icd.d"
-    folder.mkdir(parents=True)
-    libraries = {"lvp_icd.x86_64": "/usr/lib/libvulkan_lvp.so", "nvidia_icd": "libGLX_nvidia.so.0", "amd": "libvk.so"}
-    for name, library in libraries.items():
-        (folder / f"{name}.json").write_text(json.dumps({"ICD": {"library_path": library}}))
-    own = str(folder / "lvp_icd.x86_64.json")
-    assert without_gpu(tmp_path, {}) == {"VK_DRIVER_FILES": own, "VK_ICD_FILENAMES": own}
-    assert without_gpu(tmp_path, {"VK_DRIVER_FILES": str(folder / "nvidia_icd.json")})["VK_DRIVER_FILES"] == own
-    (folder / "lvp_icd.x86_64.json").unlink()
-    assert without_gpu(tmp_path, {}) == {}

@@ -1,6 +1,6 @@
 """Frames that measures take once the robot is there.
 
-Measured with Fetch in house_test_1/00, 01 and 03 by `python -m hazard_ms.cli.costs.mitigations`: an extinguisher put
+Measured with Fetch in house_test_1/00, 01 and 03 by `python results/mitigations.py`: an extinguisher put
 down 66 to 112 frames; seats of fire 20 to 35 frames of jet for each flame that burns when the jet is opened. A door:
 246 frames beyond the way to it, the mean of 23 doors in eight homes of `train` (the same with `doors`).
 """

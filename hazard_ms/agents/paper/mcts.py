@@ -1,17 +1,18 @@
-"""The paper's tree search: 2,000 simulated rescues of what it knows at each decision, then the best first option."""
+"""The paper's tree search: 2,000 simulated rescues of what it knows at each decision, then the best first option.
+
+`MctsDiff` is the second one in the paper's code: it prefers targets at which the hazard's level has just changed.
+"""
 
 from __future__ import annotations
 
 from hazard_ms.agents.base import Agent
-from hazard_ms.agents.paper.memory import Pair, predicted_value
+from hazard_ms.agents.paper.memory import Pair, changing_value, predicted_value
 from hazard_ms.agents.paper.search import TreeSearch
 from hazard_ms.sensing.target_table import Target
-from hazard_ms.sketch.planning.tree import SIMULATIONS
+from hazard_ms.sketch.planning.tree import MOST_SIMULATIONS, SIMULATIONS
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.spec.checks import whole
-
-MOST_SIMULATIONS = 10**6  # of a decision: any larger number must be a mistake [ours]
 
 
 class Mcts(Agent):
@@ -35,6 +36,15 @@ class Mcts(Agent):
         """The option that the simulations rate best."""
         action, self.note = self._search.act(decision)
         return action
+
+
+class MctsDiff(Mcts):
+    """Tree search with costs over values, doubled where the level changed between the last two sightings."""
+
+    def __init__(self, simulations: int = SIMULATIONS) -> None:
+        """`simulations`: of each decision. Raises ValueError unless it is a positive whole number."""
+        super().__init__(simulations=simulations)
+        self._worth = changing_value
 
 
 def _one(target: Target, levels: dict[str, Pair]) -> float:

@@ -10,9 +10,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-import numpy as np
-
 from hazard_ms.agents.search.house_water import OUTER_DOORS
+from hazard_ms.agents.search.memory import Place, apart
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sketch.travel.ways import WALK
 from hazard_ms.skills.decision import PICK_UP, Action, Decision
@@ -21,8 +20,6 @@ from hazard_ms.spec.catalogue import FLOOD_BOARD
 BLOCK = "block"
 SETTING = 190.0  # frames of setting a board before its door [hazard_ms.agents.mitigating.costs]
 DETOUR = 1.3  # of a way in a home over the straight line [ours]
-
-Place = tuple[float, float]  # [m]
 
 
 class Setting(NamedTuple):
@@ -61,7 +58,7 @@ def _lying(decision: Decision, failures: dict[str, int], tries: int) -> dict[str
         usable = tool.name.startswith(FLOOD_BOARD) and not tool.held and failures.get(tool.name, 0) < tries
         if usable and seen is not None:
             at = (float(seen.position[0]), float(seen.position[1]))
-            if all(o.boarded is None or _apart(at, o.position[:2]) > o.width for o in decision.openings):
+            if all(o.boarded is None or apart(at, o.position[:2]) > o.width for o in decision.openings):
                 found[tool.name] = at
     return found
 
@@ -77,19 +74,15 @@ def _setting(
         if action is not None or held is None:
             if not left:
                 return None
-            board = min(left, key=lambda name, at=at: _apart(left[name], at))  # type: ignore[misc]
+            board = min(left, key=lambda name, at=at: apart(left[name], at))  # type: ignore[misc]
             place = left.pop(board)
-            way, frames = way + _apart(here, place) + _apart(place, at), frames + pick
+            way, frames = way + apart(here, place) + apart(place, at), frames + pick
             action = action or Action(PICK_UP, board)
         else:
-            way, action = way + _apart(here, at), Action(BLOCK, door.name)
+            way, action = way + apart(here, at), Action(BLOCK, door.name)
         frames, here = frames + SETTING, at
         doors.append(replace(door, boarded=round(decision.frame + frames + DETOUR * WALK * way)))
     if action is None:
         return None
-    direct = _apart(decision.agent_position, here)
+    direct = apart(decision.agent_position, here)
     return Setting(tuple(doors), action, frames + DETOUR * WALK * (way - direct), here, False)
-
-
-def _apart(here: Sequence[float], there: Sequence[float]) -> float:
-    return float(np.hypot(here[0] - there[0], here[1] - there[1]))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -61,7 +63,7 @@ class Memory:
     def chose(self, decision: Decision, action: Action) -> None:
         """Enter the action taken at `decision`."""
         self._before = (action, decision.agent_position)
-        self._lay = None if action.target is None else _seen(decision, action.target)
+        self._lay = place_of(decision, action.target)
 
     def _judge(self, action: Action, start: Place, decision: Decision) -> None:
         """Count the last action's failure, unless it was a walk that came further."""
@@ -86,7 +88,7 @@ class Memory:
 
     def chance(self, decision: Decision, name: str) -> float:
         """The chance that a pick-up begun at `decision` works, as a share of the chance of a first attempt."""
-        missed, now = self.missed.get(name, ()), _seen(decision, name)
+        missed, now = self.missed.get(name, ()), place_of(decision, name)
         again = any(
             np.hypot(*np.subtract(decision.agent_position, stood)) < ELSEWHERE
             and (now is None or np.hypot(*np.subtract(now, lay)) < DRIFTED)
@@ -100,10 +102,15 @@ def after(failures: int) -> float:
     return AGAIN[min(failures, len(AGAIN) - 1)]
 
 
-def _seen(decision: Decision, name: str) -> Place | None:
-    """The place where a thing was seen last; None if it is not on the map."""
-    sighting = decision.map.objects.get(decision.index(name)) if name in decision.names else None  # a door is no thing
-    return None if sighting is None else (float(sighting.position[0]), float(sighting.position[1]))
+def place_of(decision: Decision, thing: str | None) -> Place | None:
+    """The place [m] of a thing on the map, where it was seen last; None where it is not known, or no thing."""
+    seen = decision.map.objects.get(decision.index(thing)) if thing in decision.names else None
+    return None if seen is None else (float(seen.position[0]), float(seen.position[1]))
+
+
+def apart(one: Sequence[float], other: Sequence[float]) -> float:
+    """The distance of two places [m]."""
+    return float(np.hypot(one[0] - other[0], one[1] - other[1]))
 
 
 def _far(before: Place, now: NDArray[np.floating]) -> bool:

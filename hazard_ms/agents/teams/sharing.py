@@ -19,6 +19,7 @@ import numpy as np
 
 from hazard_ms.agents.base import Agent
 from hazard_ms.agents.planner import BEAM
+from hazard_ms.agents.search.memory import Place, place_of
 from hazard_ms.agents.team import APPROACH, TeamAgent
 from hazard_ms.sketch.planning.orienteering import solve
 from hazard_ms.sketch.planning.problem import Plan, Problem
@@ -34,8 +35,6 @@ SOON = 4.0  # way within which a robot that walks to its work keeps others from 
 WALKS = (WALK_TO, WALK_ONE_STEP)  # verbs
 PUSH = "push"  # the verb of pushing the cart at hand to a thing
 TURNS = 3  # looks around in a row with which a robot waits for its turn at most [ours]
-
-Place = tuple[float, float]  # x, y [m], world frame
 
 
 class Goals(Protocol):
@@ -174,12 +173,6 @@ def without(ahead: Goals, names: Collection[str]) -> Problem:
     problem = ahead.problem
     counts = [goal == problem.holding or ahead.name(goal) not in names for goal in range(len(problem.values))]
     return problem if all(counts) else replace(problem, values=np.where(counts, problem.values, 0.0).tolist())
-
-
-def place_of(decision: Decision, thing: str | None) -> Place | None:
-    """The place [m] of a thing on the map; None where it is not known, or no thing."""
-    seen = decision.map.objects.get(decision.index(thing)) if thing in decision.names else None
-    return None if seen is None else (float(seen.position[0]), float(seen.position[1]))
 
 
 def places_of(decision: Decision, action: Action) -> list[Place]:

@@ -25,6 +25,7 @@ UNTRIED = 1e6  # in place of Q and the exploration term
 DISCOUNT = 0.95  # of value, per option
 DEPTH = 20  # options in a roll-out
 SIMULATIONS = 2000  # per decision
+MOST_SIMULATIONS = 10**6  # of a decision: any larger number must be a mistake [ours]
 
 State = TypeVar("State")
 Option = TypeVar("Option")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hazard_ms.simulation.mitigation import hinges
 from hazard_ms.skills.context import Stage
@@ -13,7 +12,6 @@ from hazard_ms.skills.mitigations.leaf import Leaf
 from hazard_ms.skills.mitigations.views import in_view
 from hazard_ms.skills.motor.navigation import Ways
 
-Array = NDArray[np.float64]
 Place = tuple[float, float]  # [m], world frame
 SHARES = (0.92, 0.87, 0.82)  # of the arm's span: distances from the handle [ours]: nearer, the elbow meets the leaf
 SIDES = 24  # directions from the handle in which places are tried [ours]

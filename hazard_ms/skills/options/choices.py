@@ -12,10 +12,10 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.skills.decision import Action, Decision
+from hazard_ms.skills.decision import Decision
 from hazard_ms.skills.options import paper_actions
 from hazard_ms.skills.options.features import Encoder
-from hazard_ms.skills.options.macros import Macro, play, worked
+from hazard_ms.skills.options.macros import Macro, play, single
 from hazard_ms.skills.options.options import Menu, Option, Options, option_count
 from hazard_ms.skills.options.paper_actions import SixActions
 from hazard_ms.skills.options.paper_map import MapLayout
@@ -135,11 +135,7 @@ class PaperChoices:
         """One action of the benchmark, as a macro."""
         del decision
         action = self._actions.action(number)
-        return None if action is None else _once(action)
+        return None if action is None else single(action)
 
     def note(self, number: int, ok: bool, decision: Decision) -> None:
         """Remember nothing: the next decision tells how an action ended."""
-
-
-def _once(action: Action) -> Macro:
-    return worked((yield action))

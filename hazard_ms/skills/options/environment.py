@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.env import inputs
-from hazard_ms.skills.context import Skill, Stage
+from hazard_ms.skills.actions import wait
 from hazard_ms.skills.decision import Decision, Result
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.skills.options.choices import ACTIONS, OPTIONS, Choices, OptionChoices, PaperChoices
@@ -130,7 +130,7 @@ class HazardSkills(gym.Env[NDArray[np.float32], np.int64]):
             result, terminated = self._play(macro)
             self._choices.note(number, result.ok, self._decision)
         if self.skills.frame == start and not terminated:
-            self.skills.run(_stand(self.skills.stage))
+            self.skills.run(wait(self.skills.stage, IDLE))
             self._decision = self.skills.decision()
         truncated = self.skills.frame >= self.skills.max_frames or bool(self.skills.base.episode.sim_error[0])
         reward, obs = self._rewarded(macro is not None), self._choices.see(self._decision)
@@ -237,10 +237,3 @@ def refuse_mask(masked: bool, actions: str) -> None:
     """Raises ValueError if `masked` is set for options, whose masks are always there."""
     if masked and actions == OPTIONS:
         raise ValueError("masked must be False with actions='options', which always have masks, got True")
-
-
-def _stand(stage: Stage) -> Skill:
-    """Stand still for IDLE frames."""
-    for _ in range(IDLE):
-        yield stage.act()
-    return Result(True, frames=IDLE)

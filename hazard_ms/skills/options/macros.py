@@ -36,7 +36,7 @@ Approach = Generator[Action, Decision, tuple[Decision, bool]]
 def play(option: Option, decision: Decision) -> Macro:
     """The macro of `option`, begun at `decision`. Raises ValueError for an option that names nothing."""
     if option.kind in (LOOK, END):
-        return _single(Action(EXPLORE if option.kind == LOOK else STOP))
+        return single(Action(EXPLORE if option.kind == LOOK else STOP))
     if option.name is None or option.kind not in (TARGET, CART, LANDMARK, FIRE, TOOL):
         raise ValueError(f"option must be target, cart, landmark, fire or tool with a name, look or stop, got {option}")
     if option.kind == FIRE:
@@ -46,7 +46,8 @@ def play(option: Option, decision: Decision) -> Macro:
     return {TARGET: _fetch, CART: _bring, LANDMARK: _search}[option.kind](decision, option.name)
 
 
-def _single(action: Action) -> Macro:
+def single(action: Action) -> Macro:
+    """One action, as a macro."""
     return worked((yield action))
 
 

@@ -4,32 +4,24 @@ from __future__ import annotations
 
 import io
 import warnings
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from hazard_ms.spec.foreign.files import printable, read_foreign
+from hazard_ms.spec.foreign.files import printable
 
 FORMATS = ("PNG", "JPEG")
 LARGEST_FILE = 64_000_000  # [bytes] [ours]
 MOST_PIXELS = 4096 * 4096  # [ours]
 
 
-def read_picture(path: Path, most_pixels: int = MOST_PIXELS) -> NDArray[Any]:
-    """The pixels of a PNG or JPEG file as they are stored, [H, W] or [H, W, 3 or 4] (red first), 8 or 16 bits each.
-
-    Raises ValueError for other files, for more than `most_pixels`, and for pictures that cannot be decoded.
-    """
-    return decoded(read_foreign(path, LARGEST_FILE), str(path), most_pixels)
-
-
 def decoded(content: bytes, what: str, most_pixels: int = MOST_PIXELS) -> NDArray[Any]:
-    """The pixels, [H, W] or [H, W, C], of the content of a file, as `read_picture` gives them.
+    """The pixels of a PNG or JPEG file as stored, [H, W] or [H, W, 3 or 4] (red first), 8 or 16 bits each.
 
-    Raises ValueError, which calls the file `what`, for the same.
+    `content` is what the file holds. Raises ValueError, which calls it `what`, for other files, for more than
+    `most_pixels`, and for pictures that cannot be decoded.
     """
     import cv2
 

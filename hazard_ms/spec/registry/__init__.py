@@ -220,5 +220,6 @@ for _name in ("rule", "oracle", "planner", "mcts"):
 for _name, _class in (("bc", "Bc"), ("rl", "Rl"), ("rl_paper", "RlPaper")):  # which learned to rescue
     register_agent(_name, f"hazard_ms.agents.learned.players:{_class}", goals=())
 register_agent("llm", "hazard_ms.agents.llm.agent:Llm")
-for _name, _class in (("greedy", "Greedy"), ("rule", "Rule"), ("mcts", "Mcts"), ("mcts_diff", "MctsDiff")):
-    register_agent(f"paper/{_name}", f"hazard_ms.agents.paper.{_name}:{_class}", goals=("walk_to", "pick_up", "drop"))
+_PAPER = (("greedy", "greedy:Greedy"), ("rule", "rule:Rule"), ("mcts", "mcts:Mcts"), ("mcts_diff", "mcts:MctsDiff"))
+for _name, _place in _PAPER:
+    register_agent(f"paper/{_name}", f"hazard_ms.agents.paper.{_place}", goals=("walk_to", "pick_up", "drop"))

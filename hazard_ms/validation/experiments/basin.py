@@ -10,13 +10,14 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.flood.buoyancy import CYLINDER
 from hazard_ms.hazards.flood.realistic import floor_plan, shallow_water
 from hazard_ms.hazards.flood.realistic.inundation import Inundation
 from hazard_ms.hazards.flood.realistic.inundation_state import InundationState
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Partition
-from hazard_ms.validation.experiments.tank import Thing, begin, room
+from hazard_ms.validation.experiments.tank import Thing, room
 
 GRAVITY = 9.81  # [m/s^2]
 SMOOTH = Inundation(outside=0.0, roughness=0.0)
@@ -39,7 +40,7 @@ class Basin:
         """Fill a room of `size` [m]; `ground` and `depth`, [X, Y] [m], of cells of floor_plan.CELL."""
         self.law = law
         self.world: World = room(list(things), "south", size, 1, (0.5 * size[0], 0.5 * size[1]), partitions, openings)
-        self.state: InundationState = begin(law, self.world)  # type: ignore[assignment]
+        self.state: InundationState = begin(law, self.world)
         if not openings:
             self.state.inlet[:] = -1  # closed on all sides
         self.cells = floor_plan.size_of([spec.room for spec in self.world.specs])

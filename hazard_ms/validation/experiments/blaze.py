@@ -9,6 +9,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.fire import spread
 from hazard_ms.hazards.fire.fire import BURNING, NORMAL
 from hazard_ms.hazards.fire.realistic import burning, radiation, smoke, tenability
@@ -104,9 +105,7 @@ def burn_room(
         dataclasses.replace(s, room=dataclasses.replace(s.room, floor=floor, height=20.0)) for s in world.specs
     )
     world = dataclasses.replace(world, specs=specs)
-    state = BlazeState.allocate({"E": copies, "B": world.num_bodies, **blaze.sizes(world)}, world.device)
-    blaze.reset(state, world, torch.arange(copies))
-    return state, world
+    return begin(blaze, world), world
 
 
 def neighbour(apart: float, dt: float = 0.5) -> float:

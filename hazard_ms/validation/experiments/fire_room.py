@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import torch
 
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.fire.fire import Fire, FireState
 from hazard_ms.simulation.chance import Chance
 from hazard_ms.simulation.world import World
@@ -71,14 +72,6 @@ def one_source(distances: Sequence[float], sources: int = 1) -> World:
     world = room_world([("pan", (10.0, 10.0, 0.0))], [(10.0, 10.0)] * sources, copies=len(distances))
     world.position[:, 0, 0] += torch.tensor(distances)
     return world
-
-
-def begin(fire: Fire, world: World) -> FireState:
-    """The state of an episode that begins in all environments."""
-    sizes = {"E": world.num_envs, "B": world.num_bodies, **fire.sizes(world)}
-    state = FireState.allocate(sizes, world.device)
-    fire.reset(state, world, torch.arange(world.num_envs))
-    return state
 
 
 def begin_without_spread(fire: Fire, world: World) -> FireState:

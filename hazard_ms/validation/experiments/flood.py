@@ -9,11 +9,12 @@ import math
 import numpy as np
 import torch
 
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.flood.buoyancy import BALL, BOX, CYLINDER
 from hazard_ms.hazards.flood.water import Water
 from hazard_ms.hazards.presets import flood
 from hazard_ms.validation.experiments.probes import Immersion, drag, immersion, slab_push
-from hazard_ms.validation.experiments.tank import Tank, Thing, begin, frames, room
+from hazard_ms.validation.experiments.tank import Tank, Thing, frames, room
 
 PAPER, SHIPPED = flood("paper"), flood("shipped")
 STILL = dataclasses.replace(PAPER, gain=0.0)

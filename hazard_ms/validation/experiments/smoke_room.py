@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 import torch
 
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.fire.realistic import kindling, radiation, smoke
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.hazards.fire.realistic.blaze_state import BlazeState
 from hazard_ms.hazards.fire.realistic.twozone.lining import GYPSUM, Lining
 from hazard_ms.simulation.world import World
-from hazard_ms.spec import Opening, Partition, Room
+from hazard_ms.spec import Opening, Room
 from hazard_ms.validation.experiments.fire_room import room_world
 
 HALL = (21.66, 7.04, 3.82)  # room of N-7 and N-8 [m]
@@ -49,9 +50,7 @@ def rooms(room: Room, lining: Lining = GYPSUM) -> tuple[BlazeState, World]:
     """The smoke of `room` as an episode begins, and its world."""
     world = room_world(size=room.size)
     world = dataclasses.replace(world, specs=tuple(dataclasses.replace(s, room=room) for s in world.specs))
-    blaze = Blaze()
-    state = BlazeState.allocate({"E": 1, "B": world.num_bodies, **blaze.sizes(world)}, world.device)
-    blaze.reset(state, world, torch.arange(1))
+    state = begin(Blaze(), world)
     state.lining_conductivity[:], state.lining_capacity[:] = lining.conductivity, lining.capacity
     state.lining_thickness[:] = lining.thickness
     return state, world
@@ -120,14 +119,3 @@ def closed_room(case: tuple[float, float]) -> float:
     """The same in a closed room with a gap under its door: the mean of the room, or the layer's where it fills it."""
     seen = course(Burner(case[0], vent=SLOT, lining=PANEL))[case[1]]
     return seen.rise if seen.height < FULL * DWELLING[2] else seen.mean
-
-
-def flat(seconds: float, power: float = 300.0) -> tuple[BlazeState, World]:
-    """Two rooms of 4 x 4 m with an open doorway, a burner in the first one, after so many seconds."""
-    doorway = Opening("doorway", "partition_1", 2.0, 0.9, 2.0)
-    door = Opening("door", "south", 6.0, 0.9, 2.0)
-    room = Room((8.12, 4.0), 2.6, openings=(doorway, door), partitions=(Partition("partition_1", "y", 4.06),))
-    state, world = rooms(room)
-    burner = Burner(power)
-    burn(state, world, burner, fire_at(2.0, 2.0, burner), seconds)
-    return state, world

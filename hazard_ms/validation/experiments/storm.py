@@ -9,9 +9,10 @@ import math
 import numpy as np
 import torch
 
+from hazard_ms.hazards.base import begin
 from hazard_ms.spec.registry import ROBOTS, find, load
 from hazard_ms.validation.experiments.wind import REAL, gusty, three_seconds
-from hazard_ms.validation.experiments.yard import Block, Thing, Yard, begin, run, street
+from hazard_ms.validation.experiments.yard import Block, Thing, Yard, run, street
 
 CALM_AIR = dataclasses.replace(REAL, scale=1.0, gust_intensity=0.0)
 STREETS = 20_000  # in which gusts are counted

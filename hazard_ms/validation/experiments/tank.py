@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import sapien
 import torch
 from sapien.physx import PhysxCpuSystem, PhysxRigidDynamicComponent
 
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.flood.buoyancy import FILLS
 from hazard_ms.hazards.flood.flood import Flood, FloodState
 from hazard_ms.simulation.physx import CpuHandles
@@ -72,18 +73,6 @@ def room(
     world = World.of((spec,), [[t.size for t in things]], [[t.kilograms for t in things]])
     world.position[0] = torch.tensor([t.at for t in things])
     return repeat(world, copies)
-
-
-def on_a_plane(law: Flood) -> Flood:
-    """A flood whose surface is a plane, and whose water acts on things as that of `law` does."""
-    return Flood(**{part.name: getattr(law, part.name) for part in fields(Flood)})
-
-
-def begin(flood: Flood, world: World) -> FloodState:
-    """The state of an episode that begins in all environments."""
-    state = flood.state_type.allocate({"E": world.num_envs, "B": world.num_bodies, **flood.sizes(world)}, world.device)
-    flood.reset(state, world, torch.arange(world.num_envs))
-    return state
 
 
 def frames(flood: Flood, state: FloodState, world: World, count: int, dt: float = 0.01) -> None:

@@ -9,9 +9,10 @@ import math
 import numpy as np
 import torch
 
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.presets import wind
 from hazard_ms.hazards.wind.wind import Wind
-from hazard_ms.validation.experiments.yard import STILL, Block, Thing, Yard, begin, push, run, street
+from hazard_ms.validation.experiments.yard import STILL, Block, Thing, Yard, push, run, street
 
 LAW = Wind(gain=1.0, scale=1.0, **STILL)  # rho A v^2: the paper's, without its gain
 SHIPPED = dataclasses.replace(wind("shipped"), **STILL)

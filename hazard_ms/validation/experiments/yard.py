@@ -11,7 +11,7 @@ import sapien
 import torch
 from sapien.physx import PhysxCpuSystem, PhysxRigidDynamicComponent
 
-from hazard_ms.hazards.base import Push
+from hazard_ms.hazards.base import Push, begin
 from hazard_ms.hazards.wind.wind import Wind
 from hazard_ms.hazards.wind.wind_state import WindState
 from hazard_ms.simulation.physx import CpuHandles
@@ -67,13 +67,6 @@ def street(
     extents = [[*(t.extent for t in things), *(b.extent for b in blocks)]]
     masses = [[*(t.mass for t in things), *(100.0 for _ in blocks)]]
     return repeat(World.of((spec,), extents, masses), copies)
-
-
-def begin(wind: Wind, world: World) -> WindState:
-    """The state of an episode that begins in all environments."""
-    state = wind.state_type.allocate({"E": world.num_envs, "B": world.num_bodies, **wind.sizes(world)}, world.device)
-    wind.reset(state, world, torch.arange(world.num_envs))
-    return state
 
 
 def push(wind: Wind, world: World, dt: float = 0.01) -> Push:

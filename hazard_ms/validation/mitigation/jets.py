@@ -6,6 +6,7 @@ import math
 
 import torch
 
+from hazard_ms.hazards.base import begin
 from hazard_ms.hazards.fire.fire_state import BURNING
 from hazard_ms.hazards.fire.realistic.blaze import Blaze
 from hazard_ms.simulation.jet import Jet, spray
@@ -41,8 +42,7 @@ def put_out(kind: str, surface: float, seconds: float, law: Blaze) -> bool:
     """Whether the extinguisher `kind` puts out a block with this burning `surface` [m^2] in so many `seconds`."""
     edge = math.sqrt(surface / 6.0)
     world = room_world([("cabinet", (4.0, 4.0, 0.0))], size=(8.0, 8.0), extent=(edge, edge, edge))
-    state = law.state_type.allocate({"E": 1, "B": world.num_bodies, **law.sizes(world)}, world.device)
-    law.reset(state, world, ROW)
+    state = begin(law, world)
     state.status[:], state.peak[:], state.growth[:], state.curve[:] = BURNING, 800.0, 100.0, -1
     state.burn_age[:], state.decline[:], state.burn_end[:] = 100.0, 1e6, 2e6
     state.roofed[:] = 0.0

@@ -10,8 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from hazard_ms.agents.base import Agent
-from hazard_ms.agents.paper.mcts import Mcts
-from hazard_ms.agents.paper.mcts_diff import MctsDiff
+from hazard_ms.agents.paper.mcts import Mcts, MctsDiff
 from hazard_ms.agents.paper.memory import Memory, predicted_value
 from hazard_ms.agents.paper.search import Rescue
 from hazard_ms.agents.paper.view import State

@@ -21,9 +21,9 @@ from hazard_ms.validation.experiments.smoke_room import (
     burn,
     course,
     fire_at,
-    flat,
     rooms,
 )
+from tests.worlds.flats import flat
 from tests.worlds.smoke_probes import conducted, passed
 
 AIR = 353.0  # density times absolute temperature [kg K/m^3]

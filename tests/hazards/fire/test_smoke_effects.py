@@ -10,9 +10,10 @@ import torch
 from hazard_ms.hazards.fire.realistic import front, radiation, smoke, tenability
 from hazard_ms.hazards.fire.realistic.fuels import MATERIALS
 from hazard_ms.spec import Opening, Room
-from hazard_ms.validation.experiments.smoke_room import INSULATED, Burner, burn, fire_at, flat, rooms
+from hazard_ms.validation.experiments.smoke_room import INSULATED, Burner, burn, fire_at, rooms
 from tests.hazards.fire.test_blaze import REAL, begin, run, with_room
 from tests.worlds.fire_worlds import room_world
+from tests.worlds.flats import flat
 from tests.worlds.smoke_probes import law
 
 STEFAN = 5.670e-11  # [kW/m^2 K^4]

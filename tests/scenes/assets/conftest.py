@@ -7,13 +7,7 @@ from pathlib import Path
 import pytest
 
 from hazard_ms.cli.__main__ import main
-from tests.worlds.files.model_collections import (
-    write_architecthor,
-    write_partnet,
-    write_replicacad,
-    write_robocasa,
-    write_ycb,
-)
+from tests.worlds.files.model_collections import write_partnet, write_ycb
 from tests.worlds.files.user_models import desk, flask
 
 ADD_FLASK = "--category bottle --mass 0.5 --size 0.14 --licence CC-BY-4.0 --author Ada --source somewhere".split()
@@ -57,6 +51,6 @@ def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
     monkeypatch.setenv("MS_ASSET_DIR", str(tmp_path / "ms"))
     monkeypatch.setenv("HAZARD_MS_ASSETS", str(tmp_path / "mine"))
-    for write in (write_ycb, write_partnet, write_replicacad, write_architecthor, write_robocasa):
+    for write in (write_ycb, write_partnet):
         write(tmp_path / "ms/data")
     return tmp_path / "ms/data"

@@ -1,6 +1,6 @@
 """Other collections, in small files of the layouts that their downloads have.
 
-Listed, described, converted, built by ManiSkill.
+Listed, described, converted.
 """
 
 from __future__ import annotations
@@ -142,24 +142,6 @@ def test_a_packed_bomb_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     (tmp_path / "x.json.gz").write_bytes(gzip.compress(b" " * 2_000_000))
     with pytest.raises(ValueError, match="at most 1000000 bytes, got more"):
         base.read_json(tmp_path / "x.json.gz")
-
-
-def test_scenes_are_listed_when_they_are_there(data: Path) -> None:
-    assert provider("replicacad").ids() == ("apt_3",)
-    assert provider("architecthor").ids() == ("ArchitecTHOR-Val-02",)
-    assert provider("robocasa").ids() == ("l_shaped_small/rustic", "galley/rustic")
-    assert main(["assets", "add", "replicacad:apt_3", "--category", "box"]) == 2, "a whole scene is no model"
-
-
-def test_numbers_of_robocasas_kitchens_are_maniskills() -> None:
-    from mani_skill.utils.scene_builder.robocasa.utils.scene_registry import get_layout_path, get_style_path
-
-    kitchens = PROVIDERS["robocasa"]()
-    numbers = kitchens.numbers()
-    assert sorted(numbers.values()) == list(range(120))
-    for name, number in numbers.items():
-        layout, style = kitchens.files(name)
-        assert str(get_layout_path(number // 12)).endswith(layout) and str(get_style_path(number % 12)).endswith(style)
 
 
 def test_unknown_providers_are_refused() -> None:

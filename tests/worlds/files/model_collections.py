@@ -1,4 +1,4 @@
-"""Little copies of collections of models and scenes, in the formats of their downloads, for tests."""
+"""Little copies of collections of models, in the formats of their downloads, for tests."""
 
 from __future__ import annotations
 
@@ -62,41 +62,6 @@ def write_partnet(data: Path) -> None:
     folder = data / "partnet_mobility/dataset" / CABINET
     write_box(folder / "textured_objs/box.obj")
     (folder / "mobility_cvx.urdf").write_text(URDF)
-
-
-def write_replicacad(data: Path) -> None:
-    folder = data / "scene_datasets/replica_cad_dataset"
-    write_box(folder / "stages/frl_apartment_stage.glb", (8.0, 0.1, 8.0))
-    write_box(folder / "objects/cup.glb", (0.1, 0.1, 0.1))
-    write_box(folder / "objects/convex/cup_cv_decomp.glb", (0.1, 0.1, 0.1))
-    asset = {"render_asset": "../../objects/cup.glb", "collision_asset": "../../objects/convex/cup_cv_decomp.glb"}
-    write_json(folder / "configs/objects/cup.object_config.json", asset)
-    place = {"translation": [1.0, 2.0, 3.0], "rotation": [1.0, 0.0, 0.0, 0.0]}
-    things = [{"template_name": "objects/cup", "motion_type": kind, **place} for kind in ("DYNAMIC", "STATIC")]
-    scene = {"stage_instance": {"template_name": "stages/frl_apartment_stage"}, "object_instances": things}
-    write_json(folder / "configs/scenes/apt_3.scene_instance.json", {**scene, "articulated_object_instances": []})
-
-
-def write_architecthor(data: Path) -> None:
-    folder = data / "scene_datasets/ai2thor"
-    write_json(folder / "ai2thor-hab/configs/object_semantic_id_mapping.json", {"Apple": 7, "Sofa": 9})
-    write_box(folder / "ai2thor-hab/assets/stages/house.glb", (8.0, 0.1, 8.0))
-    for name, number in (("Apple_1", 7), ("Sofa_1", 9)):
-        write_json(
-            folder / f"ai2thorhab-uncompressed/configs/objects/{name}.object_config.json", {"semantic_id": number}
-        )
-        write_box(folder / f"ai2thorhab-uncompressed/assets/objects/{name}.glb", (0.1, 0.1, 0.1))
-    place = {"translation": [1.0, 2.0, 3.0], "rotation": [1.0, 0.0, 0.0, 0.0]}
-    things = [{"template_name": f"objects/{name}", **place} for name in ("Apple_1", "Sofa_1")]
-    scene = {"stage_instance": {"template_name": "stages/house"}, "object_instances": things}
-    write_json(folder / "ai2thor-hab/configs/scenes/ArchitecTHOR/ArchitecTHOR-Val-02.scene_instance.json", scene)
-
-
-def write_robocasa(data: Path) -> None:
-    folder = data / "scene_datasets/robocasa_dataset/assets/scenes"
-    for file in ("kitchen_layouts/galley.yaml", "kitchen_layouts/L_shaped_small.yaml", "kitchen_styles/rustic.yaml"):
-        (folder / file).parent.mkdir(parents=True, exist_ok=True)
-        (folder / file).write_text("{}")
 
 
 def write_objaverse(folder: Path, row: dict[str, object]) -> None:

@@ -83,8 +83,6 @@ def free_name(stem: str) -> str:
 
 def _check(model: Model, name: str, mass: float | None, size: float | None) -> None:
     category(model.category)
-    if not model.parts:
-        raise ValueError(f"only models can be added, got a whole scene, {model.source}")
     if not USER_ID.fullmatch(name):
         raise ValueError(
             f"an id must be a lower-case letter and at most 39 more letters, digits and _, got {name!r:.100}: "

@@ -1,16 +1,13 @@
-"""Models and scenes of other collections, for users who have downloaded them; the shipped models remain the default."""
+"""Models of other collections, for users who have downloaded them; the shipped models remain the default."""
 
 from __future__ import annotations
 
 from hazard_ms.scenes.assets.providers.base import Provider
 from hazard_ms.scenes.assets.providers.objaverse import Objaverse
 from hazard_ms.scenes.assets.providers.partnet import PartNetMobility
-from hazard_ms.scenes.assets.providers.scenes import ArchitecThor, ReplicaCad, RoboCasa
 from hazard_ms.scenes.assets.providers.ycb import Ycb
 
-PROVIDERS: dict[str, type[Provider]] = {
-    p.name: p for p in (Ycb, PartNetMobility, Objaverse, ReplicaCad, ArchitecThor, RoboCasa)
-}
+PROVIDERS: dict[str, type[Provider]] = {p.name: p for p in (Ycb, PartNetMobility, Objaverse)}
 
 
 def provider(name: str) -> Provider:

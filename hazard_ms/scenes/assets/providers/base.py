@@ -1,4 +1,4 @@
-"""The contract of every provider of models: list, describe, build.
+"""The contract of every provider of models: list, describe.
 
 Data are only read, where their own download put them, and never fetched.
 """
@@ -28,7 +28,7 @@ def maniskill_folder() -> Path:
 
 
 class Provider(abc.ABC):
-    """A collection of models, or of whole scenes, on this machine."""
+    """A collection of models on this machine."""
 
     name: ClassVar[str]
     download: ClassVar[str]  # the command that fetches the data
@@ -45,17 +45,7 @@ class Provider(abc.ABC):
 
     @abc.abstractmethod
     def model(self, name: str) -> Model:
-        """The description of `name`: files, frame, category, licence. Raises ValueError if it cannot be had.
-
-        A whole scene has no files: it can only be built.
-        """
-
-    @abc.abstractmethod
-    def build(self, where: Any, name: str) -> Any:
-        """ManiSkill's builder of the actor or articulation `name` in the scene `where`.
-
-        A whole scene is built into the environment `where`. Raises ValueError if ManiSkill cannot build it.
-        """
+        """The description of `name`: files, frame, category, licence. Raises ValueError if it cannot be had."""
 
     def missing(self, what: str = "") -> ValueError:
         """The error that says what is missing and how to get it."""
@@ -79,16 +69,6 @@ class Provider(abc.ABC):
         if not path.is_file():
             raise self.missing(file)
         return read_json(path)
-
-    def check_maniskill(self) -> None:
-        """Check that ManiSkill, which chose its folder on import, reads the same one. Raises ValueError if not."""
-        import mani_skill
-
-        looks = mani_skill.ASSET_DIR / self.place
-        if looks.resolve() != self.folder.resolve():
-            raise ValueError(
-                f"{self.name}: ManiSkill must read {self.folder}, got {looks}; set MS_ASSET_DIR before Python starts"
-            )
 
 
 def read_json(path: Path) -> Any:

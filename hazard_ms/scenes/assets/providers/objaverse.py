@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 import re
 from pathlib import Path
-from typing import Any
 
 from hazard_ms.scenes.assets.intake.model import Model, model_of_file
 from hazard_ms.scenes.assets.providers.base import Provider
@@ -66,18 +65,6 @@ class Objaverse(Provider):
         category = self._categories().get(name, "")
         source = f"Objaverse, {row.get('uri') or row.get('viewerUrl') or name}"[:300]
         return Model(plain.parts, plain.up, plain.front, 1.0, category, None, LICENCES[word], author, source)
-
-    def build(self, where: Any, name: str) -> Any:
-        """An actor builder with the object as it is: a single convex hull, its own size and frame, turned z up."""
-        import sapien
-
-        file = self.model(name).parts[0].file
-        builder = where.create_actor_builder()
-        upright = sapien.Pose(q=[0.5**0.5, 0.5**0.5, 0.0, 0.0])
-        builder.add_convex_collision_from_file(file, pose=upright)
-        if where.can_render():
-            builder.add_visual_from_file(file, pose=upright)
-        return builder
 
     def _categories(self) -> dict[str, str]:
         """Our category of each object that LVIS names."""

@@ -1,8 +1,7 @@
 """PartNet-Mobility cabinets and faucets as ManiSkill downloads them.
 
-Their files are dataset/<id>/mobility_cvx.urdf or mobility_fixed.urdf.
-
-ManiSkill builds them with moving doors. As models of ours they are furniture with everything shut: all joints at zero.
+Their files are dataset/<id>/mobility_cvx.urdf or mobility_fixed.urdf. As models of ours they are furniture
+with everything shut: all joints at zero.
 """
 
 from __future__ import annotations
@@ -10,7 +9,6 @@ from __future__ import annotations
 import functools
 import xml.etree.ElementTree as ET  # documents with entities are refused before they are parsed
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,14 +54,6 @@ class PartNetMobility(Provider):
         return Model(
             parts(urdf), "z", "-x", scale, category, None, self.licence, self.author, f"PartNet-Mobility, {name}"
         )
-
-    def build(self, where: Any, name: str) -> Any:
-        """ManiSkill's articulation builder of `name` in the scene `where`."""
-        from mani_skill.utils.building.articulations import get_articulation_builder
-
-        self.known(name)
-        self.check_maniskill()
-        return get_articulation_builder(where, f"partnet-mobility:{name}")
 
     def _urdf(self, name: str) -> Path | None:
         return next((path for file in URDFS if (path := self.folder / name / file).is_file()), None)

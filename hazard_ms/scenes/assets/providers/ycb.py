@@ -64,14 +64,6 @@ class Ycb(Provider):
             (ModelPart(str(file)),), "z", "-y", scale, category_of(name), mass, self.licence, self.author, source
         )
 
-    def build(self, where: Any, name: str) -> Any:
-        """ManiSkill's actor builder of `name` in the scene `where`, with its own shapes and frame."""
-        from mani_skill.utils.building.actors import get_actor_builder
-
-        self.known(name)
-        self.check_maniskill()
-        return get_actor_builder(where, f"ycb:{name}")
-
     def _table(self) -> dict[str, Any]:
         rows = self.read("info_pick_v0.json")
         if not isinstance(rows, dict):

@@ -1,11 +1,11 @@
-"""What `hazard-ms gpu-check` tells of two pictures of one scene."""
+"""What `./run gpu-check` tells of two pictures of one scene."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from hazard_ms.cli.costs.gpu.looks import compare, looks_row, looks_table
-from tests.cli.costs.test_gpu_check import cells
+from results.gpu.looks import compare, looks_row, looks_table
+from tests.results.test_gpu_check import cells
 
 
 def test_pictures_are_compared_pixel_by_pixel_and_beyond_outlines() -> None:

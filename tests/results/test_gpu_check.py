@@ -1,4 +1,4 @@
-"""What `hazard-ms gpu-check` measures, with one environment on the CPU in the place of many on a GPU."""
+"""What `./run gpu-check` measures, with one environment on the CPU in the place of many on a GPU."""
 
 from __future__ import annotations
 
@@ -9,14 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hazard_ms.cli.__main__ import main
-from hazard_ms.cli.bench import GPU_PARTS, GPU_TASKS
-from hazard_ms.cli.costs.gpu import rates, report, waits
-from hazard_ms.cli.costs.gpu.apart import StoppedError, complaints, failure, run
-from hazard_ms.cli.costs.gpu.comparison import BODIES, JOINTS, course, difference, differences_table, keep, kept
-from hazard_ms.cli.costs.gpu.gpu_tests import gpu_tests
-from hazard_ms.cli.costs.gpu.looks import SIDES
-from hazard_ms.cli.costs.gpu.needs import DRIVER, missing
+from results.gpu import rates, report, waits
+from results.gpu.__main__ import TASKS, main
+from results.gpu.apart import StoppedError, complaints, failure, run
+from results.gpu.comparison import BODIES, JOINTS, course, difference, differences_table, keep, kept
+from results.gpu.gpu_tests import gpu_tests
+from results.gpu.looks import SIDES
+from results.gpu.needs import DRIVER, missing
 from results.speed import GPU
 from tests.worlds.files.checkout import ROOT
 
@@ -138,7 +137,7 @@ def test_waits_are_counted_by_the_line_that_waits() -> None:
             warnings.warn(f"{waits.WARNING} (Triggered internally at x.cpp:1.)", UserWarning, stacklevel=1)
         warnings.warn("something else", RuntimeWarning, stacklevel=1)
     ((place, count),) = places.items()
-    assert count == 3 and place.startswith("tests/cli/costs/test_gpu_check.py:")
+    assert count == 3 and place.startswith("tests/results/test_gpu_check.py:")
     assert not Path(place).is_absolute()
 
 
@@ -149,7 +148,7 @@ def test_a_wait_names_the_line_of_the_package_that_led_to_it(monkeypatch: pytest
     with waits.counted() as places, pytest.raises(AttributeError):
         checks.action(0.0, 1, "mode", lambda mode: 1)
     (place,) = places
-    assert place.startswith("tests/cli/costs/test_gpu_check.py:") and ", from hazard_ms/spec/checks.py:" in place
+    assert place.startswith("tests/results/test_gpu_check.py:") and ", from hazard_ms/spec/checks.py:" in place
 
 
 def test_a_machine_without_a_gpu_is_told_what_is_missing(tmp_path: Path) -> None:
@@ -158,26 +157,22 @@ def test_a_machine_without_a_gpu_is_told_what_is_missing(tmp_path: Path) -> None
 
 @pytest.mark.skipif(DRIVER.exists(), reason="a GPU would be measured")
 def test_the_command_ends_early_without_a_gpu(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["gpu-check", "-o", str(tmp_path / "page.md")]) == 1
+    assert main(["-o", str(tmp_path / "page.md")]) == 1
     said = capsys.readouterr()
     assert said.out == "" and said.err.count("\n") == 1
     assert "this machine lacks an NVIDIA GPU" in said.err and "runs the tests marked gpu" in said.err
     assert not [*tmp_path.iterdir()]
 
 
-def test_the_parts_are_those_that_the_command_offers() -> None:
-    assert GPU_PARTS == report.PARTS
-
-
 def test_the_page_on_speed_says_what_its_script_would_write() -> None:
     assert (ROOT / "docs/speed.md").read_text(encoding="utf-8").endswith(f"\n\n{GPU}")
-    assert all(f"- `{part}`: " in GPU for part in GPU_PARTS)
+    assert all(f"- `{part}`: " in GPU for part in report.PARTS)
 
 
 def test_wrong_input_is_refused_before_anything_is_measured(tmp_path: Path) -> None:
     for words in ({"parts": ("rate",)}, {"budget": 0.0}, {"sizes": ()}, {"env_ids": ("HazardFir-v1",)}):
         with pytest.raises(ValueError, match="must be"):
-            report.report(tmp_path / "page.md", **{"env_ids": GPU_TASKS, **words})  # type: ignore[arg-type]
+            report.report(tmp_path / "page.md", **{"env_ids": TASKS, **words})  # type: ignore[arg-type]
     assert not [*tmp_path.iterdir()]
 
 
@@ -217,7 +212,6 @@ def test_tests_of_a_gpu_are_run_and_told(tmp_path: Path) -> None:
     file.write_text(head + "def test_b(): pytest.skip('why')\n")
     said, passed = gpu_tests(tmp_path)
     assert not passed and "SKIPPED [1] tests/test_it.py" in said and "1 passed, 1 skipped" in said
-    assert gpu_tests(tmp_path / "elsewhere")[1] is False
 
 
 def test_what_needs_physx_is_left_out_without_it_and_counts_as_failed(tmp_path: Path) -> None:

@@ -16,11 +16,12 @@ from typing import Any
 
 import torch
 
-from hazard_ms.cli.costs.gpu.rates import STATE, WARM_UP, batch, motions
+import hazard_ms
 from hazard_ms.cli.costs.tables import table
+from results.gpu.rates import STATE, WARM_UP, batch, motions
 
 WARNING = "called a synchronizing CUDA operation"  # torch's words
-PACKAGE = Path(__file__).parents[3]
+PACKAGE = Path(hazard_ms.__file__).parent
 FRAMES = 30  # frames to count in: the hazards' rarer updates take part [ours]
 
 
@@ -76,8 +77,7 @@ def place(filename: str, lineno: int) -> str:
     """A line of a file, and the line of this package that led to it where that is another one."""
     here = f"{short(filename)}:{lineno}"
     for frame in reversed(traceback.extract_stack()):
-        inside = PACKAGE in Path(frame.filename).parents and Path(__file__).parent not in Path(frame.filename).parents
-        if inside:
+        if PACKAGE in Path(frame.filename).parents:
             ours = f"{short(frame.filename)}:{frame.lineno}"
             return ours if ours == here else f"{here}, from {ours}"
     return here

@@ -1,4 +1,4 @@
-"""The measurements that run in processes of their own: `python -m hazard_ms.cli.costs.gpu.jobs JSON`.
+"""The measurements that run in processes of their own: `python -m results.gpu.jobs JSON`.
 
 JSON has the name of a job, the file for its answer, and the job's keywords.
 """
@@ -13,40 +13,40 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.machine.survey import without_gpu
 from hazard_ms.spec.storage.files import write
+from results.gpu.needs import without_gpu
 
 
 def rate_job(**keywords: Any) -> Any:
-    """See `hazard_ms.cli.costs.gpu.rates.rate`."""
-    from hazard_ms.cli.costs.gpu.rates import rate
+    """See `results.gpu.rates.rate`."""
+    from results.gpu.rates import rate
 
     return dataclasses.asdict(rate(**keywords))
 
 
 def course_job(file: str, **keywords: Any) -> Any:
-    """See `hazard_ms.cli.costs.gpu.comparison.course`, which goes into `file`."""
-    from hazard_ms.cli.costs.gpu.comparison import course, keep
+    """See `results.gpu.comparison.course`, which goes into `file`."""
+    from results.gpu.comparison import course, keep
 
     keep(Path(file), course(**keywords))
 
 
 def waits_job(**keywords: Any) -> Any:
-    """See `hazard_ms.cli.costs.gpu.waits.waits`."""
-    from hazard_ms.cli.costs.gpu.waits import waits
+    """See `results.gpu.waits.waits`."""
+    from results.gpu.waits import waits
 
     return waits(**keywords)
 
 
 def laws_job(**keywords: Any) -> Any:
-    """See `hazard_ms.cli.costs.gpu.laws.laws`."""
-    from hazard_ms.cli.costs.gpu.laws import laws
+    """See `results.gpu.laws.laws`."""
+    from results.gpu.laws import laws
 
     return laws(**keywords)
 
 
 def looks_job(file: str, renderer: str, **keywords: Any) -> Any:
-    """See `hazard_ms.cli.costs.gpu.looks.looks`, whose pictures go into `file`. For the CPU the GPU is hidden.
+    """See `results.gpu.looks.looks`, whose pictures go into `file`. For the CPU the GPU is hidden.
 
     Raises ValueError where nothing can draw on the CPU.
     """
@@ -54,8 +54,8 @@ def looks_job(file: str, renderer: str, **keywords: Any) -> Any:
         if not (variables := without_gpu()):
             raise ValueError("lavapipe must be installed to draw on the CPU, found no such Vulkan driver")
         os.environ.update(variables)
-    from hazard_ms.cli.costs.gpu.comparison import keep
-    from hazard_ms.cli.costs.gpu.looks import looks
+    from results.gpu.comparison import keep
+    from results.gpu.looks import looks
 
     spans, pictures = looks(renderer=renderer, **keywords)
     keep(Path(file), pictures)

@@ -16,9 +16,9 @@ import torch
 from numpy.typing import NDArray
 
 from hazard_ms.cli.costs.effects import ADVANCED, go_on
-from hazard_ms.cli.costs.gpu.comparison import Course
-from hazard_ms.cli.costs.gpu.rates import PICTURES
 from hazard_ms.cli.costs.tables import table
+from results.gpu.comparison import Course
+from results.gpu.rates import PICTURES
 
 SIDES = (128, 256, 512)  # of the pictures [pixels]
 MODALITIES = ("rgb", "depth", "segmentation")

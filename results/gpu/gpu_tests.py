@@ -9,14 +9,12 @@ from pathlib import Path
 
 from hazard_ms.machine.processes import environment
 
-CHECKOUT = Path(__file__).parents[4]  # which has the tests; an installed package has none
+CHECKOUT = Path(__file__).parents[2]
 MENTIONED = re.compile(r"(?:FAILED|ERROR|SKIPPED|XFAIL|XPASS)\b.*")  # lines of pytest's summary
 
 
 def gpu_tests(checkout: Path = CHECKOUT) -> tuple[str, bool]:
     """Run all tests marked `gpu` of a checkout: what pytest says of them, and whether all of them ran and passed."""
-    if not (checkout / "tests").is_dir():
-        return "The tests are in the repository, not in the installed package: none ran.", False
     files = sorted(
         str(path.relative_to(checkout))
         for path in (checkout / "tests").rglob("test_*.py")

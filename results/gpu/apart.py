@@ -50,14 +50,14 @@ class Answer:
 
 
 def apart(job: str, budget: float, **words: Any) -> Answer:
-    """Run one of `hazard_ms.cli.costs.gpu.jobs` in a process of its own; its keywords must be what JSON can hold.
+    """Run one of `results.gpu.jobs` in a process of its own; its keywords must be what JSON can hold.
 
     Raises StoppedError where it fails or takes longer than `budget` seconds.
     """
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "answer.json"
         arguments = json.dumps({"job": job, "answer": str(file), **words})
-        said = run([sys.executable, "-m", "hazard_ms.cli.costs.gpu.jobs", arguments], budget)
+        said = run([sys.executable, "-m", "results.gpu.jobs", arguments], budget)
         return Answer(json.loads(file.read_text(encoding="utf-8")), complaints(said))
 
 

@@ -9,15 +9,15 @@ import pytest
 import torch
 from torch.utils._python_dispatch import TorchDispatchMode
 
-from hazard_ms.cli.bench import GPU_TASKS
-from hazard_ms.cli.costs.gpu.laws import DEVICES, course, laws, rate
-from hazard_ms.cli.costs.gpu.rates import Rate
 from hazard_ms.hazards.fire import coupling, fire
 from hazard_ms.hazards.fire.realistic import blaze, front
 from hazard_ms.hazards.presets import PRESETS
 from hazard_ms.sketch.recording import record
-from hazard_ms.sketch.rescues.resting import SPLIT, Batch
 from hazard_ms.tasks import task_of
+from results.gpu.__main__ import TASKS
+from results.gpu.laws import DEVICES, course, laws, rate
+from results.gpu.rates import Rate
+from results.gpu.resting import SPLIT, Batch
 
 CHECKED = (0, 1, 30)
 ROUNDING = 1e-6  # of what is below one, in its own unit
@@ -26,7 +26,7 @@ ON_GPU = pytest.param("gpu", marks=pytest.mark.gpu)
 
 @pytest.mark.parametrize("simulator", ["cpu", ON_GPU])
 @pytest.mark.parametrize("physics", PRESETS)
-@pytest.mark.parametrize("env_id", GPU_TASKS)
+@pytest.mark.parametrize("env_id", TASKS)
 def test_an_environment_of_a_batch_is_as_alone(env_id: str, physics: str, simulator: str) -> None:
     """But for rounding: in a batch things are padded to the scene that has most, and longer sums round differently."""
     several, alone = (course(env_id, count, simulator, physics, CHECKED) for count in (3, 1))
@@ -47,7 +47,7 @@ def test_an_environment_of_a_batch_is_as_alone(env_id: str, physics: str, simula
 
 @pytest.mark.gpu
 @pytest.mark.parametrize("physics", PRESETS)
-@pytest.mark.parametrize("env_id", GPU_TASKS)
+@pytest.mark.parametrize("env_id", TASKS)
 def test_a_gpu_agrees_with_the_cpu(env_id: str, physics: str) -> None:
     """But for rounding, of which the remainders of compensated sums consist."""
     gpu, cpu = (course(env_id, 8, simulator, physics, CHECKED) for simulator in ("gpu", "cpu"))
@@ -84,7 +84,7 @@ def test_things_rest_while_they_are_pushed() -> None:
 
 
 def test_a_measurement_has_rates_differences_and_waits(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("hazard_ms.cli.costs.gpu.laws.COMPARED", 2)
+    monkeypatch.setattr("results.gpu.laws.COMPARED", 2)
     found = laws("HazardFire-v1", "paper", (1, 2), "cpu")
     assert [made["num_envs"] for made in found["rates"]] == [1, 2]
     assert list(found["differences"]) == ["cpu and cpu", "cpu twice"] and found["waits"] == {}
@@ -96,7 +96,7 @@ def test_a_measurement_has_rates_differences_and_waits(monkeypatch: pytest.Monke
             raise torch.OutOfMemoryError
         return Rate(size, 0.1, 1.0, None)
 
-    monkeypatch.setattr("hazard_ms.cli.costs.gpu.laws.rate", full)
+    monkeypatch.setattr("results.gpu.laws.rate", full)
     found = laws("HazardFire-v1", "paper", (1, 4, 16), "cpu")
     assert [made["num_envs"] for made in found["rates"]] == [1] and found["too_many"] == 4
     assert set(DEVICES) == {"cpu", "gpu"}

@@ -1,4 +1,4 @@
-"""The report of `hazard-ms gpu-check`: a page in Markdown that grows part by part, so that a break costs one part."""
+"""The report of `./run gpu-check`: a page in Markdown that grows part by part, so that a break costs one part."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from hazard_ms.cli.costs.gpu.apart import StoppedError, apart
-from hazard_ms.cli.costs.gpu.comparison import CHECKED, differences_table, kept
-from hazard_ms.cli.costs.gpu.gpu_tests import gpu_tests
-from hazard_ms.cli.costs.gpu.laws import COMPARED
-from hazard_ms.cli.costs.gpu.looks import SIDES, compare, looks_row, looks_table
-from hazard_ms.cli.costs.gpu.rates import FRAMES, PICTURES, SIDE, STATE, WARM_UP, Rate, growth, rates_table
-from hazard_ms.cli.costs.gpu.waits import waits_table
 from hazard_ms.evaluation.options import EnvOptions
 from hazard_ms.evaluation.report import machine_line
 from hazard_ms.spec.checks import one_of
 from hazard_ms.spec.storage.files import make_folder, write
+from results.gpu.apart import StoppedError, apart
+from results.gpu.comparison import CHECKED, differences_table, kept
+from results.gpu.gpu_tests import gpu_tests
+from results.gpu.laws import COMPARED
+from results.gpu.looks import SIDES, compare, looks_row, looks_table
+from results.gpu.rates import FRAMES, PICTURES, SIDE, STATE, WARM_UP, Rate, growth, rates_table
+from results.gpu.waits import waits_table
 
 SIZES = (1, 4, 16, 64, 256, 1024, 4096)  # environments of a batch
 MOST_DRAWN = 256  # environments that draw [ours]

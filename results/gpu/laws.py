@@ -9,11 +9,11 @@ from typing import Any
 
 import torch
 
-from hazard_ms.cli.costs.gpu.comparison import CHECKED, Course, differences_table, records
-from hazard_ms.cli.costs.gpu.rates import FRAMES, WARM_UP, Rate, memory, pace, settle
-from hazard_ms.cli.costs.gpu.waits import FRAMES as COUNTED
-from hazard_ms.cli.costs.gpu.waits import counted
-from hazard_ms.sketch.rescues.resting import Batch
+from results.gpu.comparison import CHECKED, Course, differences_table, records
+from results.gpu.rates import FRAMES, WARM_UP, Rate, memory, pace, settle
+from results.gpu.resting import Batch
+from results.gpu.waits import FRAMES as COUNTED
+from results.gpu.waits import counted
 
 COMPARED = 64  # environments of the batches that are compared [ours]
 DEVICES = {"gpu": "cuda", "cpu": "cpu"}  # as torch calls them

@@ -12,8 +12,8 @@ import gymnasium as gym
 import torch
 from torch import Tensor
 
-from hazard_ms.cli.costs.gpu.apart import StoppedError
 from hazard_ms.cli.costs.tables import table
+from results.gpu.apart import StoppedError
 
 STATE, PICTURES = "state", "rgb+depth+segmentation"
 SIDE = 128  # of a square picture [pixels]

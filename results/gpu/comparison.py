@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.cli.costs.gpu.rates import STATE, batch, motions
 from hazard_ms.cli.costs.tables import table
+from results.gpu.rates import STATE, batch, motions
 
 CHECKED = (0, 1, 2, 5, 10, 30, 100, 300)  # frames after which is compared [ours]
 BODIES, JOINTS = "bodies: position [m]", "robot: joints [m, rad]"

@@ -1,7 +1,7 @@
 """Measures the frames that mitigations take in a test home: a door shut, an extinguisher fetched, fires fought.
 
-    python -m hazard_ms.cli.costs.mitigations [SEED [FRAME]]
-    python -m hazard_ms.cli.costs.mitigations doors [HOMES]
+    ./run python results/mitigations.py [SEED [FRAME]]
+    ./run python results/mitigations.py doors [HOMES]
 
 The first prints one line for each action: its frames, the flames and burning things before and after it, and the frames
 of jet that are left. The fires are fought from FRAME on, by default 400. The second shuts the three doors nearest to

@@ -130,7 +130,7 @@ def test_a_base_does_not_slide_along_another_robot(
     pair.reset(seed=1)
     stage, other = pair.knowledge["fetch-1"].stage, pair.knowledge["fetch-0"].stage
     x, y, heading = other.robot.base()
-    ahead, aside = np.array([math.cos(heading), math.sin(heading)]), np.array([-math.sin(heading), math.cos(heading)])
+    aside = np.array([-math.sin(heading), math.cos(heading)])
     start = torch.tensor(np.array([[x, y]]) + 0.58 * aside, dtype=torch.float32)
     stage.robot.place(torch.tensor([0]), start, torch.tensor([heading - math.radians(25.0)]))
     for _ in range(60):

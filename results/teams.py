@@ -56,10 +56,9 @@ Made by `./run python results/teams.py`. First scenes of the split `test`, Fetch
 robots in homes and gales alone. Two robots are on their own, each `greedy` (`2 independent`), hold auctions, or plan
 together; `2 oracle`, where it was played, sees what is hidden. Value and what was averted in percent, with 95 %
 bootstrap intervals over scenes, averted only of scenes where it is defined; collisions are contacts between robots at
-more than 0.1 m/s, of all episodes together. teams.csv has every episode. Rows of `2 joint`, `2 independent` and of homes
-are of commit 6824f3d, but for three episodes of `2 joint` that ended there with an error of its own and were played again
-after it was mended (8c6dbb7, 6e850c1), and for 15 of one robot in homes of the day before; `1 greedy` and `1 planner` in wind and gales are of 95ddc75, `2 auction` of 991ca80,
-before arms looked out for other robots.
+more than 0.1 m/s, of all episodes together. teams.csv has every episode. Rows of two robots are of commits 6824f3d to
+6e850c1, which differ in what ended three episodes of `2 joint` with an error: these were played again. 15 rows of one
+robot in homes are of the day before; `1 greedy` and `1 planner` in wind and gales are of 95ddc75.
 Written at
 {machine}.
 

@@ -159,7 +159,8 @@ class Episode:
 
     def put_away(self, drop: Drop) -> None:
         """Record what is safe by now, after a hand has let things go as `drop` tells."""
-        if not none_set(now := self._safe_now(drop)):
+        now = self._safe_now(drop)
+        if now is not None and not none_set(now):
             if self.safe_place.carried:
                 self.world.away |= now & self.world.exists
             self.rescue.mark(self.world, now, self.damage)

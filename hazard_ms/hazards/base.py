@@ -54,7 +54,7 @@ class Push:
 
 
 def summed(parts: list[Tensor], like: Tensor) -> Tensor:
-    """The sum of one or several pushes, [E, B, 3] as `like`, in their unit; where one is like that, it itself."""
+    """The sum of one or several forces [N] or torques [N m], [E, B, 3] as `like`; one that is like that, itself."""
     total = parts[0] if len(parts) == 1 else torch.stack(parts).sum(0)
     if (total.shape, total.dtype) == (like.shape, like.dtype) and total.is_contiguous() and not total.requires_grad:
         return total

@@ -123,6 +123,7 @@ class BuiltEnv(BaseEnv):
             self.world.door_grip = DoorGrip(self.specs, self.world.openings)
         self.episode = Episode(self.world, self.task.hazards, self.task.safe_place)
         self.leaves = Leaves(self.scene, self.world)
+        self._physics_step = self.sim_timestep  # ManiSkill divides anew each time
         self.situation = Situation(self.episode, first, self.affects_agent)
 
     def _load_lighting(self, options: dict[str, Any]) -> None:
@@ -175,7 +176,7 @@ class BuiltEnv(BaseEnv):
 
     def _before_simulation_step(self) -> None:
         self.leaves.push(self._sim_steps_per_control)
-        self.episode.push(self.sim_timestep)
+        self.episode.push(self._physics_step)
 
     def _after_simulation_step(self) -> None:
         if self.contacts is not None:

@@ -171,9 +171,9 @@ class HazardEnv(BuiltEnv):
         reward = self.get_reward(raw, commands, info)
         obs = self._last_obs = self._flatten_raw_obs(raw)
         broken, over = self.episode.sim_error.clone(), torch.logical_or(info["success"], info["fail"])
-        if not none_set(broken):
-            obs = finite(obs)
-        return obs, torch.where(broken, 0.0, reward), over & ~broken, broken, info
+        if none_set(broken):
+            return obs, reward, over, broken, info
+        return finite(obs), torch.where(broken, 0.0, reward), over & ~broken, broken, info
 
     def advance(self, action: Any) -> dict[str, Any]:
         """One frame like `step`, without observation and reward: what skills use between decisions. Returns info."""

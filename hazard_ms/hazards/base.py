@@ -20,7 +20,7 @@ from hazard_ms.spec import Level, Quantity, SceneSpec
 if TYPE_CHECKING:
     from hazard_ms.simulation.world import World
 
-__all__ = ["DTYPES", "Hazard", "Level", "Push", "State", "begin", "loosened", "none_set", "quantity"]
+__all__ = ["DTYPES", "Hazard", "Level", "Push", "State", "begin", "loosened", "none_set", "quantity", "summed"]
 
 
 def loosened(hazards: Iterable[Hazard], spec: SceneSpec) -> frozenset[str]:
@@ -38,18 +38,27 @@ def none_set(mask: Tensor) -> bool:
 
     False on a GPU, where asking would make the host wait.
     """
-    return mask.device.type == "cpu" and not bool(mask.any())
+    return mask.is_cpu and not bool(mask.any())
 
 
 @dataclasses.dataclass
 class Push:
-    """The push of a hazard on the bodies over the coming physics step, [E, B, 3], world frame; never changed in place.
+    """The push of a hazard on the bodies over the coming physics step, [E, B, 3], world frame.
 
-    Mean force [N], and torque about the centre of mass [N m].
+    Mean force [N], and torque about the centre of mass [N m]. They hold until the hazard is asked again; until then
+    nobody changes them.
     """
 
     force: Tensor
     torque: Tensor | None = None
+
+
+def summed(parts: list[Tensor], like: Tensor) -> Tensor:
+    """The sum of one or several forces [N] or torques [N m], [E, B, 3] as `like`; one that is like that, itself."""
+    total = parts[0] if len(parts) == 1 else torch.stack(parts).sum(0)
+    if (total.shape, total.dtype) == (like.shape, like.dtype) and total.is_contiguous() and not total.requires_grad:
+        return total
+    return total.detach().to(like.dtype).expand_as(like).contiguous()
 
 
 class Flames(NamedTuple):

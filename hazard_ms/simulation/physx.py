@@ -39,8 +39,8 @@ class CpuHandles:
         self._groups = [[s.get_collision_groups() for s in b.collision_shapes] for b in self.bodies]
         every = dict(enumerate(self.bodies)) | self.furniture
         self._add = {b: body.add_force_torque for b, body in every.items()}
-        self._which = torch.tensor(list(every))
-        self._frozen = [False] * len(self.bodies)
+        self._which, self._size = torch.tensor(list(every)), (len(every),)
+        self._frozen: set[int] = set()
         self._px: Any = entities[0].scene.physx_system if entities else None
         self._length = -1  # size of what SAPIEN packed last [bytes]
 
@@ -53,7 +53,7 @@ class CpuHandles:
             self._find(len(packed))
         self._numbers[:] = np.frombuffer(packed, np.float32, len(self._numbers))
         bodies = world.launches.struct(Bodies, world)
-        world.launches.run(unpack, (len(self._which),), self._packed, self._rows, self._which, bodies)
+        world.launches.run(unpack, self._size, self._packed, self._rows, self._which, bodies)
 
     def _find(self, length: int) -> None:
         """Find the rows of the bodies in what SAPIEN packs; needed again when bodies come or go."""
@@ -69,17 +69,17 @@ class CpuHandles:
 
     def put_to_sleep(self, asleep: Tensor) -> None:
         """Let the bodies of the mask `asleep` [1, M] rest exactly where they are: restored piles do not move."""
-        for body, still, frozen in zip(self.bodies, asleep[0].tolist(), self._frozen, strict=True):
-            if still and not frozen:
+        for b, (body, still) in enumerate(zip(self.bodies, asleep[0].tolist(), strict=True)):
+            if still and b not in self._frozen:
                 body.put_to_sleep()
 
     def push(self, force: Tensor, torque: Tensor | None) -> None:
         """Apply `force` [N] and `torque` [N m], [1, B, 3], world frame, for one physics step."""
-        forces = force[0].numpy()
-        torques = np.zeros_like(forces) if torque is None else torque[0].numpy()
+        forces = force.numpy()[0]
+        torques = np.zeros_like(forces) if torque is None else torque.numpy()[0]
         rows = (forces.any(1) | torques.any(1)).nonzero()[0]
-        for b, one, turn in zip(rows.tolist(), forces[rows], torques[rows], strict=True):
-            if b >= len(self._frozen) or not self._frozen[b]:
+        for b, one, turn in zip(rows.tolist(), forces.take(rows, 0), torques.take(rows, 0), strict=True):
+            if b not in self._frozen:
                 self._add[b](one, turn)
 
     def place(self, rows: Tensor, base: Tensor, rotation: Tensor) -> None:
@@ -88,7 +88,7 @@ class CpuHandles:
             return
         for b, body in enumerate(self.bodies):
             body.entity.set_pose(sapien.Pose(base[0, b].numpy(), rotation[0, b].numpy()))
-            if not self._frozen[b]:
+            if b not in self._frozen:
                 body.linear_velocity = body.angular_velocity = np.zeros(3)
         for b, body in self.furniture.items():
             body.entity.set_pose(sapien.Pose(base[0, b].numpy(), rotation[0, b].numpy()))
@@ -110,13 +110,13 @@ class CpuHandles:
         """
         wanted = frozen[0].tolist()
         for b, body in enumerate(self.bodies):
-            if wanted[b] != self._frozen[b]:
+            if wanted[b] != (b in self._frozen):
                 self._switch(b, wanted[b])
             if wanted[b]:
                 body.entity.set_pose(sapien.Pose(base[0, b].numpy(), rotation[0, b].numpy()))
 
     def _switch(self, b: int, frozen: bool) -> None:
-        self._frozen[b] = frozen
+        (self._frozen.add if frozen else self._frozen.discard)(b)
         body = self.bodies[b]
         for shape, groups in zip(body.collision_shapes, self._groups[b], strict=True):
             shape.set_collision_groups([0, 0, 0, 0] if frozen else groups)
@@ -126,8 +126,8 @@ class CpuHandles:
         self._wake()  # bodies that rested on it must fall: contacts alone do not wake them
 
     def _wake(self) -> None:
-        for other, still in zip(self.bodies, self._frozen, strict=True):
-            if not still:
+        for b, other in enumerate(self.bodies):
+            if b not in self._frozen:
                 other.wake_up()
 
 

@@ -39,7 +39,7 @@ class SafePlace:
 
     name: str  # "bag"
     text: str  # in words, for agents: "the bag that you carry"
-    # World -> (Drop -> things that are safe there now, [E, B], bool); see hazard_ms.tasks.episode.safe_places
+    # World -> (Drop -> things that are safe there now, [E, B], bool, or None); see hazard_ms.tasks.episode.safe_places
     rule: Callable[[Any], Callable[[Any], Any]]
     containers: tuple[str, ...] = ()  # categories of the things that have to be reached in order to put something there
     carried: bool = False  # the agent takes along what is safe, so that it is no longer in the scene

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hazard_ms.hazards import presets
-from hazard_ms.hazards.base import DTYPES, Hazard, State, quantity
+from hazard_ms.hazards.base import DTYPES, Hazard, State, quantity, summed
 from hazard_ms.robots.fetch import HazardFetch
 from hazard_ms.simulation.world import World
 from hazard_ms.spec.registry import HAZARDS
@@ -223,3 +223,14 @@ def test_a_wrong_declaration_is_refused() -> None:
 def test_impossible_parameters_are_refused_by_name(field: str, value: float) -> None:
     with pytest.raises(ValueError, match=f"{field} must be .*, got {value}"):
         dataclasses.replace(presets.fire("paper"), **{field: value})
+
+
+def test_one_push_on_all_bodies_is_not_copied_and_any_other_is() -> None:
+    like = torch.zeros(2, 3, 3)
+    alone = torch.rand(2, 3, 3)
+    assert summed([alone], like) is alone
+    for other in (torch.rand(1, 3, 3), alone.double(), torch.rand(2, 3, 6)[..., ::2], alone.clone().requires_grad_()):
+        made = summed([other], like)
+        assert made is not other and made.is_contiguous() and not made.requires_grad
+        assert made.dtype == like.dtype and torch.equal(made, other.detach().float().expand_as(like))
+    assert torch.equal(summed([alone, like + 1.0], like), alone + 1.0)

@@ -150,17 +150,16 @@ class Fire(Burning):
         state.status.masked_fill_(things & (state.status == BURNING), NORMAL)
         state.temperature.masked_fill_(things, self.room_temperature)
 
-    @torch.inference_mode()
     def image(self, state: FireState, world: World, points: Tensor) -> Tensor:
         points = of_environments(points, world.num_envs)
-        (found,) = world.launches.results(temperature_at, points[..., 0])
+        found = points.new_empty(points.shape[:2])
         room = (self.room_temperature, self.image_room_weight / self.reach**2, self.nearest, self.flame_temperature)
         sources = ((Heat, state), (Bodies, world), (Partitions, world.walls))
         structs = (world.launches.struct(kind, of) for kind, of in sources)
         world.launches.run(
             temperature_at, tuple(found.shape), points, world.frame, world.crew.places, *room, *structs, found
         )
-        return found.clone()
+        return found
 
     def threatens(self, target: Any, level: float, height: float) -> bool:
         return ignites(target, level)

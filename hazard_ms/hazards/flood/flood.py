@@ -4,10 +4,11 @@
     (hazard_ms.hazards.flood.flow_paths)
 
 H rises by 0.01 m every 10 frames to 1.5 m; from then on the slope lessens as the wetted length grows, so no level ever
-falls. The current runs away from the source along the path. Lift and drag are Warp kernels,
-hazard_ms.hazards.flood.floating; those of the original's code: hazard_ms.hazards.flood.slab; the rest, about once a
-frame and room, is torch. Constants: docs/physics.md 1.2; what the presets change: docs/physics.md 1.5. In `realistic`
-water flows instead: hazard_ms.hazards.flood.realistic.inundation.
+falls. The current runs away from the source along the path. The water is a few Warp kernels,
+hazard_ms.hazards.flood.kernels: lift and drag are those of hazard_ms.hazards.flood.floating, in the original's code of
+hazard_ms.hazards.flood.slab; what a robot feels of it, and its ways through doors, are torch. Constants:
+docs/physics.md 1.2; what the presets change: docs/physics.md 1.5. In `realistic` water flows instead:
+hazard_ms.hazards.flood.realistic.inundation.
 
 `gain` is the one number tuned for difficulty. The original's frame lasts 0.01 s, ours 1/30 s: of its current, 0.3
 carries things as far per frame as it did there, while the agent walks as far per frame as there. Measured in
@@ -17,6 +18,7 @@ kitchen_a/00, mean distance that its 60 bodies drift after 250, 500, 750, 1,000 
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -33,6 +35,7 @@ from hazard_ms.hazards.flood.reach import PathArrays
 from hazard_ms.hazards.flood.soaking import ELECTRONIC, SHAPES, SOAKING, porosity
 from hazard_ms.hazards.flood.water import Water
 from hazard_ms.simulation.kernels.bodies import Bodies
+from hazard_ms.simulation.kernels.launch import of_environments
 from hazard_ms.simulation.world import World
 from hazard_ms.spec import Quantity
 from hazard_ms.spec.catalogue import CATEGORIES
@@ -89,7 +92,7 @@ class Flood(Hazard):
         if not self.slope < 45:
             raise ValueError(f"slope must be less than 45 degrees, got {self.slope}")
 
-    @property
+    @functools.cached_property
     def speed(self) -> float:
         """Speed of the water [m/s]."""
         return self.current * self.gain
@@ -123,44 +126,37 @@ class Flood(Hazard):
         spared = world.lookup("waterproof") > 0 if self.spares_waterproof else torch.zeros_like(world.exists)
         state.submersion_limit[rows] = torch.where(spared, torch.inf, limit)[rows]
 
-    @torch.inference_mode()  # for one environment, autograd's part of every operation is a sixth of its time
     def advance(self, state: FloodState, world: World, dt: float) -> None:
         state.time.add_(dt)
         before = state.level.clone()
-        self._rise(state, world)
+        launches, bodies = world.launches, world.launches.struct(Bodies, world)
+        flooded = launches.struct(kernels.Flooded, state)
+        launches.run(kernels.rise, (world.num_envs,), world.frame, *self._course, flooded)
         blocked = self.through_doors and flow_paths.hold_back(state, world, state.level - before)
         if world.openings.inner or blocked:
             state.doorway_distance.copy_(flow_paths.through_open(state, *world.openings.ways))
-        world.launches.run(
-            kernels.immerse,
-            tuple(world.exists.shape),
-            dt,
-            self.slabs,
-            self.damage_fraction,
-            world.launches.struct(kernels.Flooded, state),
-            world.launches.struct(PathArrays, state),
-            world.launches.struct(Bodies, world),
-        )
+        how = dt, self.slabs, self.damage_fraction
+        paths = launches.struct(PathArrays, state)
+        launches.run(kernels.immerse, tuple(world.exists.shape), *how, flooded, paths, bodies)
 
-    def _rise(self, state: FloodState, world: World) -> None:
-        """Set the level at the source and the slope of the surface."""
-        updates = world.frame // self.every
+    @functools.cached_property
+    def _course(self) -> tuple[int, float, float, int, float, float, float]:
+        """The course of the level and of the slope, as `kernels.rise` takes it."""
         full = math.ceil(self.cap / self.rise - 1e-6)  # updates until the cap is reached
-        state.level.copy_((self.rise * updates).clamp(max=self.cap))
-        beyond = (updates - full + 1).clamp(min=0)  # the first is the one that reaches it
         steep = math.tan(math.radians(self.slope))
-        length = self.cap / steep + self.rise / steep * beyond
-        state.surface_slope.copy_(torch.where(beyond > 0, self.cap / length, steep))
+        return self.every, self.rise, self.cap, full, steep, self.cap / steep, self.rise / steep
 
     def _surface(self, state: FloodState, world: World, points: Tensor) -> tuple[Tensor, Tensor]:
         """Level [m], [E, P], and direction of flow, [E, P, 2], of the water at `points` [m], [E, P, 3], world frame.
 
         The level is below the floor where it is dry.
         """
-        length, direction = flow_paths.path_lengths(state, points, world.launches)
-        return state.level[:, None] - state.surface_slope[:, None] * length, direction
+        place, launches = of_environments(points, world.num_envs), world.launches
+        level, direction = place.new_empty(place.shape[:2]), place.new_empty(*place.shape[:2], 2)
+        structs = launches.struct(kernels.Flooded, state), launches.struct(PathArrays, state)
+        launches.run(kernels.tell, tuple(level.shape), *structs, place, level, direction)
+        return level, direction
 
-    @torch.inference_mode()
     def force(self, state: FloodState, world: World, dt: float) -> Push | None:
         if none_set(state.level > 0):
             return None
@@ -177,8 +173,7 @@ class Flood(Hazard):
             world.launches.struct(Bodies, world),
             *made,
         )
-        force, torque = made
-        return Push(force.clone(), None if self.slabs else torque.clone())
+        return Push(made[0], None if self.slabs else made[1])
 
     def damaged(self, state: FloodState, world: World) -> Tensor:
         return (state.under > 0) & (state.under >= state.submersion_limit - ROUNDING) & world.exists & ~world.held

@@ -1,4 +1,4 @@
-"""The kernels of hazard_ms.hazards.flood.flood, one thread per body (Warp)."""
+"""The kernels of hazard_ms.hazards.flood.flood, one thread per body, place or environment (Warp)."""
 
 from __future__ import annotations
 
@@ -57,6 +57,47 @@ def body_at(e: int, b: int, flooded: Flooded, bodies: Bodies) -> floating.Body:
     body.drag_coefficient = flooded.drag_coefficient[e, b]
     body.volume = flooded.volume[e, b] * (1.0 - flooded.pores[e, b] * flooded.soaked[e, b])
     return body
+
+
+@wp.kernel
+def rise(
+    frame: wp.array(dtype=wp.int64),
+    every: int,
+    step: float,
+    cap: float,
+    full: int,
+    steep: float,
+    length: float,
+    longer: float,
+    flooded: Flooded,
+):
+    """Set the level at the source [m] and the slope of the surface, a tangent, of every environment in its `frame`.
+
+    The level rises by `step` [m] `every` so many frames, `full` times, up to the `cap` [m]. Until then the slope is
+    `steep`; from then on the wetted `length` [m] gets `longer` [m] at each update.
+    """
+    e = wp.tid()
+    updates = int(frame[e] / wp.int64(every))
+    flooded.level[e] = wp.min(step * float(updates), cap)
+    beyond = updates - full + 1  # the first is the one that reaches the cap
+    flooded.surface_slope[e] = steep
+    if beyond > 0:
+        flooded.surface_slope[e] = cap * (1.0 / (length + longer * float(beyond)))
+
+
+@wp.kernel
+def tell(
+    flooded: Flooded,
+    paths: PathArrays,
+    place: wp.array2d(dtype=wp.vec3),
+    level: wp.array2d(dtype=float),
+    direction: wp.array2d(dtype=wp.vec2),
+):
+    """Write the level of the water [m] at every `place` [m], and the direction of its flow there."""
+    e, p = wp.tid()
+    found = reach(e, place[e, p][0], place[e, p][1], paths)
+    level[e, p] = flooded.level[e] - flooded.surface_slope[e] * found.path_length
+    direction[e, p] = found.direction
 
 
 @wp.kernel

@@ -52,7 +52,7 @@ class Launches:
 
     def __init__(self) -> None:
         self._made: dict[wp.Kernel, _Recorded] = {}
-        self._results: dict[wp.Kernel, tuple[Tensor, ...]] = {}
+        self._results: dict[wp.Kernel, tuple[tuple[Tensor, ...], tuple[Tensor, ...]]] = {}  # by what they are like
         self._once: dict[tuple[wp.Kernel, torch.Size, torch.device], tuple[Tensor, ...]] = {}
         self._structs: dict[wp.Struct, Filled] = {}
 
@@ -65,12 +65,13 @@ class Launches:
 
         They are the same ones at every call: clone what has to outlast the next launch.
         """
-        known = self._results.get(kernel, ())
-        if [(t.shape, t.dtype, t.device) for t in known] != [(t.shape, t.dtype, t.device) for t in like]:
-            known = self._results[kernel] = tuple(
-                torch.empty_like(t, memory_format=torch.contiguous_format) for t in like
-            )
-        return known
+        known, made = self._results.get(kernel, ((), ()))
+        if len(known) == len(like) and all(map(operator.is_, known, like)):
+            return made
+        if [(t.shape, t.dtype, t.device) for t in made] != [(t.shape, t.dtype, t.device) for t in like]:
+            made = tuple(torch.empty_like(t, memory_format=torch.contiguous_format) for t in like)
+        self._results[kernel] = like, made
+        return made
 
     def once(self, kernel: wp.Kernel, like: Tensor, make: Callable[[], tuple[Tensor, ...]]) -> tuple[Tensor, ...]:
         """Tensors for the results of `kernel`, [...] each in its own unit [-], which `make` makes at the first call.
@@ -118,28 +119,36 @@ class _Recorded:
     def __init__(self, kernel: wp.Kernel, size: tuple[int, ...], arguments: tuple[Argument, ...]) -> None:
         self._known, self._size = arguments, size
         self._launch = _recorded(kernel, size, arguments)
-        fields = [(f"_{k}", type(value)) for k, value in enumerate(self._launch.params[1:])]
+        self._names = [f"_{k}" for k in range(len(arguments))]
+        fields = [(name, type(value)) for name, value in zip(self._names, self._launch.params[1:], strict=True)]
         self._packed = type("Arguments", (ctypes.Structure,), {"_fields_": fields})(*self._launch.params[1:])
+        self._call = self._launch.hooks.forward if self._launch.device.is_cpu else None
+        self._given = ctypes.byref(self._launch.bounds), ctypes.byref(self._packed)
 
     def launch(self, size: tuple[int, ...], arguments: tuple[Argument, ...]) -> None:
         """Launch again with `arguments`, for every index below `size`."""
-        launch = self._launch
         if not all(map(operator.is_, self._known, arguments)):
-            for k, (before, now) in enumerate(zip(self._known, arguments, strict=True)):
-                if another(before, now):
-                    if alike(before, now):
-                        launch.params[k + 1].data = now.data_ptr()
-                    else:
-                        launch.set_param_at_index(k, now)
-                    setattr(self._packed, f"_{k}", launch.params[k + 1])
-            self._known = arguments
+            self._change(arguments)
         if size != self._size:
-            launch.set_dim(size)
-            self._size = size
-        if launch.device.is_cpu:
-            launch.hooks.forward(ctypes.byref(launch.bounds), ctypes.byref(self._packed))
+            self._launch.set_dim(size)
+            self._size, self._given = size, (ctypes.byref(self._launch.bounds), ctypes.byref(self._packed))
+        if self._call is not None:
+            self._call(*self._given)
         else:
-            launch.launch(stream=_stream(launch.device))
+            self._launch.launch(stream=_stream(self._launch.device))
+
+    def _change(self, arguments: tuple[Argument, ...]) -> None:
+        """Take other `arguments` than those of the last time."""
+        params = self._launch.params
+        for k, (before, now) in enumerate(zip(self._known, arguments, strict=True)):
+            if before is now or not another(before, now):
+                continue
+            if alike(before, now):
+                params[k + 1].data = now.data_ptr()
+            else:
+                self._launch.set_param_at_index(k, now)
+            setattr(self._packed, self._names[k], params[k + 1])
+        self._known = arguments
 
 
 def of_environments(points: Tensor, count: int) -> Tensor:

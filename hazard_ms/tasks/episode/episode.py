@@ -14,7 +14,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from hazard_ms.hazards.base import Flames, Hazard, Push, State, none_set
+from hazard_ms.hazards.base import Flames, Hazard, Push, State, none_set, summed
 from hazard_ms.simulation.kernels.bodies import Bodies
 from hazard_ms.simulation.kernels.pushing import free_only
 from hazard_ms.simulation.openings import EVERY
@@ -90,7 +90,9 @@ class Episode:
 
     def see(self, agent: Robot) -> None:
         """Copy the place and heading of the `agent` into the world."""
-        self.world.agent_position[:], self.world.agent_heading[:] = agent.base_pose()
+        position, heading = agent.base_pose()
+        self.world.agent_position.copy_(position)
+        self.world.agent_heading.copy_(heading)
 
     def push(self, dt: float) -> None:
         """Read the bodies, sum the hazards' forces and send them; call it before each physics step of `dt` seconds."""
@@ -98,12 +100,12 @@ class Episode:
             return  # nothing reads the bodies between physics steps
         world = self.world
         world.read()
-        given = (h.force(self.states[h.name], world, dt) for h in self._pushers)
+        given = [h.force(self.states[h.name], world, dt) for h in self._pushers]
         made: list[Push] = [p for p in given if p is not None]
         if made:
             torques, bodies = [p.torque for p in made if p.torque is not None], world.launches.struct(Bodies, world)
-            force = _sum([p.force for p in made], world.position)
-            torque = _sum(torques, world.position) if torques else force
+            force = summed([p.force for p in made], world.position)
+            torque = summed(torques, world.position) if torques else force
             kept = world.launches.results(free_only, force, torque)
             world.launches.run(free_only, tuple(world.exists.shape), bodies, force, torque, *kept)
             world.push(kept[0], kept[1] if torques else None)
@@ -157,7 +159,8 @@ class Episode:
 
     def put_away(self, drop: Drop) -> None:
         """Record what is safe by now, after a hand has let things go as `drop` tells."""
-        if not none_set(now := self._safe_now(drop)):
+        now = self._safe_now(drop)
+        if now is not None and not none_set(now):
             if self.safe_place.carried:
                 self.world.away |= now & self.world.exists
             self.rescue.mark(self.world, now, self.damage)
@@ -223,12 +226,6 @@ class Episode:
             left = hazard.slow(self.states[hazard.name], self.world)
             velocity = left[:, :1] * velocity + left[:, 1:]
         return velocity
-
-
-def _sum(parts: list[Tensor], like: Tensor) -> Tensor:
-    """The sum of one or several pushes, [E, B, 3] as `like`, in their unit."""
-    total = parts[0] if len(parts) == 1 else torch.stack(parts).sum(0)
-    return total.detach().to(like.dtype).expand_as(like).contiguous()
 
 
 def shared_fields(

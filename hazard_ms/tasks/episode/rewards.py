@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import torch
@@ -95,7 +94,7 @@ def dense(situation: Situation) -> Tensor:
 
 def evaluate(goal: Goal, situation: Situation) -> dict[str, Tensor]:
     """The entries of `info` after every frame, [E] each: success, fail, the goal's own numbers, and sim_error."""
-    situation = replace(situation, known={})
+    situation = Situation(situation.episode, situation.agent, situation.affects_agent, known={})
     info = {"success": goal.success(situation)}
     info["fail"] = torch.zeros_like(info["success"]) if goal.fail is None else goal.fail(situation)
     info.update({term.name: term.of(situation) for term in goal.info})

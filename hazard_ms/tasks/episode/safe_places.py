@@ -25,15 +25,15 @@ class Drop:
     bag: Callable[[], Tensor]  # gives the mouth of the bag [m], world frame, [E, 3]
 
 
-Rule = Callable[[Drop], Tensor]  # things that are safe now, [E, B], bool
+Rule = Callable[[Drop], Tensor | None]  # things that are safe now, [E, B], bool; None: none is
 
 
 def in_bag(world: World) -> Rule:
     """The rule of the bag: what the hand lets go over it is safe; tools do not go into it."""
 
-    def rule(drop: Drop) -> Tensor:
+    def rule(drop: Drop) -> Tensor | None:
         if none_set(drop.dropped >= 0):
-            return torch.zeros_like(world.safe)
+            return None
         over = (drop.gripper - drop.bag()).norm(dim=-1) <= BAG_REACH
         inside = torch.arange(world.num_bodies, device=world.device) == torch.where(over, drop.dropped, -1)[:, None]
         return inside if world.equipment is None else inside & ~world.equipment.tool

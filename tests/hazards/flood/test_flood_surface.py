@@ -89,6 +89,19 @@ def test_the_slope_lessens_after_the_cap(preset: str) -> None:
         assert fall == pytest.approx(1.5 / (28.6217 + 0.1908114 * k), abs=1e-6)
 
 
+@pytest.mark.parametrize("preset", BY_FRAMES)
+def test_the_course_of_the_level_is_rounded_as_published_episodes_have_it(preset: str) -> None:
+    """Each operation in single precision, in this order: hashes of episodes rest on these bits."""
+    single, steep = np.float32, math.tan(math.radians(3.0))
+    for frame in (0, 9, 10, 70, 290, 1490, 1499, 1500, 1510, 4000):
+        state = at(flood(preset), room(NOTHING, copies=2), frame)
+        level = min(single(0.01) * single(frame // 10), single(1.5))
+        beyond = frame // 10 - 149
+        length = single(1.5 / steep) + single(0.01 / steep) * single(beyond)
+        slope = single(1.5) * (single(1.0) / length) if beyond > 0 else single(steep)
+        assert state.level.tolist() == [float(level)] * 2 and state.surface_slope.tolist() == [float(slope)] * 2
+
+
 DIVIDED = {
     "across": ((Partition("a", "y", 5.0),), (Opening("doorway", "a", 1.5, 0.9, 2.0),)),
     "along": ((Partition("a", "x", 3.0),), (Opening("doorway", "a", 4.0, 0.9, 2.0),)),

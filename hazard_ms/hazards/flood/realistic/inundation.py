@@ -137,7 +137,6 @@ class Inundation(Flood):
             build = footing.footing(robot, water.density, water.gravity)
             launches.run(footing.stand, size, dt, *_cells(world), build, launches.struct(Basin, state), *own)
 
-    @torch.inference_mode()
     def force(self, state: InundationState, world: World, dt: float) -> Push | None:  # type: ignore[override]
         launches = world.launches
         made = launches.results(currents.push, world.position, world.position)
@@ -148,8 +147,7 @@ class Inundation(Flood):
             launches.struct(Bodies, world),
         )
         launches.run(currents.push, tuple(world.exists.shape), dt, *_cells(world), *structs, *made)
-        force, torque = made
-        return Push(force.clone(), torque.clone())
+        return Push(*made)
 
     @torch.inference_mode()
     def strain(self, state: InundationState, world: World) -> Strain:

@@ -66,7 +66,7 @@ def merge(folders: tyro.conf.Positional[tuple[Path, ...]], output: Annotated[Pat
     from hazard_ms.demonstrations.merging import merge as run
 
     for dataset, count in run(folders, output).items():
-        print(f"{dataset}: {count} episodes more")
+        print(f"{dataset}: {count} episodes added")
     return 0
 
 
@@ -102,7 +102,7 @@ def show(folder: Folder, output: Annotated[Path, flag("-o")] = Path("demos.html"
 
     whole(films, 0, MOST, "films")
     if output.suffix != ".html":
-        raise ValueError(f"output must be a name that ends in .html, got {output.name!r}")
+        raise ValueError(f"output must end in .html, got {output.name!r}")
     text = page(folder, output, films)
     make_folder(output.parent)
     write(output, text)

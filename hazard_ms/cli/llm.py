@@ -103,9 +103,9 @@ def page(
     from hazard_ms.spec.storage.files import make_folder, write
 
     if output.suffix != ".html":
-        raise ValueError(f"output must be a name that ends in .html, got {output.name!r}")
+        raise ValueError(f"output must end in .html, got {output.name!r}")
     if pictures and result is None:
-        raise ValueError("result must be given for --pictures, got none: the episode is played again from it")
+        raise ValueError("--pictures needs --result, since it plays the result again")
     rows = read_trace(trace)
     read = None if result is None else EpisodeResult.read(result)
     judged = None if result is None else beside(result)
@@ -115,7 +115,7 @@ def page(
         from hazard_ms.pictures.decision_pictures import decision_pictures
 
         views = decision_pictures(read, {row["frame"] for row in rows}, load)
-        print(f"pictures: of {sum(row['frame'] in views for row in rows)} of {len(rows)} decisions")
+        print(f"pictures: {sum(row['frame'] in views for row in rows)} of {len(rows)} decisions")
     write(output, decision_page(rows, trace.stem, read, judged, views))
     print(f"page: {output.resolve()}")
     return 0

@@ -45,9 +45,9 @@ def report(
     from hazard_ms.spec.storage.files import make_folder, write
 
     if not folders:
-        raise ValueError("folders must be those that `hazard-ms evaluate -o FOLDER` wrote, got none")
+        raise ValueError("folders must be at least one that `hazard-ms evaluate -o FOLDER` wrote, got none")
     if output.suffix != ".html":
-        raise ValueError(f"output must be a name that ends in .html, got {output.name!r}")
+        raise ValueError(f"output must end in .html, got {output.name!r}")
     found, left_out = groups(folders)
     summaries = [summary(group) for group in found]
     if csv is not None:
@@ -136,7 +136,7 @@ def submit(
     own = read_card(card)
     content = pack(results_of(folders, wanted, agent), wanted, own)
     if faults := faults_of(submission_of(content, output.name), wanted):
-        raise ValueError(f"a submission must be without faults, got {len(faults)}, the first: {faults[0]}")
+        raise ValueError(f"a submission must have no faults, got {len(faults)}, the first: {faults[0]}")
     make_folder(output.parent)
     write(output, content)
     print(f"submission: {output.resolve()}, {len(wanted.places)} episodes, {len(content)} bytes")
@@ -221,7 +221,7 @@ def commitments(
     from hazard_ms.evaluation.submissions.commitments import read_hidden, write_drawn, write_scenes
 
     if (published is None) == (draw == 0) or (draw != 0) != (secret is not None):
-        raise ValueError("either published must be given, or both draw and secret, got something else")
+        raise ValueError("either --published must be given, or both --draw and --secret, got another combination")
     if published is None:
         assert secret is not None
         write_drawn(file, secret, file.stem, draw)

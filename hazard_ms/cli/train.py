@@ -181,9 +181,9 @@ def ppo(
     count, _ = whole(scenes, 1, VALIDATION - SCENES, "scenes"), whole(seed, 0, 2**31, "seed")
     reward = settings.reward if reward is None else one_of(reward, ("value", "paper"), "reward")
     if masked and not six:
-        raise ValueError("masked must be left out with actions options, which always have masks, got True")
+        raise ValueError("--masked must be left out with --actions options, which are always masked")
     if share is not None and not six:
-        raise ValueError(f"share must be left out with actions options, whose network has one width, got {share}")
+        raise ValueError(f"--share must be left out with --actions options, whose network has one width, got {share}")
     if not minutes > 0:
         raise ValueError(f"minutes must be positive, got {minutes}")
     width, processes = SHARE if share is None else share, whole(workers, 0, 1000, "workers")
@@ -191,7 +191,7 @@ def ppo(
     shape = shape_for(actions, ranges, width, masked, measures)
     begun = None if start is None else load_map(start, env_id) if six else load(start, env_id, measures=measures)
     if six and begun is not None and begun.shape != shape:
-        raise ValueError(f"share and masked must be those of the policy in start, {begun.shape}, got {width}, {masked}")
+        raise ValueError(f"share and masked must be those of the --start policy, {begun.shape}, got {width}, {masked}")
     words = f"hazard-ms train ppo -e {env_id} --seed {seed} --scenes {scenes} --reward {reward} --physics {physics}"
     words += f"{f' --actions {actions} --share {width:g}' if six else ''}{' --masked' if masked else ''}"
     command = words if start is None else f"{words} --start {shlex.quote(str(start.resolve()))}"
@@ -201,7 +201,7 @@ def ppo(
     run = Run(output / f"{name}_{env_id}{ENDING}", env_id, facts)
     state = run.state()
     if state is not None and ended(curve_of(state), settings, wanted, minutes):
-        print(f"{run.path} has learnt for as long as that, or no longer gets better")
+        print(f"{run.path} has already trained for that long, or no longer improves")
         return 0
     numbers = [*range(SCENES, SCENES + count), *range(VALIDATION, VALIDATION + VALIDATION_SCENES)]
     made = generated(env_id, physics, numbers, processes)

@@ -72,7 +72,7 @@ class RecordOptions:
         for name in self.cameras.split("+"):
             one_of(name, known, "cameras")
         if HEAD not in self.cameras.split("+") or (self.mounted and "rgb" not in self.pictures):
-            raise ValueError(f"cameras must have {HEAD}, and others only with rgb in obs, got {self.cameras!r}")
+            raise ValueError(f"cameras must include {HEAD}, and others only with rgb in obs, got {self.cameras!r}")
 
     @property
     def mounted(self) -> tuple[str, ...]:

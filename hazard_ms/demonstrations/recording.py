@@ -63,7 +63,7 @@ def record(options: RecordOptions) -> int:
     done = {entry.seed for entry in recorded(dataset, options.recipe)}
     jobs = [RecordJob(e, SILENCE, record=options) for e in options.episode_options() if e.seed not in done]
     if len(jobs) < options.episodes:
-        print(f"{options.episodes - len(jobs)} of {options.episodes} episodes are there already", flush=True)
+        print(f"{options.episodes - len(jobs)} of {options.episodes} episodes are already recorded", flush=True)
     failed = 0
     played = spread(jobs, options.workers, options.backend, options.address, attempt)
     with played as outcomes, tqdm(total=len(jobs), unit="episode", disable=not jobs) as bar:

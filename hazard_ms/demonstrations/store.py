@@ -128,7 +128,7 @@ def append(shelf: Path, entry: Entry) -> None:
         torn = size > 0 and os.pread(opened, 1, size - 1) != b"\n"
         line = ("\n" * torn + entry.line()).encode()
         if os.write(opened, line) != len(line):
-            raise OSError(f"the manifest of {shelf} must be written whole, got a part; free some space")
+            raise OSError(f"the manifest of {shelf} could not be written whole; free some space")
         os.fsync(opened)
     finally:
         os.close(opened)

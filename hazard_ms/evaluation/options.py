@@ -108,7 +108,7 @@ class PlayOptions:
         self.episode.check(teams=True)
         whole(self.every, 1, MOST, "every")
         if self.output is not None and self.output.suffix != ".mp4":
-            raise ValueError(f"output must be a name that ends in .mp4, got {self.output.name!r}")
+            raise ValueError(f"output must end in .mp4, got {self.output.name!r}")
 
 
 @dataclass(frozen=True)

@@ -145,7 +145,7 @@ class _RaySeats:
                 failed += job is None
                 if failed > STARTS * self._count:
                     raise ValueError(
-                        f"address must be of a cluster that can play episodes, got {error!s:.500}"
+                        f"address must be that of a cluster that can play episodes, got {error!s:.500}"
                     ) from None
                 with contextlib.suppress(ray.exceptions.RayError):
                     ray.kill(seat)

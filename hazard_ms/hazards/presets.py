@@ -127,7 +127,7 @@ def hazard(name: str, preset: str, severity: str = USUAL) -> Hazard:
     maker = load(find(HAZARDS, name, "hazard").maker)
     made = maker(preset, **severity_for(maker, name, preset, severity))
     if not isinstance(made, Hazard):
-        raise ValueError(f"the maker of {name!r} must give a Hazard, got {type(made).__name__}")
+        raise ValueError(f"the maker of {name!r} must return a Hazard, got {type(made).__name__}")
     return made
 
 

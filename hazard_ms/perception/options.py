@@ -69,7 +69,9 @@ class CaptureOptions:
         whole(self.per_scene, 1, MOST, "per_scene")
         whole(self.spare, 0, MOST_SPARE, "spare")
         if self.spare and self.env.split != SPARED:
-            raise ValueError(f"spare must be 0 in the split {self.env.split}, got {self.spare}: they are for {SPARED}")
+            raise ValueError(
+                f"spare must be 0 in the split {self.env.split}, got {self.spare}: spare scenes are for {SPARED}"
+            )
         whole(self.size, SMALLEST, LARGEST, "size")
         if not NARROWEST <= self.fov <= WIDEST:
             raise ValueError(f"fov must be from {NARROWEST:g} to {WIDEST:g} degrees, got {self.fov!r}")

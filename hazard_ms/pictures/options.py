@@ -93,6 +93,6 @@ def _writable(path: Path | None, endings: tuple[str, ...], what: str) -> None:
     if path is None:
         return
     if path.suffix.lower() not in endings:
-        raise ValueError(f"{what} must be a name that ends in {' or '.join(endings)}, got {path.name!r}")
+        raise ValueError(f"{what} must end in {' or '.join(endings)}, got {path.name!r}")
     if not path.parent.is_dir():
         raise ValueError(f"{what} must be in a folder that exists, got {path}: there is no folder {path.parent}")

@@ -50,7 +50,7 @@ def test_names_that_are_neither_of_the_split_nor_spare_are_refused(scene: str) -
 @pytest.mark.parametrize(
     ("split", "spare", "told"),
     [
-        ("test", 1, "spare must be 0 in the split test, got 1: they are for train"),
+        ("test", 1, "spare must be 0 in the split test, got 1: spare scenes are for train"),
         ("train", -1, "spare must be .*got -1"),
         ("train", 10**6, "spare must be .*got 1000000"),
     ],

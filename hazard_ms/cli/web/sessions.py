@@ -60,7 +60,7 @@ class Sessions:
         """Take a rescue that is watched back to after its first `decisions`. Raises ValueError where it cannot be."""
         session = self.find(name)
         if session.rescue.kind != rescues.WATCH:
-            raise ValueError("rescue must be one that is watched to go back in it, got one that is played")
+            raise ValueError("rescue must be watched to go back in it, got one that is played")
         whole(decisions, 0, len(session.taken), "decisions")
         known = self._known(session)
         session.end()
@@ -125,8 +125,8 @@ class Sessions:
         idle = sorted((s for s in alive if not s.pages), key=lambda s: s.looked_at)
         if not idle:
             raise ValueError(
-                f"rescues must be at most {self._options.sessions} at once, got one more: end one, or start "
-                "hazard-ms serve with --sessions"
+                f"at most {self._options.sessions} rescues can run at once: end one, or start hazard-ms serve with "
+                "more --sessions"
             )
         self._drop(idle[0])
 

@@ -32,7 +32,7 @@ def calibrate(datasets: Sequence[Path], text: str, splits: Sequence[str], every:
     whole(every, 1, MOST_EVERY, "every")
     detector = perception_of(text).detector
     if detector is None or not detector.classes:
-        raise ValueError(f"perception must have a detector that says which categories it tells, got {text!r}")
+        raise ValueError(f"perception must name a detector that lists its categories, got {text!r}")
     parts = [(home, split) for home in datasets for split in splits if (home / layout.instances(split)).is_file()]
     if {home for home, _ in parts} != set(datasets):
         raise ValueError(f"each of DATA must have one of the splits {', '.join(splits)}")

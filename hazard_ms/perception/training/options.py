@@ -63,7 +63,7 @@ class TrainOptions:
         from hazard_ms.spec.checks import whole  # loads numpy
 
         if not self.data:
-            raise ValueError("DATA must be one dataset or more, got none")
+            raise ValueError("DATA must be at least one dataset, got none")
         for name, number in (("epochs", self.epochs), ("minutes", self.minutes)):
             if not number > 0:
                 raise ValueError(f"{name} must be positive, got {number!r}")

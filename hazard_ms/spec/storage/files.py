@@ -219,6 +219,4 @@ def _refusing(target: Path, kind: str = "file") -> Iterator[None]:
         yield
     except OSError as error:
         remedy = REMEDIES.get(error.errno or 0, "name another place")
-        raise ValueError(
-            f"output must be a {kind} that can be written, got {target}: {error.strerror}; {remedy}"
-        ) from None
+        raise ValueError(f"output must be a writable {kind}, got {target}: {error.strerror}; {remedy}") from None

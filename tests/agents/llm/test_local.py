@@ -16,7 +16,7 @@ from tests.worlds.playground import play
 def test_a_missing_package_is_named_with_the_way_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xllamacpp", None)  # as if it were not installed
     local_server.cache_clear()
-    with pytest.raises(ValueError, match="xllamacpp must be installed for base_url=local.*pip install xllamacpp"):
+    with pytest.raises(ValueError, match="base_url=local needs the package xllamacpp.*pip install xllamacpp"):
         Llm(base_url="local")
 
 

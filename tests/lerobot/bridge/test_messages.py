@@ -84,7 +84,7 @@ def test_who_leaves_within_a_message_is_noticed(pair: Pair, kept: int) -> None:
     message = packed({"a": np.zeros(9)})
     pair[0].sendall(message[:kept])
     pair[0].close()
-    with pytest.raises(ConnectionError, match=r"has left, after \d+ of \d+ bytes"):
+    with pytest.raises(ConnectionError, match=r"closed the connection after \d+ of \d+ bytes"):
         receive(pair[1], 5.0)
 
 
@@ -92,7 +92,7 @@ def test_who_leaves_within_a_message_is_noticed(pair: Pair, kept: int) -> None:
 def test_nobody_waits_for_ever(pair: Pair, kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(hazard_client, "MESSAGE_SECONDS", 0.2)
     pair[0].sendall(packed({"a": np.zeros(9)})[:kept])
-    with pytest.raises(TimeoutError, match="must be there in time"):
+    with pytest.raises(TimeoutError, match="must arrive in time"):
         receive(pair[1], 0.2)
 
 
@@ -124,8 +124,8 @@ def test_who_takes_nothing_is_not_waited_for(pair: Pair, monkeypatch: pytest.Mon
     ("value", "message"),
     [
         (object(), "plain values and arrays, got <object"),
-        ({1: 2}, "keys must be words"),
-        ({"array": 2}, "keys must be words other than 'array'"),
+        ({1: 2}, "keys must be strings"),
+        ({"array": 2}, "keys must be strings other than 'array'"),
         (np.array([None]), "an array must be of .*, got object"),
         (np.array(["a"]), "an array must be of"),
         (np.zeros((1,) * 5), "an array must be of"),

@@ -45,7 +45,7 @@ CASES: dict[str, tuple[str, dict[str, bytes], str]] = {  # the file to read, all
     "not valid JSON": ("m.glb", {"m.glb": glb(b"{]]]")}, "must be a valid glTF"),
     "list": ("m.gltf", {"m.gltf": b"[1, 2]"}, "must be a valid glTF"),
     "version 1": ("m.glb", {"m.glb": glb(gltf(), version=1)}, "version 2"),
-    "cut off": ("m.glb", {"m.glb": glb(gltf())[:60]}, "whole JSON chunk"),
+    "cut off": ("m.glb", {"m.glb": glb(gltf())[:60]}, "complete JSON chunk"),
     "empty": ("m.glb", {"m.glb": b""}, "must be a GLB"),
     "no mesh": ("m.glb", {"m.glb": glb(gltf(meshes=[], nodes=[{}]))}, "m.glb"),
     "must be finite": ("m.stl", {"m.stl": stl(0, 0, 0, 1, 0, 0, 0, NAN, 0)}, "must be finite"),

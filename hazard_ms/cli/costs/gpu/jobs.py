@@ -52,7 +52,7 @@ def looks_job(file: str, renderer: str, **keywords: Any) -> Any:
     """
     if renderer == "cpu":
         if not (variables := without_gpu()):
-            raise ValueError("lavapipe must be installed to draw on the CPU, found no such Vulkan driver")
+            raise ValueError("drawing on the CPU needs the Vulkan driver lavapipe, which is not installed")
         os.environ.update(variables)
     from hazard_ms.cli.costs.gpu.comparison import keep
     from hazard_ms.cli.costs.gpu.looks import looks

@@ -36,27 +36,27 @@ def bench(
     count: Annotated[int, flag("-n")] = 500,
     output: Annotated[Path | None, flag("-o", "--output", old="out")] = None,
 ) -> int:
-    """Print where the time of a frame goes, phase by phase, and how long a greedy episode takes, with the machine.
+    """Print where the time of a frame goes, phase by phase, and how long a greedy episode takes, on which machine.
 
     Args:
         env_id: Task.
         frames: Frames to average over.
         seed: Seed of the episode.
         physics: Preset of the hazards.
-        severity: How strong the hazards of the preset realistic are.
+        severity: Strength of the hazards in the preset realistic.
         episode: Also play a whole greedy episode.
         effects: Only print what the effects of each mode cost in a picture.
         kernels: Only print what the laws of all hazards cost on one thread, for 1,024 environments and for 64.
-        pickups: Only print how often picking up and putting away work, and how many frames they take.
+        pickups: Only print how often picking up and putting away succeed, and how many frames they take.
         against: Only print what frames and resets of all tasks cost beside those of ManiSkill's own PickCube-v1.
-        resets: Only print what 200 resets over 20 scenes cost, and whether their episodes start as freshly built ones.
+        resets: Only print what 200 resets over 20 scenes cost, and whether episodes start as freshly built ones do.
         scaling: Only print how frames grow with the number of things, and with the size of pictures.
-        vector: Only print how many frames a second environments in processes play, one and several at once.
-        serve: Only print what the page of `hazard-ms serve` takes: time to the first picture, pictures, memory.
-        minutes: Time for which that is played [min].
-        robot: Robot that picks up, or whose scenes are reset.
-        count: Number of targets that it picks up.
-        output: File for what each pick-up and drop cost, one JSON object a line.
+        vector: Only print the frames per second of environments in processes, one and several at once.
+        serve: Only print what the page of `hazard-ms serve` costs: time to the first picture, pictures, memory.
+        minutes: Time for which --serve plays [min].
+        robot: Robot of --pickups and --resets.
+        count: Number of targets that --pickups picks up.
+        output: File for what each pick-up and drop of --pickups cost, one JSON object per line.
     """
     if kernels:
         from hazard_ms.validation.kernel_costs import report as report_kernels
@@ -106,16 +106,16 @@ def gpu_check(
 ) -> int:
     """Check an NVIDIA GPU and measure it: tests, rates of batches, differences from the CPU, waits of the host.
 
-    Writes a page in Markdown that grows with every part. Ends with 1 without a GPU, and if a part failed. Tests, laws
+    Writes a page in Markdown that grows with every part. Exits with 1 without a GPU, and if a part failed. Tests, laws
     and looks need no PhysX on the GPU.
 
     Args:
         env_id: Tasks to measure.
-        parts: Some of tests, laws, looks, state, pictures, comparison, waits; all if not given.
+        parts: Some of tests, laws, looks, state, pictures, comparison, waits; by default all.
         most: Largest number of environments in a batch; 1, 4, 16, 64, 256, 1,024, 4,096 are measured up to it.
         budget: Time that one measurement may take [s]; a table ends at the first number that takes longer.
         seed: Seed of episodes and actions.
-        output: The page.
+        output: Page to write.
     """
     from hazard_ms.cli.costs.gpu.needs import missing, without_physx
 
@@ -141,12 +141,12 @@ def danger(
     """Print how many targets the hazards move and damage over time if nobody acts, for every preset and severity.
 
     Args:
-        env_id: Tasks; fire, flood, wind and compound if not given.
-        scenes: Number of scenes of each.
-        split: Where they come from.
+        env_id: Tasks; by default fire, flood, wind and compound.
+        scenes: Number of scenes per task.
+        split: Split that the scenes come from.
         physics: Presets of the hazards: some of paper, shipped, realistic.
-        severity: How strong the hazards of the preset realistic are: some of moderate, severe, extreme.
-        seed: Seed of the first scene; each further one has the next.
+        severity: Strengths of the hazards in the preset realistic: some of moderate, severe, extreme.
+        seed: Seed of the first scene; the others have the seeds after it.
     """
     from hazard_ms.sketch.rescues.danger import RESCUES, report
 

@@ -32,7 +32,7 @@ def bc(
 ) -> int:
     """Train the policy of the agent `bc` by behaviour cloning in the sketch, in minutes on one core.
 
-    It trains in generated scenes outside all splits, and keeps the best round. Score it by --agents bc:weights=FILE.
+    It trains in generated scenes outside all splits, and keeps the best round. Score it with --agents bc:weights=FILE.
 
     Args:
         env_id: Task.
@@ -81,8 +81,8 @@ def clone(
 ) -> int:
     """Train the policy of the agent `bc` by behaviour cloning of recorded decisions, in a minute on one core.
 
-    It learns to choose as the teacher did, from what an agent without privileges saw, and prints how often it does,
-    also in every tenth episode, which it holds out. `hazard-ms evaluate --agents bc:weights=FILE` scores it.
+    It learns to choose as the teacher did, from what an agent without privileges saw. Prints how often the two agree,
+    also in every tenth episode, which is held out. `hazard-ms evaluate --agents bc:weights=FILE` scores it.
 
     Args:
         demos: A dataset of `hazard-ms demos record`, or a folder of datasets; those of the task are used.
@@ -142,7 +142,7 @@ def ppo(
     """Train the policy of the agent `rl`, or of `rl_paper`, by reinforcement learning in the sketch.
 
     It trains in generated scenes outside all splits, by sb3-contrib's MaskablePPO, and keeps the best in further ones.
-    The same command resumes training; more --decisions or --minutes continue it. Score it by --agents rl:weights=FILE.
+    The same command resumes it; more --decisions or --minutes continue it. Score it with --agents rl:weights=FILE.
 
     Args:
         env_id: Task.
@@ -150,11 +150,11 @@ def ppo(
         seed: Seed of all randomness.
         actions: options, or paper: the six actions, the map, the network and the settings of the original's learner.
         decisions: Training decisions; by default 1,000,000 of options, 100,000 of the six actions.
-        minutes: Wall time after which training ends, if not before.
+        minutes: Wall time after which training ends, if not before [min].
         scenes: Number of training scenes.
         reward: value or paper; by default value for options, paper for the six actions.
         start: File NAME.safetensors of a policy to start from; by default an untrained one.
-        masked: Choose only possible ones of the six actions.
+        masked: Choose only among the possible ones of the six actions.
         share: Layer width of the six actions' network, as a share of the original's; by default one half.
         physics: Preset of the hazards.
         workers: Processes that make scenes; 0: one per processor.
@@ -218,10 +218,10 @@ def score(
     env_id: Annotated[str, offer(registry.TASKS), flag("-e")],
     physics: Annotated[str, offer(PRESETS)] = "paper",
 ) -> int:
-    """Print the mean Value of a policy in the sketch, in scenes that none is trained in, beside those of plain rules.
+    """Print the mean Value of a policy and of plain rules in the sketch, in scenes that no policy is trained in.
 
     Args:
-        weights: File NAME.safetensors.
+        weights: File NAME.safetensors of the policy.
         env_id: Task of the policy.
         physics: Preset of the hazards.
     """

@@ -36,7 +36,7 @@ from hazard_ms.spec.storage.files import make_folder
 
 MOST_BLOCKED = 3  # skills of one episode that may have been blocked, for it to be kept [ours]
 REWARD = "normalized_dense"  # that recorded frames hold: what gym.make gives if no other is asked for
-ELSEWHERE = "another process records it"
+ELSEWHERE = "another process is recording it"
 
 
 @dataclass(frozen=True)

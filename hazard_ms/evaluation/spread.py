@@ -108,7 +108,7 @@ class _RaySeats:
         try:
             import ray
         except ImportError:
-            wanted = "backend must be serial or local where ray is missing, got ray; pip install 'hazard_ms[cluster]'"
+            wanted = "backend ray needs the package ray, which is not installed: pip install 'hazard_ms[cluster]'"
             raise ValueError(wanted) from None
         paths = os.pathsep.join(filter(None, sys.path))
         keyed = any(needs_key(job.options.agent, job.options.load) for job in jobs)

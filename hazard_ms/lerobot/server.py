@@ -133,7 +133,7 @@ def admit(listening: socket.socket, make: Make, sessions: int, idle: float) -> N
             playing = [process for process in playing if process.is_alive()]
         if len(playing) >= sessions:
             with link:
-                _refuse(link, RuntimeError(f"clients at once must be up to {sessions}, got one more (see --sessions)"))
+                _refuse(link, RuntimeError(f"at most {sessions} clients can connect at once (see --sessions)"))
             continue
         process = multiprocessing.get_context("spawn").Process(target=_session, args=(link, make, idle), daemon=True)
         with link:  # the process has a copy of its own

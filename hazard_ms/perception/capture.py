@@ -29,7 +29,7 @@ from hazard_ms.spec.storage.parts import part_of
 from hazard_ms.tasks import task_of
 from hazard_ms.tasks.spare import spare_names
 
-ELSEWHERE = "another process takes its pictures"
+ELSEWHERE = "another process is taking its pictures"
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ AGENT = "tests.evaluation.test_play:Short"
 def test_a_dataset_is_looked_after_by_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     dataset = tmp_path / "a" / "HazardFire-v1" / "oracle"
     stored(dataset, 0)
-    assert main(["demos", "verify", str(tmp_path)]) == 0 and "1 episodes, no fault" in capsys.readouterr().out
+    assert main(["demos", "verify", str(tmp_path)]) == 0 and "1 episodes, no faults" in capsys.readouterr().out
     assert main(["demos", "merge", str(dataset), "-o", str(tmp_path / "b")]) == 0
     assert "1 episodes added" in capsys.readouterr().out
     (dataset / "kitchen_b-00-s000000" / "frames.npz").write_bytes(b"")

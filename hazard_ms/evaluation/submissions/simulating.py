@@ -145,7 +145,7 @@ def _decisions(record: EpisodeResult, played: EpisodeResult) -> Iterator[Fault]:
     for k, (told, found) in enumerate(zip(record.decisions, played.decisions, strict=False)):
         again = replace(found, note=told.note, fallback=told.fallback, thought=told.thought)
         if told != again:
-            yield Fault(COURSE, where, f"decision {k}, {told.verb} at frame {told.frame}, went otherwise")
+            yield Fault(COURSE, where, f"decision {k}, {told.verb} at frame {told.frame}, had another outcome")
             return
 
 

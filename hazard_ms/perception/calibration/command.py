@@ -35,7 +35,8 @@ def calibrate(datasets: Sequence[Path], text: str, splits: Sequence[str], every:
         raise ValueError(f"perception must name a detector that lists its categories, got {text!r}")
     parts = [(home, split) for home in datasets for split in splits if (home / layout.instances(split)).is_file()]
     if {home for home, _ in parts} != set(datasets):
-        raise ValueError(f"each of DATA must have one of the splits {', '.join(splits)}")
+        without = ", ".join(sorted({str(home) for home in datasets} - {str(home) for home, _ in parts}))
+        raise ValueError(f"each of DATA must have one of the splits {', '.join(splits)}, got none in {without}")
     pictures = [Thinned(picture, every) for home, split in parts for picture in read([home], split)]
     looks = observed(detector, pictures, detector.classes)
     command = f"hazard-ms perception calibrate {' '.join(home.name for home in datasets)} --perception {text}"

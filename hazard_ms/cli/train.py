@@ -175,7 +175,7 @@ def ppo(
         from hazard_ms.learning.runs import Run
         from hazard_ms.learning.settings import BY_ACTIONS
     except ModuleNotFoundError as missing:
-        raise ValueError(f"train ppo needs the extra `rl`: pip install 'hazard_ms[rl]', got {missing}") from None
+        raise ValueError(f"train ppo needs the extra `rl` ({missing}): pip install 'hazard_ms[rl]'") from None
     settings, six = BY_ACTIONS[one_of(actions, ACTIONS, "actions")], actions == "paper"
     wanted = settings.decisions if decisions is None else whole(decisions, 1, 2**31, "decisions")
     count, _ = whole(scenes, 1, VALIDATION - SCENES, "scenes"), whole(seed, 0, 2**31, "seed")

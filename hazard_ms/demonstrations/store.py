@@ -81,7 +81,7 @@ def entry_of(folder: Path) -> Entry:
     found, hashes = row.pop(CHECKSUM, ""), hashes_of(folder)
     others = {name: digest for name, digest in hashes.items() if name != EPISODE}
     if found != _checksum(row) or others != read.meta.get("hashes") or row.get("format") != FORMAT:
-        raise DamagedDatasetError(f"{folder} must hold the files that its {EPISODE} lists, got others")
+        raise DamagedDatasetError(f"{folder} must match its {EPISODE}, got other files or other content")
     result = read.result
     return Entry(
         name=name_of(result.scene, result.seed),

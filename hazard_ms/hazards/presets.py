@@ -139,5 +139,5 @@ def severity_for(maker: Any, name: str, preset: str, severity: str) -> dict[str,
     if chosen(severity, preset) == USUAL:
         return {}
     if "severity" not in inspect.signature(maker).parameters:
-        raise ValueError(f"severity must be {USUAL!r} for {name}, which has no other, got {severity!r}")
+        raise ValueError(f"severity must be {USUAL!r} for {name}, which has no other severity, got {severity!r}")
     return {"severity": severity}

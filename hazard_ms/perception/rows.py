@@ -214,6 +214,6 @@ def by_image(rows: Mapping[str, Any], what: str) -> dict[int, list[dict[str, Any
         found[number].append(annotation)
         if len(found[number]) > MOST_OF_PICTURE:
             raise ValueError(
-                f"an image must have at most {MOST_OF_PICTURE} annotations, got more of {number} in {what}"
+                f"an image must have at most {MOST_OF_PICTURE} annotations, got more for image {number} in {what}"
             )
     return found

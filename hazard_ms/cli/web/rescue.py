@@ -176,7 +176,7 @@ def keep(folder: Path, rescue: Rescue) -> None:
 
 
 def read(folder: Path, name: str, load: tuple[str, ...]) -> Rescue:
-    """The rescue of a journal. Raises ValueError where there is none, or none that can be gone on with."""
+    """The rescue of a journal. Raises ValueError where there is none, or one that cannot be continued."""
     path = inside(folder, f"{JOURNALS}/{journal(folder, name).name}", "rescue")
     if not path.exists():
         raise ValueError(f"rescue must be under way, got {name}, which is over or has been deleted")

@@ -24,7 +24,7 @@ class Sessions:
         self._all: dict[str, Session] = {}
 
     def begin(self, rescue: Rescue) -> Session:
-        """Begin a rescue, or go on with one. Raises ValueError where there are too many."""
+        """Begin a rescue, or continue one. Raises ValueError where there are too many."""
         self._make_room()
         rescues.keep(self._folder, rescue)
         return self._start(Session(rescue, self._folder))
@@ -94,7 +94,7 @@ class Sessions:
         path.unlink(missing_ok=True)
 
     def listed(self) -> list[dict[str, Any]]:
-        """The rescues that can be gone on with, those under way first."""
+        """The rescues that can be continued, those under way first."""
         found = []
         for path in sorted((self._folder / rescues.JOURNALS).glob(f"*{rescues.END}")):
             try:

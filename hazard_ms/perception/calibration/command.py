@@ -1,4 +1,4 @@
-"""`hazard-ms perception calibrate`: the errors of a detector as a table, and whether beliefs by such tables are so."""
+"""`hazard-ms perception calibrate`: the errors of a detector as a table, and how reliable beliefs from it are."""
 
 from __future__ import annotations
 

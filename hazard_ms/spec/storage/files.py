@@ -93,7 +93,7 @@ def drafts(*targets: Path) -> Iterator[tuple[Draft, ...]]:
 
 
 def write(path: Path, content: str | bytes) -> None:
-    """Write a file whole. Raises ValueError where it cannot be written; a file that was there is then as before."""
+    """Write a file whole. Raises ValueError where it cannot be written; a file that existed is left unchanged."""
     with drafts(path) as (draft,):
         draft.write(content)
 

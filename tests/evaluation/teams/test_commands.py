@@ -63,7 +63,7 @@ def test_what_no_team_can_do_is_refused_before_anything_is_played(
 
 
 def test_no_robot_is_refused() -> None:
-    with pytest.raises(ValueError, match="robot_uids must be one robot or more"):
+    with pytest.raises(ValueError, match="robot_uids must be at least one robot"):
         EnvOptions(robot_uids=())
 
 

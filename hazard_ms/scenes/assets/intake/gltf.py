@@ -29,7 +29,7 @@ Get = Callable[[str], bytes]  # the content of a file beside the model
 def prepared_glb(data: bytes, name: str, beside: Get, textures: Textures) -> bytes:
     """The GLB file with its pictures made small. Raises ValueError that names what is wrong with it."""
     if len(data) < 20 or data[:4] != b"glTF":
-        raise ValueError(f"{name} must be a GLB file, got something else")
+        raise ValueError(f"{name} must be a GLB file, got one that begins with {data[:4]!r}")
     version, _, length, chunk = struct.unpack("<IIII", data[4:20])
     if version != 2 or chunk != JSON_CHUNK or length > len(data) - 20:
         raise ValueError(

@@ -95,9 +95,7 @@ def team_agent(name: str) -> TeamAgent:
     kind, _, member = name.partition(":")
     made = load(TEAM_AGENTS[one_of(kind, TEAM_AGENTS, "team agent")])
     if member and kind not in FOLLOWED:
-        raise ValueError(
-            f"team agent must be {kind} without another agent's name, since it brings its own agents, got {name!r}"
-        )
+        raise ValueError(f"team agent must be {kind} alone, since it brings its own agents, got {name!r}")
     return cast(TeamAgent, made(member) if member else made())
 
 

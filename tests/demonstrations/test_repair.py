@@ -123,7 +123,7 @@ def test_datasets_that_differ_are_not_merged(dataset: Path, tmp_path: Path) -> N
     with pytest.raises(ValueError, match="must have one recipe, got a different settings in"):
         merge([dataset, tmp_path / "a"], out)
     stored(tmp_path / "b", 1, saved=False)
-    with pytest.raises(ValueError, match="an episode kitchen_b-00-s000001 must be the same in all datasets"):
+    with pytest.raises(ValueError, match="episode kitchen_b-00-s000001 must be the same in all datasets"):
         merge([dataset, tmp_path / "b"], out)
     path = dataset / MANIFEST
     path.write_text(path.read_text().replace('"format": 1', '"format": 0'))

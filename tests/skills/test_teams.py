@@ -152,7 +152,7 @@ def test_planners_that_plan_together_never_fetch_the_same(pair: TeamSkills) -> N
 def test_team_agents_are_found_by_name() -> None:
     assert isinstance(team_agent("independent"), Independent)
     assert isinstance(team_agent("joint"), Joint) and isinstance(team_agent("independent:planner"), Independent)
-    with pytest.raises(ValueError, match="team agent must be joint without another agent's name"):
+    with pytest.raises(ValueError, match="team agent must be joint alone, since it brings its own agents"):
         team_agent("joint:planner")
     with pytest.raises(ValueError, match="team agent must be one of"):
         team_agent("planner")

@@ -43,7 +43,7 @@ def test_a_spare_scene_is_played_from_a_file_that_holds_it_and_goes() -> None:
 
 @pytest.mark.parametrize("scene", ["moon/31", "kitchen_b/31", "kitchen_a/025", "kitchen_a/-1", "kitchen_a", "../../31"])
 def test_names_that_are_neither_of_the_split_nor_spare_are_refused(scene: str) -> None:
-    with pytest.raises(ValueError, match=f"scenes must be of the split or .* numbers from {SCENES} on, got "):
+    with pytest.raises(ValueError, match=f"scenes must be in the split, or .* numbers of at least {SCENES}, got "):
         number_of(scene, NAMES)
 
 

@@ -60,7 +60,7 @@ def test_whatever_is_exchanged_afterwards_is_named(drawn: tuple[Commitments, Pub
         ((first,), "2 scenes of HazardFire-v1 must be published, got 1"),
         ((first, first), "hidden scenes of HazardFire-v1 must differ"),
         ((first, Hidden("kitchen_b/03", second.salt)), "hidden scenes must not belong to a split, got 'kitchen_b/03'"),
-        ((first, Hidden("/etc/passwd", second.salt)), "scenes must be of the split"),
+        ((first, Hidden("/etc/passwd", second.salt)), "scenes must be in the split"),
     ):
         with pytest.raises(ValueError, match=told):
             check(commitments, with_fire(*own))
@@ -73,7 +73,7 @@ def test_a_set_is_drawn_and_checked_by_the_command(tmp_path: Path, capsys: pytes
     assert main(["commitments", str(file), "--draw", "1", "--secret", str(secret)]) == 0
     assert stat.S_IMODE(secret.stat().st_mode) == 0o600
     assert main(["commitments", str(file), "--published", str(secret), "-o", str(tmp_path / "scenes")]) == 0
-    assert "all 3 scenes of hidden-winter are those that were committed" in capsys.readouterr().out
+    assert "all 3 scenes of hidden-winter match their commitments" in capsys.readouterr().out
     scenes = sorted(str(path.relative_to(tmp_path)) for path in (tmp_path / "scenes").rglob("*.json"))
     assert scenes == [f"scenes/Hazard{task}-v1/scene-000.json" for task in ("Fire", "Flood", "Wind")]
     assert main(["commitments", str(file), "--draw", "1", "--secret", str(secret)]) == 2

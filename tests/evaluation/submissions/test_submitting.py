@@ -141,7 +141,7 @@ def test_a_quick_look_says_that_it_is_one(results: Path, capsys: pytest.CaptureF
             {},
             {"processor": "Other"},
             "",
-            f"all machines must have processors of the same maker, got Other there {maker()}",
+            f"all machines must have processors of the same maker, got Other there and {maker()} here",
         ),
         ({}, {"instructions": "DEFAULT"}, "", "all machines must compute with AVX2, got one where torch uses DEFAULT"),
         ({}, {}, DIED, r"each episode must be simulated, got episodes/HazardFire-v1-0000\.json: worker died"),

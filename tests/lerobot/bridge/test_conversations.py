@@ -122,7 +122,7 @@ def test_what_a_server_does_not_take_is_told_and_no_environment_stays(hello: Any
 @pytest.mark.parametrize(
     ("bytes_", "message"),
     [
-        (b"GET / HTTP/1.1\r\nHost: here\r\n\r\n", "up to 65536"),
+        (b"GET / HTTP/1.1\r\nHost: here\r\n\r\n", "at most 65536"),
         (b"\x00\x00\x00\x02\x00\x00\x00\x00{]" + b"x" * 50000, "must begin with JSON"),
     ],
 )

@@ -48,7 +48,7 @@ def test_what_is_sent_arrives_bit_by_bit(pair: Pair) -> None:
 @pytest.mark.parametrize(
     ("bytes_", "message"),
     [
-        (b"GET / HTTP/1.1\r\n\r\n", rf"up to {MOST_JSON} \+ {MOST_BYTES} bytes, got 1195725856 \+"),
+        (b"GET / HTTP/1.1\r\n\r\n", rf"at most {MOST_JSON} \+ {MOST_BYTES} bytes, got 1195725856 \+"),
         (struct.pack("!II", MOST_JSON + 1, 0), f"got {MOST_JSON + 1} "),
         (struct.pack("!II", 2, MOST_BYTES + 1), f"got 2 . {MOST_BYTES + 1}"),
         (framed(b"{]"), "must begin with JSON, got b'{]'"),
@@ -56,9 +56,9 @@ def test_what_is_sent_arrives_bit_by_bit(pair: Pair) -> None:
         (framed(b"[" * 60000), "must begin with JSON"),
         (framed(b"", b"x"), "must begin with JSON, got b''"),
         (framed(b"3", b"x"), "must fill 1 bytes"),
-        (framed(b'{"array": ["<f4", 2]}', b"1234"), r"up to 4 bytes.*\['<f4', 2\]"),
-        (framed(b'[{"array": ["<f4", 1]}, {"array": ["|u1", 1]}]', b"1234"), "up to 0 bytes"),
-        (framed(b'{"array": ["<f4", 1000000, 1000000, 1000000]}', b"1234"), "up to 4 bytes"),
+        (framed(b'{"array": ["<f4", 2]}', b"1234"), r"at most 4 bytes.*\['<f4', 2\]"),
+        (framed(b'[{"array": ["<f4", 1]}, {"array": ["|u1", 1]}]', b"1234"), "at most 0 bytes"),
+        (framed(b'{"array": ["<f4", 1000000, 1000000, 1000000]}', b"1234"), "at most 4 bytes"),
         (framed(b'{"array": ["<f4", 99999999999999999999]}', b"1234"), r"must be \[dtype, \*shape\]"),
         (framed(b'{"array": ["|O", 1]}', b"12345678"), r"must be \[dtype, \*shape\].*'\|O'"),
         (framed(b'{"array": ["<f4", -1]}', b"1234"), r"must be \[dtype, \*shape\]"),

@@ -51,7 +51,7 @@ def test_ycb(data: Path) -> None:
     assert (model.category, model.licence) == ("mug", "CC-BY-4.0")
     assert model.mass == pytest.approx(0.5 * 1000 * np.prod(MUG))
     np.testing.assert_allclose(np.diff(bounds(model), axis=0)[0], MUG, atol=1e-6)
-    with pytest.raises(ValueError, match="must be among 025_mug.*, got '013_apple'"):
+    with pytest.raises(ValueError, match="must be one of 025_mug.*, got '013_apple'"):
         ycb.model("013_apple")
 
 

@@ -109,7 +109,7 @@ def test_spaces_are_those_of_the_simulator(task: str) -> None:
         ({"actions": "option"}, "did you mean 'options'"),
         ({"split": "tran"}, "did you mean 'train'"),
         ({"scenes": ["kitchen_a/99"]}, "scene must be"),
-        ({"scenes": []}, "scenes must be at least one"),
+        ({"scenes": []}, "scenes must hold at least one"),
         ({"reward": "gold"}, "reward must be one of value, paper"),
         ({"max_frames": 0}, "max_frames"),
         ({"robot_uids": "fetsch"}, "did you mean 'fetch'"),

@@ -84,7 +84,10 @@ def test_episodes_that_were_recorded_differently_are_refused(tmp_path: Path) -> 
 
 def test_a_missing_package_is_named_with_its_extra() -> None:
     assert needed("json", "lerobot").dumps([]) == "[]"
-    with pytest.raises(ValueError, match=r"got lerobot without no_such_package; pip install 'hazard_ms\[demos\]'"):
+    with pytest.raises(
+        ValueError,
+        match=r"format lerobot needs the package no_such_package, which is not installed: pip install 'hazard_ms\[demos\]'",
+    ):
         needed("no_such_package", "lerobot")
 
 

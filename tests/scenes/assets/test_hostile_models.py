@@ -140,7 +140,7 @@ def test_the_frame_turns_up_to_z_and_front_to_minus_y() -> None:
 @pytest.mark.parametrize("edges", [(0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1e-5, 1e-5, 1e-5), (0.1, 0.1, 40.0)])
 def test_sizes_that_nothing_has_are_refused(edges: tuple[float, float, float]) -> None:
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) * edges
-    with pytest.raises(ValueError, match="size"):
+    with pytest.raises(ValueError, match="of the model must be"):
         shaped(trimesh.Scene(trimesh.Trimesh(corners, [[0, 1, 2], [0, 1, 3]], process=False)), None)
 
 

@@ -117,7 +117,7 @@ def counters_of(player: Any) -> dict[str, float]:
     for name, value in made.items():
         if not isinstance(name, str) or len(name) > LONGEST_NOTE:
             raise ValueError(
-                f"names of counters of {who} must be texts of at most {LONGEST_NOTE} characters, got {name!r:.100}"
+                f"counter names of {who} must be strings of at most {LONGEST_NOTE} characters, got {name!r:.100}"
             )
         if not isinstance(value, int | float) or not math.isfinite(value):
             raise ValueError(f"counter {name!r:.100} of {who} must be a finite number, got {value!r:.100}")
@@ -177,7 +177,7 @@ def _class(name: str) -> Any:
         return load(name)
     found = getattr(load_plugin(module), attribute, None)
     if found is None:
-        raise ValueError(f"agent must be a class of {module}, got {attribute!r}")
+        raise ValueError(f"agent must name a class in {module}, got {attribute!r}")
     return found
 
 

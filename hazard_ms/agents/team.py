@@ -58,7 +58,9 @@ class Independent(TeamAgent):
         """
         kind = type(agent(name))
         if kind.privileged or kind.skill is not Agent.skill:
-            raise ValueError(f"agents of a team must see what robots see and use the benchmark's skills, got {name}")
+            raise ValueError(
+                f"agents of a team must see only what robots see and must use the benchmark's skills, got {name}"
+            )
         self._name = name
 
     def reset(self, briefs: Mapping[str, Brief]) -> None:
@@ -93,7 +95,7 @@ def team_agent(name: str) -> TeamAgent:
     kind, _, member = name.partition(":")
     made = load(TEAM_AGENTS[one_of(kind, TEAM_AGENTS, "team agent")])
     if member and kind not in FOLLOWED:
-        raise ValueError(f"team agent must be {kind} alone, since its robots' agents are its own, got {name!r}")
+        raise ValueError(f"team agent must be {kind} alone, since it brings its own agents, got {name!r}")
     return cast(TeamAgent, made(member) if member else made())
 
 

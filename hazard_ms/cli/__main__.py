@@ -31,20 +31,18 @@ from hazard_ms.cli.validate import validate
 from hazard_ms.spec.foreign.terminal import plain, plain_output
 from hazard_ms.spec.registry.version import __version__
 
-DESCRIPTION = (
-    "Rescue tasks in fire, flood and wind. `hazard-ms COMMAND --help` describes a command, --version the version."
-)
+DESCRIPTION = "Rescue tasks in fire, flood and wind. `hazard-ms COMMAND --help` describes a command."
 HELP = {"-h", "--help"}  # what is then printed is our own text, in colours
 
 
 def doctor(json: bool = False, draw: bool = True) -> int:
     """Find out why hazard_ms does not start or render here; print one cause and the command that fixes it.
 
-    Ends with 1 if something is wrong.
+    Exits with 1 if something is wrong.
 
     Args:
         json: Print everything as JSON.
-        draw: Draw a picture (seconds) instead of only starting the renderer.
+        draw: Draw a picture, which takes seconds, instead of only starting the renderer.
     """
     from hazard_ms.machine.doctor import collect, report
 
@@ -65,17 +63,17 @@ def version() -> int:
 
 
 def scenes(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[SceneCommand]]) -> int:
-    """Scenes: list, make, show, check, reach, import."""
+    """Scenes: list, make, show, check and import them; see what robots can reach."""
     return int(done)
 
 
 def assets(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[AssetCommand]]) -> int:
-    """Models: add your own, list, remove, render them all."""
+    """Models: add your own, list, remove and render them."""
     return int(done)
 
 
 def sketch(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[SketchCommand]]) -> int:
-    """Rescues without a simulator: fit skill times, check against real episodes, speed."""
+    """Rescues without a simulator: fit skill times, check against real episodes, measure speed."""
     return int(done)
 
 
@@ -85,7 +83,7 @@ def demos(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[Demos
 
 
 def llm(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[LlmCommand]]) -> int:
-    """Language models: check whether one can play, show its decisions, serve scripted ones for tests."""
+    """Language models: check whether one can play, show its decisions, serve scripted models for tests."""
     return int(done)
 
 
@@ -95,7 +93,7 @@ def perception(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[
 
 
 def train(done: tyro.conf.OmitArgPrefixes[tyro.conf.OmitSubcommandPrefixes[TrainCommand]]) -> int:
-    """Policies: train by cloning or reinforcement learning, score in the sketch."""
+    """Policies: train by cloning or reinforcement learning, and score in the sketch."""
     return int(done)
 
 

@@ -31,15 +31,15 @@ def add(
     Args:
         model: A glb, gltf, obj, stl or ply file, or a model that you downloaded: ycb:025_mug, partnet-mobility:1000,
             objaverse:UID.
-        category: What it is, a category of the catalogue; models that you downloaded mostly say.
-        name: Its id; empty: made from the file's name.
-        mass: [kg]; without: from volume and category.
-        size: Longest edge [m]; without: as large as the file says.
-        licence: Whose terms hold, CC-BY-4.0 or "own work" say; models that you downloaded say.
-        author: Who made it.
-        source: Where it comes from.
-        up: Axis of the file that points up: y for glb, gltf and obj, else z.
-        front: Axis of the file to which it faces: z where y is up, else -y.
+        category: Category of the catalogue; by default what the downloaded model says, if it does.
+        name: Id of the model; by default made from the file's name.
+        mass: Mass [kg]; by default estimated from volume and category.
+        size: Longest edge [m]; by default the size in the file.
+        licence: Licence of the model, such as CC-BY-4.0 or "own work"; downloaded models bring theirs.
+        author: Author of the model.
+        source: Origin of the model.
+        up: Axis of the file that points up; by default y for glb, gltf and obj, else z.
+        front: Axis of the file that the model faces; by default z if y is up, else -y.
     """
     import dataclasses
 
@@ -64,8 +64,8 @@ def list_all(category: str = "", provider: Annotated[str, offer(PROVIDERS)] = ""
     """List the shipped models and your own, or those of a collection that you downloaded.
 
     Args:
-        category: One category only.
-        provider: Collection that you downloaded.
+        category: List only this category.
+        provider: Downloaded collection to list instead.
     """
     from hazard_ms.scenes.assets.index import asset, asset_ids
     from hazard_ms.scenes.assets.shipped import shipped_index
@@ -89,7 +89,7 @@ def remove(name: tyro.conf.Positional[str]) -> int:
     """Remove one of your own models.
 
     Args:
-        name: Its id.
+        name: Id of the model.
     """
     from hazard_ms.scenes.assets.intake import adding
 
@@ -103,7 +103,7 @@ def sheet(output: Annotated[Path, flag("-o", "--output", old="out")] = Path("she
 
     Args:
         output: File to write.
-        category: One category only.
+        category: List only this category.
     """
     from hazard_ms.scenes.assets.contact_sheet import save_sheet
     from hazard_ms.scenes.assets.index import asset_ids

@@ -33,27 +33,27 @@ def bench(
     count: Annotated[int, flag("-n")] = 500,
     output: Annotated[Path | None, flag("-o", "--output", old="out")] = None,
 ) -> int:
-    """Print where the time of a frame goes, phase by phase, and how long a greedy episode takes, with the machine.
+    """Print where the time of a frame goes, phase by phase, and how long a greedy episode takes, on which machine.
 
     Args:
         env_id: Task.
         frames: Frames to average over.
         seed: Seed of the episode.
         physics: Preset of the hazards.
-        severity: How strong the hazards of the preset realistic are.
+        severity: Strength of the hazards in the preset realistic.
         episode: Also play a whole greedy episode.
         effects: Only print what the effects of each mode cost in a picture.
         kernels: Only print what the laws of all hazards cost on one thread, for 1,024 environments and for 64.
-        pickups: Only print how often picking up and putting away work, and how many frames they take.
+        pickups: Only print how often picking up and putting away succeed, and how many frames they take.
         against: Only print what frames and resets of all tasks cost beside those of ManiSkill's own PickCube-v1.
-        resets: Only print what 200 resets over 20 scenes cost, and whether their episodes start as freshly built ones.
+        resets: Only print what 200 resets over 20 scenes cost, and whether episodes start as freshly built ones do.
         scaling: Only print how frames grow with the number of things, and with the size of pictures.
-        vector: Only print how many frames a second environments in processes play, one and several at once.
-        serve: Only print what the page of `hazard-ms serve` takes: time to the first picture, pictures, memory.
-        minutes: Time for which that is played [min].
-        robot: Robot that picks up, or whose scenes are reset.
-        count: Number of targets that it picks up.
-        output: File for what each pick-up and drop cost, one JSON object a line.
+        vector: Only print the frames per second of environments in processes, one and several at once.
+        serve: Only print what the page of `hazard-ms serve` costs: time to the first picture, pictures, memory.
+        minutes: Time for which --serve plays [min].
+        robot: Robot of --pickups and --resets.
+        count: Number of targets that --pickups picks up.
+        output: File for what each pick-up and drop of --pickups cost, one JSON object per line.
     """
     if kernels:
         from hazard_ms.validation.kernel_costs import report as report_kernels
@@ -104,12 +104,12 @@ def danger(
     """Print how many targets the hazards move and damage over time if nobody acts, for every preset and severity.
 
     Args:
-        env_id: Tasks; fire, flood, wind and compound if not given.
-        scenes: Number of scenes of each.
-        split: Where they come from.
+        env_id: Tasks; by default fire, flood, wind and compound.
+        scenes: Number of scenes per task.
+        split: Split that the scenes come from.
         physics: Presets of the hazards: some of paper, shipped, realistic.
-        severity: How strong the hazards of the preset realistic are: some of moderate, severe, extreme.
-        seed: Seed of the first scene; each further one has the next.
+        severity: Strengths of the hazards in the preset realistic: some of moderate, severe, extreme.
+        seed: Seed of the first scene; the others have the seeds after it.
     """
     from hazard_ms.sketch.rescues.danger import RESCUES, report
 

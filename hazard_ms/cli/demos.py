@@ -17,7 +17,7 @@ Folder = tyro.conf.Positional[Path]
 def record(options: Annotated[tyro.conf.OmitArgPrefixes[RecordOptions], tyro.conf.arg(name="")]) -> int:
     """Record episodes as demonstrations, frame by frame, with labels of skills and options.
 
-    Resumes an interrupted run, and can run in several processes and machines at once on the same folder. Ends with 1 if
+    Resumes an interrupted run; several processes and machines can record into the same folder at once. Exits with 1 if
     an episode could not be recorded.
     """
     from hazard_ms.agents.base import user_path
@@ -28,12 +28,12 @@ def record(options: Annotated[tyro.conf.OmitArgPrefixes[RecordOptions], tyro.con
 
 
 def verify(folder: Folder, replay: bool = False, workers: int = 0, load: tuple[str, ...] = ()) -> int:
-    """Compare all files of the datasets in a folder with their manifests. Ends with 1 if anything is not as written.
+    """Compare all files of the datasets in a folder with their manifests. Exits with 1 if anything differs.
 
     Args:
         folder: A dataset, or a folder of datasets.
         replay: Simulate every episode again, and compare all hashes.
-        workers: Processes for that; 0: one for each core.
+        workers: Processes for --replay; 0: one for each core.
         load: Modules, or files NAME.py, that register what the episodes need.
     """
     from hazard_ms.demonstrations.verify import verify as run
@@ -57,7 +57,7 @@ def repair(folder: Folder) -> int:
 
 
 def merge(folders: tyro.conf.Positional[tuple[Path, ...]], output: Annotated[Path, flag("-o")]) -> int:
-    """Copy the episodes of several datasets into one for each task and agent; what is the same is copied once.
+    """Copy the episodes of several datasets into one for each task and agent; equal episodes are copied once.
 
     Args:
         folders: Datasets, or folders of datasets.
@@ -66,12 +66,12 @@ def merge(folders: tyro.conf.Positional[tuple[Path, ...]], output: Annotated[Pat
     from hazard_ms.demonstrations.merging import merge as run
 
     for dataset, count in run(folders, output).items():
-        print(f"{dataset}: {count} episodes more")
+        print(f"{dataset}: {count} episodes added")
     return 0
 
 
 def stats(folder: Folder) -> int:
-    """Print numbers of the datasets in a folder: episodes, frames, value, reasons of failures, sizes and times.
+    """Print statistics of the datasets in a folder: episodes, frames, value, reasons for failures, sizes and times.
 
     Args:
         folder: A dataset, or a folder of datasets.
@@ -90,7 +90,7 @@ def show(folder: Folder, output: Annotated[Path, flag("-o")] = Path("demos.html"
     Args:
         folder: A dataset, or a folder of datasets.
         output: Page to write, NAME.html. Keep it where it is if it links to films: those are not copied.
-        films: Episodes of each dataset that are shown with film and timeline; the table and the curves have all.
+        films: Number of episodes per dataset shown with film and timeline; the table and the curves hold all.
 
     Raises:
         ValueError: for a folder without episodes, and for a page that cannot be written.
@@ -102,7 +102,7 @@ def show(folder: Folder, output: Annotated[Path, flag("-o")] = Path("demos.html"
 
     whole(films, 0, MOST, "films")
     if output.suffix != ".html":
-        raise ValueError(f"output must be a name that ends in .html, got {output.name!r}")
+        raise ValueError(f"output must end in .html, got {output.name!r}")
     text = page(folder, output, films)
     make_folder(output.parent)
     write(output, text)

@@ -34,7 +34,7 @@ def describe(
         robot_uids: Robot.
         control_mode: Control mode, by default the robot's own.
         affects_agent: Let the hazards act on the robot, which adds entries of info.
-        load: Files or modules of your own that register tasks and robots.
+        load: Modules, or files NAME.py, that register your own tasks and robots.
         json: Print everything as JSON.
         markdown: Print the page docs/observations.md, which describes all environments, instead.
     """

@@ -25,7 +25,7 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
 
     With --agent human, opens the page of `hazard-ms serve`, where you play.
 
-    Ends with 1 if the simulation broke.
+    Exits with 1 if the simulation broke.
 
     Raises:
         ValueError: for an output whose name is too long.
@@ -38,7 +38,7 @@ def play(options: Annotated[tyro.conf.OmitArgPrefixes[PlayOptions], tyro.conf.ar
 
     user_path()
     if options.episode.agent == HUMAN:
-        print("A person plays on the page of `hazard-ms serve`, which begins here; choose the task and the seed there.")
+        print("You play on the page of `hazard-ms serve`, which starts now; choose the task and the seed there.")
         return serve(ServeOptions(load=options.episode.load))
     options.check()
     if options.output is not None and len(os.fsencode(options.output.with_suffix(".html").name)) > LONGEST_NAME:
@@ -88,7 +88,7 @@ def _filmed(episode: EpisodeOptions, path: Path, every: int) -> EpisodeResult:
 def evaluate(options: Annotated[tyro.conf.OmitArgPrefixes[SweepOptions], tyro.conf.arg(name="")]) -> int:
     """Play agents on the scenes of a split or a folder; print the scores with 95 % intervals.
 
-    Resumes an interrupted run: finished episodes are not played again. Ends with 1 if a simulation broke, or an agent
+    Resumes an interrupted run: finished episodes are not played again. Exits with 1 if a simulation broke, or an agent
     failed in an episode.
     """
     from hazard_ms.agents.base import user_path
@@ -101,8 +101,8 @@ def evaluate(options: Annotated[tyro.conf.OmitArgPrefixes[SweepOptions], tyro.co
 def replay(options: Annotated[tyro.conf.OmitArgPrefixes[ReplayOptions], tyro.conf.arg(name="")]) -> int:
     """Simulate recorded episodes again by their decisions, in new processes, and compare with what was recorded.
 
-    exact: all hashes are equal; same score: every target has the same fate, as on another kind of processor. Ends with
-    1 if an episode is different.
+    Prints `exact` if all hashes are equal, `same score` if every target has the same fate, as on another kind of
+    processor, else `different`. Exits with 1 if an episode is different.
     """
     from hazard_ms.agents.base import user_path
     from hazard_ms.evaluation.replay import replay as run
@@ -114,7 +114,7 @@ def replay(options: Annotated[tyro.conf.OmitArgPrefixes[ReplayOptions], tyro.con
 def serve(options: Annotated[tyro.conf.OmitArgPrefixes[ServeOptions], tyro.conf.arg(name="")]) -> int:
     """Serve a page to play, watch and compare rescues in a browser on this machine, and print its address.
 
-    It needs `pip install hazard_ms[web]`. Only this machine can reach it, and only with the address as it is printed.
+    It needs `pip install hazard_ms[web]`. Only this machine can reach it, and only by the printed address.
     """
     from hazard_ms.agents.base import user_path
     from hazard_ms.cli.web.serving import serve as run

@@ -16,11 +16,13 @@ LAST_PORT = 65535  # of TCP
 def serve_scripted(port: int = 0) -> int:
     """Serve models that answer by a script on this machine, without a network; Ctrl-C ends it.
 
-    Prints its address first. The name of the model says what it does, as the list that follows tells. Raises ValueError
-    for a port that is taken.
+    Prints its address, then the name of each model and what it does.
 
     Args:
         port: Port of 127.0.0.1; 0: any free one.
+
+    Raises:
+        ValueError: for a port that is taken.
     """
     from hazard_ms.agents.llm.scripted import BEHAVIOURS, ScriptedServer
     from hazard_ms.spec.checks import whole
@@ -54,16 +56,16 @@ def check(
 ) -> int:
     """Ask a model a few small questions in each way of answering; say whether it can play, how fast, and at what cost.
 
-    Ends with 1 if its answers can be read in no way. The key is that of HAZARD_MS_LLM_KEY.
+    Exits with 1 if its answers cannot be read in any way. The key comes from HAZARD_MS_LLM_KEY.
 
     Args:
-        base_url: Address of the server, such as http://127.0.0.1:8000/v1; else HAZARD_MS_LLM_BASE_URL.
-        model: Name of the model there; else HAZARD_MS_LLM_MODEL.
+        base_url: Address of the server, such as http://127.0.0.1:8000/v1; by default HAZARD_MS_LLM_BASE_URL.
+        model: Name of the model there; by default HAZARD_MS_LLM_MODEL.
         price_in: Price of a million tokens read [USD].
         price_out: Price of a million tokens written [USD].
         deadline: Time for an answer [s].
-        limit_field: Name under which the greatest length of an answer is sent.
-        extra: Further fields of a request, name:value;name:value or a JSON object, such as reasoning_effort:none.
+        limit_field: Field of a request that limits the length of an answer.
+        extra: More fields of a request, name:value;name:value or a JSON object, such as reasoning_effort:none.
 
     Raises:
         ValueError: for an address that cannot be used.
@@ -85,7 +87,7 @@ def page(
     pictures: bool = False,
     load: tuple[str, ...] = (),
 ) -> int:
-    """Write a page with all that a model was asked in an episode, what it answered, and what was done.
+    """Write a page with everything that a model was asked in an episode, what it answered, and what was done.
 
     Args:
         trace: File that the agent llm:trace=FOLDER wrote.
@@ -103,9 +105,9 @@ def page(
     from hazard_ms.spec.storage.files import make_folder, write
 
     if output.suffix != ".html":
-        raise ValueError(f"output must be a name that ends in .html, got {output.name!r}")
+        raise ValueError(f"output must end in .html, got {output.name!r}")
     if pictures and result is None:
-        raise ValueError("result must be given for --pictures, got none: the episode is played again from it")
+        raise ValueError("--pictures needs --result, since it plays the result again")
     rows = read_trace(trace)
     read = None if result is None else EpisodeResult.read(result)
     judged = None if result is None else beside(result)
@@ -115,7 +117,7 @@ def page(
         from hazard_ms.pictures.decision_pictures import decision_pictures
 
         views = decision_pictures(read, {row["frame"] for row in rows}, load)
-        print(f"pictures: of {sum(row['frame'] in views for row in rows)} of {len(rows)} decisions")
+        print(f"pictures: {sum(row['frame'] in views for row in rows)} of {len(rows)} decisions")
     write(output, decision_page(rows, trace.stem, read, judged, views))
     print(f"page: {output.resolve()}")
     return 0

@@ -17,7 +17,7 @@ Folder = tyro.conf.Positional[Path]
 def capture(options: Annotated[tyro.conf.OmitArgPrefixes[CaptureOptions], tyro.conf.arg(name="")]) -> int:
     """Take labelled pictures of burning, flooded or wind-blown scenes, as COCO data with the state of every thing.
 
-    Resumes an interrupted run. Pictures depend on task, split, scene and seed alone. Ends with 1 if a scene failed.
+    Resumes an interrupted run. Pictures depend on task, split, scene and seed alone. Exits with 1 if a scene failed.
     """
     from hazard_ms.perception.capture import capture as run
 
@@ -25,7 +25,7 @@ def capture(options: Annotated[tyro.conf.OmitArgPrefixes[CaptureOptions], tyro.c
 
 
 def check(folder: Folder) -> int:
-    """Verify every promise of the format: files, checksums, masks, boxes, splits. Ends with 1 if one is broken.
+    """Verify every promise of the format: files, checksums, masks, boxes, splits. Exits with 1 if any is broken.
 
     Args:
         folder: A dataset, OUTPUT/TASK.
@@ -43,8 +43,8 @@ def show(
     Args:
         folder: A dataset, OUTPUT/TASK.
         output: Page to write, NAME.html; NAME.png or NAME.jpg gets the pictures alone.
-        pictures: Pictures of each split that are shown.
-        things: Things of each split that are shown one by one, drawn at random; on a sheet, in place of pictures.
+        pictures: Number of pictures shown of each split.
+        things: Number of things shown one by one of each split, drawn at random; on a sheet, instead of pictures.
     """
     from hazard_ms.perception.show import show as run
 
@@ -59,7 +59,7 @@ def score(folder: Folder, results: tyro.conf.Positional[Path], split: str = "tes
         folder: A dataset, OUTPUT/TASK.
         results: What the detector found, in COCO's results format: a list of image_id, category_id, score, and bbox or
             segmentation or both.
-        split: Split on which it is scored.
+        split: Split to score on.
     """
     from hazard_ms.perception.score import score as run
 
@@ -68,14 +68,14 @@ def score(folder: Folder, results: tyro.conf.Positional[Path], split: str = "tes
 
 
 def export(folder: Folder, to: Literal["yolo", "hf", "coco"], output: Annotated[Path, flag("-o")]) -> int:
-    """Write a dataset in the layout of other trainers: YOLO's label files, a Hugging Face folder, or plain COCO.
+    """Write a dataset in the layout that other trainers read: YOLO's label files, a Hugging Face folder, or plain COCO.
 
     The new folder appears whole or not at all.
 
     Args:
         folder: A dataset, OUTPUT/TASK, or any folder with COCO files instances_SPLIT.json.
         to: Layout: yolo (polygons and data.yaml), hf (ImageFolder with metadata and a card), or coco.
-        output: Folder to make; it must not be there yet.
+        output: Folder to make; it must not exist yet.
     """
     from hazard_ms.perception.exports.export import export as run
 
@@ -86,8 +86,8 @@ def export(folder: Folder, to: Literal["yolo", "hf", "coco"], output: Annotated[
 def train(options: Annotated[tyro.conf.OmitArgPrefixes[TrainOptions], tyro.conf.arg(name="")]) -> int:
     """Train a detector on captured pictures, and score it on others: Mask R-CNN, or our small one.
 
-    The same command resumes an interrupted training; with more --steps, --epochs or --minutes it goes on with a
-    finished one. `--perception MODEL:FILE` lets agents see through it.
+    The same command resumes an interrupted training; with more --steps, --epochs or --minutes it continues a finished
+    one. With `--perception MODEL:FILE`, agents see through the detector.
     """
     from hazard_ms.perception.training.run import train as run
 
@@ -101,15 +101,15 @@ def calibrate(
     every: int = 1,
     output: Annotated[Path | None, flag("-o")] = None,
 ) -> int:
-    """Count the errors of a detector in pictures that it was not trained on, and print whether beliefs by them are so.
+    """Count the errors of a detector in pictures that it was not trained on; print how reliable beliefs from it are.
 
-    Agents that see through the detector weigh its looks by the table, if that lies beside its weights.
+    Agents that see through the detector weigh its detections by the table, if it lies beside the weights.
 
     Args:
         folders: Datasets, OUTPUT/TASK.
         perception: The detector, as `hazard-ms play --perception` takes it.
-        split: Splits whose pictures are taken, of each dataset those that it has.
-        every: Of how many pixels the first is looked at, both ways: 4 makes 256 pixels of 1024.
+        split: Splits whose pictures are used; each dataset must have at least one of them.
+        every: Use every n-th pixel, both ways: with 4, a width of 1024 pixels becomes 256.
         output: File for the table, NAME_confusion.json beside the weights NAME.safetensors.
     """
     from hazard_ms.perception.calibration.command import calibrate as run

@@ -45,9 +45,9 @@ def report(
     from hazard_ms.spec.storage.files import make_folder, write
 
     if not folders:
-        raise ValueError("folders must be those that `hazard-ms evaluate -o FOLDER` wrote, got none")
+        raise ValueError("folders must be at least one that `hazard-ms evaluate -o FOLDER` wrote, got none")
     if output.suffix != ".html":
-        raise ValueError(f"output must be a name that ends in .html, got {output.name!r}")
+        raise ValueError(f"output must end in .html, got {output.name!r}")
     found, left_out = groups(folders)
     summaries = [summary(group) for group in found]
     if csv is not None:
@@ -82,7 +82,7 @@ def regret(
         folders: Folders from `hazard-ms evaluate`, read with their subfolders.
         output: File for what each agent lost, NAME.json.
         workers: Processes; 0: one per core.
-        backend: Where episodes are simulated: serial, in this process; local processes; a ray cluster.
+        backend: Where episodes are simulated: in this process (serial), in local processes, or on a ray cluster.
         address: Address of the ray cluster, such as auto; by default only this machine.
         load: Modules, or files NAME.py, that register what the episodes need.
     """
@@ -116,8 +116,8 @@ def submit(
     Args:
         folders: Folders from `hazard-ms evaluate`, read with their subfolders.
         output: Submission to write, NAME.zip.
-        track: The track.
-        agent: The agent, as the results name it; needed only if there are several.
+        track: Track of the leaderboard.
+        agent: Name of the agent in the results; needed only if they hold several.
         card: File with the agent's card, which docs/leaderboard.md describes.
         hidden: Commitments and published scenes of a hidden set, for its track.
 
@@ -136,7 +136,7 @@ def submit(
     own = read_card(card)
     content = pack(results_of(folders, wanted, agent), wanted, own)
     if faults := faults_of(submission_of(content, output.name), wanted):
-        raise ValueError(f"a submission must be without faults, got {len(faults)}, the first: {faults[0]}")
+        raise ValueError(f"a submission must have no faults, got {len(faults)}, the first: {faults[0]}")
     make_folder(output.parent)
     write(output, content)
     print(f"submission: {output.resolve()}, {len(wanted.places)} episodes, {len(content)} bytes")
@@ -157,15 +157,15 @@ def verify(
 ) -> int:
     """Simulate the episodes of a submission again, compare everything, and write a report.
 
-    Ends with 1 if anything is wrong; docs/leaderboard.md explains each fault by name.
+    Exits with 1 if anything is wrong; docs/leaderboard.md explains each fault by name.
 
     Args:
         file: Submission, NAME.zip.
         output: Report to write, NAME.report.json.
         episodes: Number of episodes drawn for a quick look; 0: all, as the leaderboard requires.
-        seed: Seed of that draw.
+        seed: Seed for drawing them.
         workers: Processes; 0: one per core.
-        backend: Where episodes are simulated: serial, in this process; local processes; a ray cluster.
+        backend: Where episodes are simulated: in this process (serial), in local processes, or on a ray cluster.
         address: Address of the ray cluster, such as auto; by default only this machine.
         key: OpenSSH key to sign the report with; the signature is written beside it.
         known: Folder of reports on earlier submissions, to find copied decisions.
@@ -183,7 +183,7 @@ def leaderboard(
     """Write the leaderboard as a static site, from signed reports of whole submissions only.
 
     Args:
-        folder: Folder with reports, NAME.report.json, their signatures, and the file `signers`; films in NAME.
+        folder: Folder with reports NAME.report.json, their signatures, the file `signers`, and films in NAME.
         output: Folder for the site; index.html is its first page.
     """
     from hazard_ms.evaluation.submissions.site import write_site
@@ -212,7 +212,7 @@ def commitments(
         file: Commitments: the hashes of a set.
         published: Published scenes; each must match its commitment.
         output: Folder for the published scenes, as `hazard-ms evaluate --scenes` plays them.
-        draw: Scenes of each task to draw; the commitments are written to the file, which names the set.
+        draw: Number of scenes to draw for each task; the commitments go into the file, which names the set.
         secret: File for the drawn scenes; keep it secret until you publish it.
 
     Raises:
@@ -221,15 +221,15 @@ def commitments(
     from hazard_ms.evaluation.submissions.commitments import read_hidden, write_drawn, write_scenes
 
     if (published is None) == (draw == 0) or (draw != 0) != (secret is not None):
-        raise ValueError("either published must be given, or both draw and secret, got something else")
+        raise ValueError("either --published must be given, or both --draw and --secret, got another combination")
     if published is None:
         assert secret is not None
         write_drawn(file, secret, file.stem, draw)
-        print(f"commitments: {file.resolve()}\nsecret until it is published: {secret.resolve()}")
+        print(f"commitments: {file.resolve()}\nkeep secret until you publish it: {secret.resolve()}")
         return 0
     track = read_hidden((file, published))
     assert track is not None
     if output is not None:
         write_scenes(track, output)
-    print(f"all {len(track.places)} scenes of {track.name} are those that were committed")
+    print(f"all {len(track.places)} scenes of {track.name} match their commitments")
     return 0

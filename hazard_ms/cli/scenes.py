@@ -23,7 +23,7 @@ def list_scenes(split: Split = "", family: Family = "") -> int:
 
     Args:
         split: Name of a split; empty for all.
-        family: indoor, outdoor, house, house_flood or gale; empty for all.
+        family: Family of scenes; empty for all.
     """
     from hazard_ms.scenes.splits import scene
 
@@ -38,8 +38,8 @@ def make(name: tyro.conf.Positional[str], output: Output = None) -> int:
     """Generate a scene and write it as JSON.
 
     Args:
-        name: Name of a scene, kitchen_a/07 say.
-        output: File to write; without it, the scene is printed.
+        name: Name of a scene, such as kitchen_a/07.
+        output: File to write; by default the scene is printed.
     """
     from hazard_ms.scenes.schema import to_json
     from hazard_ms.scenes.splits import scene
@@ -59,7 +59,7 @@ def show(name: tyro.conf.Positional[str], output: Output = None) -> int:
 
     Args:
         name: Name of a scene, or a JSON file that holds one.
-        output: File to write; without it, the scene's name with .png in the current folder.
+        output: File to write; by default the scene's name with .png, in the current folder.
     """
     from hazard_ms.validation.scene_checks import find
 
@@ -79,14 +79,14 @@ def check(
     all: bool = False,
     workers: int = 2,
 ) -> int:
-    """Check scenes: nothing inside another, all at rest, targets in reach, sizes plausible.
+    """Check scenes: nothing overlaps, everything rests, targets are in reach, sizes are plausible.
 
-    Ends with 1 if there is a problem.
+    Exits with 1 if there is a problem.
 
     Args:
         names: Scenes, or JSON files that hold one.
         split: All scenes of a split.
-        family: indoor, outdoor, house, house_flood or gale; empty for all.
+        family: Family of scenes; empty for all.
         all: All scenes.
         workers: Processes that check at the same time.
     """
@@ -103,7 +103,7 @@ def bring(
 ) -> int:
     """Import scenes of the original benchmark: its folders with log.txt, info.json and flood.json.
 
-    Ends with 1 if one cannot be read.
+    Exits with 1 if a scene cannot be read.
 
     Args:
         paths: Folders of scenes, or folders of such folders.
@@ -121,13 +121,13 @@ def reach(
     family: Family = "",
     all: bool = False,
 ) -> int:
-    """Print which targets of scenes robots can get at: through the gaps of the furniture, with their arm's length.
+    """Print which targets robots can reach in scenes: through gaps in the furniture, with the length of their arms.
 
     Args:
         names: Scenes, JSON files that hold one, or folders of such files.
         robots: Robots.
         split: All scenes of a split.
-        family: indoor, outdoor, house, house_flood or gale; empty for all.
+        family: Family of scenes; empty for all.
         all: All scenes.
     """
     from hazard_ms.validation.scene_checks import print_reach

@@ -31,7 +31,7 @@ def fit(
     Args:
         files: Results of episodes, folders of them, and rows of `hazard-ms bench --pickups -o FILE.jsonl`.
         output: File for the tables; the shipped ones are hazard_ms/sketch/skill_times.json.
-        source: Where the numbers come from: commit, machine, number of episodes.
+        source: Origin of the numbers: commit, machine, number of episodes.
     """
     from hazard_ms.sketch import fit_times, skill_times
     from hazard_ms.spec.storage.files import write
@@ -67,12 +67,12 @@ def check(
     agents: tuple[Annotated[str, offer(POLICIES)], ...] = ("greedy", "rule"),
     trials: int = 64,
 ) -> int:
-    """Compare the sketch with real episodes of the same agents in the same scenes. Ends with 1 if it is too far off.
+    """Compare the sketch with real episodes of the same agents and scenes. Exits with 1 if they differ too much.
 
     Args:
         folders: Folders of results, as `hazard-ms evaluate -o FOLDER` makes them.
         env_id: Only this task.
-        agents: Agents to compare, of those that can be played in the sketch.
+        agents: Agents to compare, among those that the sketch can play.
         trials: Rescues in the sketch for each real episode.
 
     Raises:
@@ -108,7 +108,7 @@ def speed(
     scenes: int = 8,
     physics: Annotated[str, offer(PRESETS)] = "paper",
 ) -> int:
-    """Print how many decisions a second the sketch and its environments make on one core.
+    """Print how many decisions per second the sketch and its environments make on one core.
 
     Args:
         env_id: Task.

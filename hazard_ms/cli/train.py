@@ -32,7 +32,7 @@ def bc(
 ) -> int:
     """Train the policy of the agent `bc` by behaviour cloning in the sketch, in minutes on one core.
 
-    It trains in generated scenes outside all splits, and keeps the best round. Score it by --agents bc:weights=FILE.
+    It trains in generated scenes outside all splits, and keeps the best round. Score it with --agents bc:weights=FILE.
 
     Args:
         env_id: Task.
@@ -81,8 +81,8 @@ def clone(
 ) -> int:
     """Train the policy of the agent `bc` by behaviour cloning of recorded decisions, in a minute on one core.
 
-    It learns to choose as the teacher did, from what an agent without privileges saw, and prints how often it does,
-    also in every tenth episode, which it holds out. `hazard-ms evaluate --agents bc:weights=FILE` scores it.
+    It learns to choose as the teacher did, from what an agent without privileges saw. Prints how often the two agree,
+    also in every tenth episode, which is held out. `hazard-ms evaluate --agents bc:weights=FILE` scores it.
 
     Args:
         demos: A dataset of `hazard-ms demos record`, or a folder of datasets; those of the task are used.
@@ -142,7 +142,7 @@ def ppo(
     """Train the policy of the agent `rl`, or of `rl_paper`, by reinforcement learning in the sketch.
 
     It trains in generated scenes outside all splits, by sb3-contrib's MaskablePPO, and keeps the best in further ones.
-    The same command resumes training; more --decisions or --minutes continue it. Score it by --agents rl:weights=FILE.
+    The same command resumes it; more --decisions or --minutes continue it. Score it with --agents rl:weights=FILE.
 
     Args:
         env_id: Task.
@@ -150,11 +150,11 @@ def ppo(
         seed: Seed of all randomness.
         actions: options, or paper: the six actions, the map, the network and the settings of the original's learner.
         decisions: Training decisions; by default 1,000,000 of options, 100,000 of the six actions.
-        minutes: Wall time after which training ends, if not before.
+        minutes: Wall time after which training ends, if not before [min].
         scenes: Number of training scenes.
         reward: value or paper; by default value for options, paper for the six actions.
         start: File NAME.safetensors of a policy to start from; by default an untrained one.
-        masked: Choose only possible ones of the six actions.
+        masked: Choose only among the possible ones of the six actions.
         share: Layer width of the six actions' network, as a share of the original's; by default one half.
         physics: Preset of the hazards.
         workers: Processes that make scenes; 0: one per processor.
@@ -175,15 +175,15 @@ def ppo(
         from hazard_ms.learning.runs import Run
         from hazard_ms.learning.settings import BY_ACTIONS
     except ModuleNotFoundError as missing:
-        raise ValueError(f"train ppo needs the extra `rl`: pip install 'hazard_ms[rl]', got {missing}") from None
+        raise ValueError(f"train ppo needs the extra `rl` ({missing}): pip install 'hazard_ms[rl]'") from None
     settings, six = BY_ACTIONS[one_of(actions, ACTIONS, "actions")], actions == "paper"
     wanted = settings.decisions if decisions is None else whole(decisions, 1, 2**31, "decisions")
     count, _ = whole(scenes, 1, VALIDATION - SCENES, "scenes"), whole(seed, 0, 2**31, "seed")
     reward = settings.reward if reward is None else one_of(reward, ("value", "paper"), "reward")
     if masked and not six:
-        raise ValueError("masked must be left out with actions options, which always have masks, got True")
+        raise ValueError("--masked must be left out with --actions options, which are always masked")
     if share is not None and not six:
-        raise ValueError(f"share must be left out with actions options, whose network has one width, got {share}")
+        raise ValueError(f"--share must be left out with --actions options, whose network has one width, got {share}")
     if not minutes > 0:
         raise ValueError(f"minutes must be positive, got {minutes}")
     width, processes = SHARE if share is None else share, whole(workers, 0, 1000, "workers")
@@ -191,7 +191,7 @@ def ppo(
     shape = shape_for(actions, ranges, width, masked, measures)
     begun = None if start is None else load_map(start, env_id) if six else load(start, env_id, measures=measures)
     if six and begun is not None and begun.shape != shape:
-        raise ValueError(f"share and masked must be those of the policy in start, {begun.shape}, got {width}, {masked}")
+        raise ValueError(f"share and masked must be those of the --start policy, {begun.shape}, got {width}, {masked}")
     words = f"hazard-ms train ppo -e {env_id} --seed {seed} --scenes {scenes} --reward {reward} --physics {physics}"
     words += f"{f' --actions {actions} --share {width:g}' if six else ''}{' --masked' if masked else ''}"
     command = words if start is None else f"{words} --start {shlex.quote(str(start.resolve()))}"
@@ -201,7 +201,7 @@ def ppo(
     run = Run(output / f"{name}_{env_id}{ENDING}", env_id, facts)
     state = run.state()
     if state is not None and ended(curve_of(state), settings, wanted, minutes):
-        print(f"{run.path} has learnt for as long as that, or no longer gets better")
+        print(f"{run.path} has already trained for that long, or no longer improves")
         return 0
     numbers = [*range(SCENES, SCENES + count), *range(VALIDATION, VALIDATION + VALIDATION_SCENES)]
     made = generated(env_id, physics, numbers, processes)
@@ -218,10 +218,10 @@ def score(
     env_id: Annotated[str, offer(registry.TASKS), flag("-e")],
     physics: Annotated[str, offer(PRESETS)] = "paper",
 ) -> int:
-    """Print the mean Value of a policy in the sketch, in scenes that none is trained in, beside those of plain rules.
+    """Print the mean Value of a policy and of plain rules in the sketch, in scenes that no policy is trained in.
 
     Args:
-        weights: File NAME.safetensors.
+        weights: File NAME.safetensors of the policy.
         env_id: Task of the policy.
         physics: Preset of the hazards.
     """

@@ -15,10 +15,10 @@ def validate(
     quick: bool = False,
     load: tuple[str, ...] = (),
 ) -> int:
-    """Check the physics against exact solutions, the original's tables and publications. Ends with 1 if a case fails.
+    """Check the physics against exact solutions, the original's tables and publications. Exits with 1 if a case fails.
 
     Args:
-        hazard: Only the cases of this one.
+        hazard: Hazard whose cases are run; by default all.
         output: Folder for a page (validation.md) with curves.
         quick: Leave out the cases that take more than a second or two.
         load: Modules, or files NAME.py, that register hazards of your own.

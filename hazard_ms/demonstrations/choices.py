@@ -32,15 +32,15 @@ def choices(folder: Path, env_id: str, physics: str, layout: Encoder) -> Choices
                 f"{demonstration.folder}; record it again"
             )
         if not np.isfinite(features).all():
-            raise ValueError(f"features of an episode must be finite, got others in {demonstration.folder}")
+            raise ValueError(f"features of an episode must be finite, got NaN or infinity in {demonstration.folder}")
         if decisions["mask"].shape[1:] != (COUNT,):
-            raise ValueError(f"mask must be of {COUNT} options, got another in {demonstration.folder}")
+            raise ValueError(f"mask must have {COUNT} options, got another number in {demonstration.folder}")
         mask = worthwhile(decisions["mask"])
         begins = decisions["option_start"] & (option >= 0)
         begins[begins] &= mask[begins, option[begins]]
         made.append(Choices(features, mask, option, np.full(len(option), number)).of(begins))
     if not sum(len(each.option) for each in made):
-        raise ValueError(f"demos must hold choices in {env_id} with physics {physics}, and {folder} holds none")
+        raise ValueError(f"demos must hold choices in {env_id} with physics {physics}, got none in {folder}")
     return Choices(*(np.concatenate([getattr(e, name) for e in made]) for name in vars(made[0])))
 
 

@@ -131,7 +131,9 @@ def files_of(folder: Path) -> dict[str, Path]:
                 found[path.relative_to(folder).as_posix()] = path
                 size += each.stat(follow_symlinks=False).st_size
                 if len(found) > MOST_FILES or size > MOST_BYTES:
-                    raise DamagedDatasetError(f"{folder} must have at most {MOST_FILES} files of {MOST_BYTES} bytes")
+                    raise DamagedDatasetError(
+                        f"{folder} must have at most {MOST_FILES} files and {MOST_BYTES} bytes in all, got more"
+                    )
     except OSError as error:
         raise DamagedDatasetError(f"{error.filename} cannot be read: {error.strerror}") from None
     return dict(sorted(found.items(), key=lambda entry: entry[1]))

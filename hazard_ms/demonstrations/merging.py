@@ -30,8 +30,7 @@ def merge(folders: Sequence[Path], output: Path) -> dict[Path, int]:
         place = _place(output, shelf, entry)
         if faults := differences(shelf / entry.name, entry):
             raise ValueError(
-                f"{shelf / entry.name} must be as its manifest says, got {', '.join(faults)}; "
-                f"see `hazard-ms demos repair`"
+                f"{shelf / entry.name} must match its manifest, got {', '.join(faults)}; see `hazard-ms demos repair`"
             )
         described(shelf / entry.name)
         _check(place, known[place], shelf, entry)
@@ -53,7 +52,9 @@ def _place(output: Path, shelf: Path, entry: Entry) -> Path:
     """The dataset in `output` for an episode of `shelf`. Raises ValueError for names that no folder can have."""
     names = [entry.recipe.get(key) for key in ("env_id", "agent")]
     if not all(isinstance(name, str) for name in names):
-        raise ValueError(f"the recipe of {entry.name} must name env_id and agent, got others in {shelf / MANIFEST}")
+        raise ValueError(
+            f"the recipe of {entry.name} must name env_id and agent as strings, got other values in {shelf / MANIFEST}"
+        )
     task, agent = str(names[0]), plain(str(names[1]))
     return output / folder_name(task, f"env_id in {shelf / MANIFEST}") / folder_name(agent, f"agent in {shelf}")
 
@@ -62,13 +63,13 @@ def _check(place: Path, known: dict[str, Entry], shelf: Path, entry: Entry) -> N
     """Raise ValueError unless an episode of `shelf` can stand in the dataset at `place` beside those `known`."""
     same = known.get(entry.name)
     if same is not None and same.content != entry.content:
-        raise ValueError(f"an episode {entry.name} must be the same in all datasets, got another one in {shelf}")
+        raise ValueError(f"episode {entry.name} must be the same in all datasets, got a different one in {shelf}")
     other = next(iter(known.values()), entry)
     if other.recipe != entry.recipe:
         differing = [key for key in other.recipe if other.recipe[key] != entry.recipe.get(key)]
         raise ValueError(
-            f"the recipe of {place} must be that of all its episodes, got another {', '.join(differing)} in {shelf}; "
-            "merge it into another folder"
+            f"all episodes in {place} must have one recipe, got a different {', '.join(differing)} in {shelf}; merge "
+            "it into another folder"
         )
 
 
@@ -76,7 +77,7 @@ def _copy(source: Path, place: Path, entry: Entry) -> None:
     make_folder(place)
     with claims.claimed(place, entry.seed) as mine:
         if not mine:
-            raise ValueError(f"{place} must not be written by another process meanwhile, got {entry.name}")
+            raise ValueError(f"{place} must not be written by another process during the merge, got {entry.name}")
         part = store.begin(place, entry.seed)
         for name, path in files_of(source).items():
             (part / name).parent.mkdir(parents=True, exist_ok=True)

@@ -23,26 +23,26 @@ class RecordOptions:
     agent: Annotated[str, offer(("oracle", "planner"), "any agent"), flag("-a")] = "oracle"
     """Teacher, as `hazard-ms play --agent` takes it."""
     episodes: Annotated[int, flag("-n")] = 20
-    """Episodes, one for each seed; those that are there already are not played again."""
+    """Episodes, one for each seed; those already recorded are not played again."""
     seed: Annotated[int, flag("-s")] = 0
     """First seed."""
     obs: Annotated[str, offer(OBSERVATIONS)] = NONE
-    """Recorded besides joints, poses and actions: none, or some of state, rgb, depth, segmentation, joined by +."""
+    """What to record besides joints, poses and actions: none, or state, rgb, depth, segmentation, joined by +."""
     cameras: Annotated[str, offer(("head", "head+wrist", "head+wrist+shoulder"))] = HEAD
-    """Cameras of the robot that are filmed with rgb: that of its head, and others of it, joined by +."""
+    """Cameras of the robot whose rgb is filmed: head, and others, joined by +."""
     every: int = 3
     """Frames of the episode from one picture to the next."""
     keep: float = 0.8
-    """Least value of an episode that is kept, as a share of what the best plan reaches from its start; 0: any. The
+    """Lowest value of an episode to keep, as a share of what the best plan reaches from its start; 0: keep all. The
     others go into failures/."""
     verify: bool = True
     """Simulate each episode again in a new environment, and keep it only if all hashes are equal."""
     workers: int = 0
     """Processes; 0: one for each core."""
     backend: Annotated[str, offer(BACKENDS)] = "local"
-    """Where it is done: serial, in this process; local processes; a ray cluster whose machines share the output."""
+    """Where to record: in this process (serial), in local processes, or on a ray cluster that shares the output."""
     address: str | None = None
-    """Address of the ray cluster, such as auto; this machine alone if not given."""
+    """Address of the ray cluster, such as auto; by default only this machine."""
     output: Annotated[Path, flag("-o")] = Path("demos")
     """Folder for datasets; that of this task and agent is OUTPUT/TASK/AGENT."""
 
@@ -72,7 +72,7 @@ class RecordOptions:
         for name in self.cameras.split("+"):
             one_of(name, known, "cameras")
         if HEAD not in self.cameras.split("+") or (self.mounted and "rgb" not in self.pictures):
-            raise ValueError(f"cameras must have {HEAD}, and others only with rgb in obs, got {self.cameras!r}")
+            raise ValueError(f"cameras must include {HEAD}, and others only with rgb in obs, got {self.cameras!r}")
 
     @property
     def mounted(self) -> tuple[str, ...]:

@@ -85,8 +85,8 @@ def demonstrations(folder: Path) -> Iterator[Demonstration]:
         faults = differences(episode, entry)
         if faults:
             raise DamagedDatasetError(
-                f"{episode} must be as its manifest says, got {', '.join(faults)}; "
-                f"`hazard-ms demos repair {folder}` moves it aside"
+                f"{episode} must match its manifest, got {', '.join(faults)}; `hazard-ms demos repair {folder}` moves "
+                "it aside"
             )
         read = read_episode(episode)
         known = replace(read.result, versions=entry.versions, machine=entry.machine, phase_seconds=entry.seconds)

@@ -36,7 +36,7 @@ from hazard_ms.spec.storage.files import make_folder
 
 MOST_BLOCKED = 3  # skills of one episode that may have been blocked, for it to be kept [ours]
 REWARD = "normalized_dense"  # that recorded frames hold: what gym.make gives if no other is asked for
-ELSEWHERE = "another process records it"
+ELSEWHERE = "another process is recording it"
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def record(options: RecordOptions) -> int:
     done = {entry.seed for entry in recorded(dataset, options.recipe)}
     jobs = [RecordJob(e, SILENCE, record=options) for e in options.episode_options() if e.seed not in done]
     if len(jobs) < options.episodes:
-        print(f"{options.episodes - len(jobs)} of {options.episodes} episodes are there already", flush=True)
+        print(f"{options.episodes - len(jobs)} of {options.episodes} episodes are already recorded", flush=True)
     failed = 0
     played = spread(jobs, options.workers, options.backend, options.address, attempt)
     with played as outcomes, tqdm(total=len(jobs), unit="episode", disable=not jobs) as bar:

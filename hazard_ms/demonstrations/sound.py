@@ -70,15 +70,15 @@ def check_meta(meta: Mapping[str, Any]) -> None:
     """Check the types of what is there of episode.json, apart from its result. Raises ValueError."""
     for name, kinds in META.items():
         if name in meta and not _is(meta[name], *kinds):
-            raise ValueError(f"{name} must be {' of '.join(kind.__name__ for kind in kinds)}, got another type")
+            raise ValueError(f"{name} must be {' of '.join(kind.__name__ for kind in kinds)}, got {meta[name]!r:.100}")
     for number, prompt in enumerate(meta.get("prompts", ())):
         options = prompt.get("options")
         if not (_is(prompt.get("text"), str) and _is(options, dict, int) and len(options) <= COUNT):
-            raise ValueError(f"prompts[{number}] must have a text and options by letters, got others")
+            raise ValueError(f"prompts[{number}] must have a text and a dict of options by letter, got {prompt!r:.100}")
         if not all(0 <= option < COUNT for option in options.values()):
-            raise ValueError(f"options of prompts[{number}] must be from 0 to {COUNT - 1}, got others")
+            raise ValueError(f"options of prompts[{number}] must be from 0 to {COUNT - 1}, got {options!r:.100}")
     if meta.get("fps", 1.0) <= 0 or meta.get("every", 0) < 0:
-        raise ValueError(f"fps and every must not be negative, got {meta.get('fps')} and {meta.get('every')}")
+        raise ValueError(f"fps must be positive and every at least 0, got {meta.get('fps')} and {meta.get('every')}")
 
 
 def _is(value: Any, kind: type, inner: type | None = None) -> bool:

@@ -81,7 +81,7 @@ def entry_of(folder: Path) -> Entry:
     found, hashes = row.pop(CHECKSUM, ""), hashes_of(folder)
     others = {name: digest for name, digest in hashes.items() if name != EPISODE}
     if found != _checksum(row) or others != read.meta.get("hashes") or row.get("format") != FORMAT:
-        raise DamagedDatasetError(f"{folder} must hold the files that its {EPISODE} lists, got others")
+        raise DamagedDatasetError(f"{folder} must match its {EPISODE}, got other files or other content")
     result = read.result
     return Entry(
         name=name_of(result.scene, result.seed),
@@ -128,7 +128,7 @@ def append(shelf: Path, entry: Entry) -> None:
         torn = size > 0 and os.pread(opened, 1, size - 1) != b"\n"
         line = ("\n" * torn + entry.line()).encode()
         if os.write(opened, line) != len(line):
-            raise OSError(f"the manifest of {shelf} must be written whole, got a part; free some space")
+            raise OSError(f"the manifest of {shelf} could not be written whole; free some space")
         os.fsync(opened)
     finally:
         os.close(opened)

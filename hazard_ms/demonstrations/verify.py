@@ -29,7 +29,7 @@ def verify(folder: Path, replay: bool = False, workers: int = 0, load: tuple[str
             whole |= {} if differences(shelf / entry.name, entry) else {shelf / entry.name: entry}
     if replay:
         wrong += _replayed(whole, workers, load)
-    told = f", {wrong} faults; `hazard-ms demos repair {folder}` puts files in order" if wrong else ", no fault"
+    told = f", {wrong} faults; `hazard-ms demos repair {folder}` puts files in order" if wrong else ", no faults"
     print(f"{count} episodes{told}")
     return int(wrong > 0)
 

@@ -51,7 +51,9 @@ def reset(env: BuiltEnv, seed: Any, options: Any) -> tuple[Any, dict[str, Any]]:
         env.choice.names(options["scene"], [0] * env.num_envs)
     due = env.reconfiguration_freq != 0 and env._reconfig_counter == 0
     if len(rows) < env.num_envs and (due or options.get("reconfigure") or "scene" in options):
-        raise ValueError(f"reset option 'env_idx' must be all {env.num_envs} where scenes are rebuilt, got {len(rows)}")
+        raise ValueError(
+            f"reset option 'env_idx' must name all {env.num_envs} environments when scenes are rebuilt, got {len(rows)}"
+        )
     if STATES in options:
         options[STATES] = _to_reset_to(env, options, rows)
     return seed, options

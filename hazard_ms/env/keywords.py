@@ -56,7 +56,7 @@ def for_maniskill(given: dict[str, Any], robot: Any, effects: str, deterministic
     Raises ValueError for names and numbers that are not allowed.
     """
     if torch.get_default_dtype() != torch.float32:
-        raise ValueError(f"torch's default type of numbers must be torch.float32, got {torch.get_default_dtype()}")
+        raise ValueError(f"torch's default dtype must be torch.float32, got {torch.get_default_dtype()}")
     num_envs = checks.whole(given.get("num_envs", 1), 1, MOST_ENVS, "num_envs")
     sim, render = given.get("sim_backend", "auto"), given.get("render_backend", "auto")
     checks.backends(num_envs, sim, render)

@@ -65,8 +65,8 @@ def check_clear(world: World, env: int, place: tuple[float, float], robot: Robot
     if touched:
         x, y = place
         raise ValueError(
-            f"the robot's place must be {radius} m clear of all things, got ({x:g}, {y:g}), too near to {touched}: "
-            "hazard_ms.simulation.clearance.clear_points lists places"
+            f"the robot must start {radius} m clear of all things, got ({x:g}, {y:g}), too close to {touched}: "
+            "hazard_ms.simulation.clearance.clear_points lists free places"
         )
 
 

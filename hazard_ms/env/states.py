@@ -59,13 +59,15 @@ def alike(given: Any, model: Any, rows: int, path: str) -> Any:
     if not isinstance(model, dict):
         return _tensor(given, torch.as_tensor(model), rows, path)
     if not isinstance(given, dict):
-        raise ValueError(f"{path} must be a dict as get_state_dict gives it, got {type(given).__name__}")
+        raise ValueError(f"{path} must be a dict as get_state_dict returns it, got {type(given).__name__}")
     for name in model:
         if name not in given:
-            raise ValueError(f"{path} must have an entry {name!r}, got none: it is of another environment or scene")
+            raise ValueError(
+                f"{path} must have an entry {name!r}, got none: it comes from another environment or scene"
+            )
     for name in given:
         if name not in model:
-            raise ValueError(f"{path} must have no entry {name!r}, got one: it is of another environment or scene")
+            raise ValueError(f"{path} must have no entry {name!r}, got one: it comes from another environment or scene")
     return {name: alike(given[name], entry, rows, f"{path}.{name}") for name, entry in model.items()}
 
 
@@ -85,7 +87,7 @@ def _tensor(given: Any, model: Tensor, rows: int, path: str) -> Tensor:
     if tuple(numbers.shape) == shape[1:] and rows == 1:
         numbers = numbers[None]
     if tuple(numbers.shape) != shape:
-        raise ValueError(f"{path} must have shape {shape}, got {tuple(numbers.shape)}: it is of another scene")
+        raise ValueError(f"{path} must have shape {shape}, got {tuple(numbers.shape)}: it comes from another scene")
     made = numbers.to(device=model.device, dtype=model.dtype)
     wide = numbers.to(made.device, torch.float64)
     if bool(wide.isnan().any()) or (not model.is_floating_point() and bool((made.double() != wide).any())):

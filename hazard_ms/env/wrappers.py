@@ -18,7 +18,7 @@ class NumpyEnv(gym.Wrapper, RecordConstructorArgs):
         super().__init__(env)
         base: Any = env.unwrapped
         if base.num_envs != 1:
-            raise ValueError(f"num_envs is {base.num_envs}; NumpyEnv takes an environment with num_envs=1")
+            raise ValueError(f"num_envs must be 1 for NumpyEnv, got {base.num_envs}")
         self.observation_space = base.single_observation_space
         self.action_space = base.single_action_space
 

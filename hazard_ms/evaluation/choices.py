@@ -115,7 +115,7 @@ class EnvOptions:
         object.__setattr__(self, "perturb", canonical(self.perturb))
         robots = self.robot_uids if isinstance(self.robot_uids, str) else tuple(self.robot_uids)
         if not robots:
-            raise ValueError(f"robot_uids must be one robot or more, got {self.robot_uids!r}")
+            raise ValueError(f"robot_uids must be at least one robot, got {self.robot_uids!r}")
         object.__setattr__(self, "robot_uids", robots[0] if len(robots) == 1 and isinstance(robots, tuple) else robots)
 
     def check(self, teams: bool = False) -> None:

@@ -43,7 +43,8 @@ class Fate:
     def __post_init__(self) -> None:
         if self.rescued != (self.frame is not None):
             raise ValueError(
-                f"frame of {self.name} must be that of its rescue, got {self.frame} with rescued={self.rescued}"
+                f"frame of {self.name} must be given exactly when it was rescued, got {self.frame} with "
+                f"rescued={self.rescued}"
             )
 
     @property
@@ -66,7 +67,7 @@ class Tally:
     def of(cls, fates: Sequence[Fate]) -> Tally:
         """The tally of an episode whose targets met these fates. Raises ValueError where there are no targets."""
         if not fates:
-            raise ValueError("fates must be those of at least one target, got none")
+            raise ValueError("fates must hold at least one target, got none")
         saved = [f for f in fates if f.rescued]
         return cls(
             value_rescued=sum(f.worth for f in saved),
@@ -120,7 +121,7 @@ def scores(
     are as many scenes.
     """
     if not tallies:
-        raise ValueError("tallies must be those of at least one episode, got none")
+        raise ValueError("tallies must hold at least one episode, got none")
     parts = np.array([(t.value, t.last_rescue, t.rescued_damaged, t.rescued, 1.0) for t in tallies], np.float64)
     worth, last, damaged, rescued, count = resampled(parts, scenes, seed, resamples).T
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -108,7 +108,7 @@ class PlayOptions:
         self.episode.check(teams=True)
         whole(self.every, 1, MOST, "every")
         if self.output is not None and self.output.suffix != ".mp4":
-            raise ValueError(f"output must be a name that ends in .mp4, got {self.output.name!r}")
+            raise ValueError(f"output must end in .mp4, got {self.output.name!r}")
 
 
 @dataclass(frozen=True)
@@ -139,9 +139,9 @@ class SweepOptions:
     workers: int = 0
     """Processes; 0: one for each core."""
     backend: Annotated[str, offer(BACKENDS)] = "local"
-    """Where to play: serial, in this process, without limits on agents; local processes; a ray cluster."""
+    """Where to play: in this process, without limits on agents (serial), in local processes, or on a ray cluster."""
     address: str | None = None
-    """Address of the ray cluster, such as auto; this machine alone if not given."""
+    """Address of the ray cluster, such as auto; by default only this machine."""
     shard: str | None = None
     """Part i/N of the episodes to play, such as 2/3; by default the Slurm array job's."""
     averted: Annotated[str, offer(AVERTED)] = "task"

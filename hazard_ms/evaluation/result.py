@@ -183,10 +183,10 @@ class EpisodeResult:
         try:
             content = read_foreign(path, LARGEST)
             if not content.strip(b"\0 \n"):  # what a power failure leaves
-                raise ValueError("an empty file")
+                raise ValueError("it is empty")
             row = plain.parse(content, "it")
             if not isinstance(row, dict) or "format" not in row:
-                raise ValueError("no object with a format")
+                raise ValueError("it is not an object with a format")
             number = row["format"]
             if number in READABLE:
                 return cls.from_dict(row)

@@ -200,7 +200,9 @@ def agent_of(options: EpisodeOptions) -> Agent:
     """
     made = agent(options.agent)
     if isinstance(made, PrivilegedAgent) and options.perception != TRUTH:
-        raise ValueError(f"perception must be {TRUTH} for {options.agent}, which sees what is hidden")
+        raise ValueError(
+            f"perception must be {TRUTH} for {options.agent}, which sees what is hidden, got {options.perception!r}"
+        )
     return made
 
 

@@ -108,7 +108,7 @@ class _RaySeats:
         try:
             import ray
         except ImportError:
-            wanted = "backend must be serial or local where ray is missing, got ray; pip install 'hazard_ms[cluster]'"
+            wanted = "backend ray needs the package ray, which is not installed: pip install 'hazard_ms[cluster]'"
             raise ValueError(wanted) from None
         paths = os.pathsep.join(filter(None, sys.path))
         keyed = any(needs_key(job.options.agent, job.options.load) for job in jobs)
@@ -145,7 +145,7 @@ class _RaySeats:
                 failed += job is None
                 if failed > STARTS * self._count:
                     raise ValueError(
-                        f"address must be of a cluster that can play episodes, got {error!s:.500}"
+                        f"address must be that of a cluster that can play episodes, got {error!s:.500}"
                     ) from None
                 with contextlib.suppress(ray.exceptions.RayError):
                     ray.kill(seat)

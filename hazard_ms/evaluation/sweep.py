@@ -61,7 +61,7 @@ def evaluate(options: SweepOptions) -> int:
     if parts > 1:
         print(f"this is shard {part}/{parts}, with {len(episodes)} of {len(every)} episodes")
     for episode, line in failed.items():
-        print(f"no result: {line}; to see it again: {episode.command}")
+        print(f"no result: {line}; to play it again: {episode.command}")
     for result in results:
         if result.error:
             print(
@@ -75,8 +75,8 @@ def _check_names(options: SweepOptions, episodes: list[EpisodeOptions]) -> None:
     for e in episodes:
         if agents.setdefault(options.place(e), e.agent) != e.agent:
             raise ValueError(
-                f"agents must differ in more than punctuation, as their results are named by them: "
-                f"got {agents[options.place(e)]} and {e.agent}"
+                "agents must differ in more than punctuation, since their results are named after them, got "
+                f"{agents[options.place(e)]} and {e.agent}"
             )
     longest = max((len(os.fsencode(options.place(e).name)) for e in episodes), default=0)
     if longest > LONGEST_NAME:
@@ -101,7 +101,7 @@ def kept(options: SweepOptions, episode: EpisodeOptions) -> EpisodeResult | None
         print(f"{place} holds an episode that failed ({found.error}): it is played again", flush=True)
         return None
     if found is not None and found.files != file_hashes(episode.agent, episode.perception):
-        print(f"{place} was played with other files than there are now: its episode is played again", flush=True)
+        print(f"{place} was played with files that have changed since: its episode is played again", flush=True)
         return None
     return found
 

@@ -97,8 +97,8 @@ class Video:
         target = self._draft.target
         free = shutil.disk_usage(target.parent).free / 1e6
         raise ValueError(
-            f"ffmpeg must write {target} whole, got its exit code {self._encoder.returncode}{what}: see its own words "
-            f"above, free some space (now {free:.0f} MB), or name another ffmpeg in IMAGEIO_FFMPEG_EXE"
+            f"ffmpeg could not write {target}: it ended with exit code {self._encoder.returncode}{what}; see its "
+            f"output above, free some space ({free:.0f} MB are free), or name another ffmpeg in IMAGEIO_FFMPEG_EXE"
         )
 
     def _kill(self) -> None:

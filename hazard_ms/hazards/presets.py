@@ -127,7 +127,7 @@ def hazard(name: str, preset: str, severity: str = USUAL) -> Hazard:
     maker = load(find(HAZARDS, name, "hazard").maker)
     made = maker(preset, **severity_for(maker, name, preset, severity))
     if not isinstance(made, Hazard):
-        raise ValueError(f"the maker of {name!r} must give a Hazard, got {type(made).__name__}")
+        raise ValueError(f"the maker of {name!r} must return a Hazard, got {type(made).__name__}")
     return made
 
 
@@ -139,5 +139,5 @@ def severity_for(maker: Any, name: str, preset: str, severity: str) -> dict[str,
     if chosen(severity, preset) == USUAL:
         return {}
     if "severity" not in inspect.signature(maker).parameters:
-        raise ValueError(f"severity must be {USUAL!r} for {name}, which has no other, got {severity!r}")
+        raise ValueError(f"severity must be {USUAL!r} for {name}, which has no other severity, got {severity!r}")
     return {"severity": severity}

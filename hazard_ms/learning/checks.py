@@ -29,7 +29,7 @@ def curve_of(packed: bytes) -> list[Check]:
     """
     found = [Check(**check) for check in unpacked_state(packed)["curve"]]
     if not all(isinstance(value, int | float) and math.isfinite(value) for check in found for value in astuple(check)):
-        raise ValueError("the curve of a training must hold finite numbers, got others")
+        raise ValueError("the training curve must hold only finite numbers, got other values")
     return found
 
 

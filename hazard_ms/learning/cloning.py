@@ -132,7 +132,7 @@ def imitate(student: Student, found: Choices, passes: int, told: Callable[[str],
     for name, part in (("learnt from", learnt), ("held out", held_out)):
         if count := len(part.option):
             made[name] = {"decisions": count, "agreement": student.agreement(part)}
-            told(f"{count:,} decisions {name}: it chooses as the teacher in {made[name]['agreement']:.1%}")
+            told(f"{count:,} decisions {name}: it agrees with the teacher in {made[name]['agreement']:.1%}")
     return made
 
 

@@ -155,7 +155,7 @@ class Learner:
             self.model.num_timesteps = int(state["decisions"])
             self.model.set_random_seed(self._seed + self.model.num_timesteps)  # or the first episodes come again
         except Exception as error:  # torch raises errors of many kinds for a damaged file
-            raise ValueError(f"the state of a training must be one that was saved, got {error}") from None
+            raise ValueError(f"the training state must be one that hazard_ms saved, got {error}") from None
 
     def progress(self, share: float) -> None:
         """Bring rates to what they are when this `share` of the training is over."""

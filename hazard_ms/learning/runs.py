@@ -47,8 +47,8 @@ class Run:
             ) from None
         if before != self._facts["command"]:
             raise ValueError(
-                f"{kept} must be of the training `{self._facts['command']}`, got `{before!s:.500}`: "
-                "give another folder, or delete it"
+                f"{kept} must belong to the training `{self._facts['command']}`, got `{before!s:.500}`: give another "
+                "folder, or delete it"
             )
         return packed_state(kept)
 
@@ -63,7 +63,7 @@ class Run:
             print(line(learner.curve, decisions, minutes), flush=True)
 
         if learner.curve:
-            print(f"goes on after {learner.curve[-1].decisions:,} decisions")
+            print(f"resumes after {learner.curve[-1].decisions:,} decisions")
         threads = torch.get_num_threads()
         torch.set_num_threads(1)
         try:

@@ -86,10 +86,12 @@ class RobotEnv(gym.Env[Observation, NDArray[np.float32]]):
         base = self.env.unwrapped
         if not isinstance(base, HazardEnv):
             self.env.close()
-            raise ValueError(f"task must be one of hazard_ms, got {task!r}")
+            raise ValueError(f"task must be a task of hazard_ms, got {task!r}")
         if not base.observer.renders:
             self.env.close()
-            raise ValueError("render_backend must be a renderer, got none: policies look (see `hazard-ms doctor`)")
+            raise ValueError(
+                "render_backend must be a renderer, got none: policies need pictures (see `hazard-ms doctor`)"
+            )
         self._base = base
         self.metadata = {**self.metadata, "render_fps": round(base.control_freq / self._every)}
         self.action_space = self.env.get_wrapper_attr("single_action_space")

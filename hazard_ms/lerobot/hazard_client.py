@@ -82,7 +82,7 @@ def _plain(value: Any, arrays: list[bytes]) -> Any:
         return {ARRAY: [data.dtype.str, *data.shape]}
     if isinstance(value, dict):
         if ARRAY in value or not all(isinstance(key, str) for key in value):
-            raise ValueError(f"keys must be words other than {ARRAY!r}, got {list(value)!r:.100}")
+            raise ValueError(f"keys must be strings other than {ARRAY!r}, got {list(value)!r:.100}")
         return {key: _plain(entry, arrays) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
         return [_plain(entry, arrays) for entry in value]
@@ -95,7 +95,7 @@ def _plain(value: Any, arrays: list[bytes]) -> Any:
 
 def _check(length: int, size: int) -> None:
     if length > MOST_JSON or size > MOST_BYTES:
-        raise ValueError(f"a message must have up to {MOST_JSON} + {MOST_BYTES} bytes, got {length} + {size}")
+        raise ValueError(f"a message must have at most {MOST_JSON} + {MOST_BYTES} bytes, got {length} + {size}")
 
 
 def _fill(link: socket.socket, data: memoryview, until: float) -> None:
@@ -106,9 +106,9 @@ def _fill(link: socket.socket, data: memoryview, until: float) -> None:
         try:
             more = link.recv_into(data[got:])
         except TimeoutError:
-            raise TimeoutError(f"a message must be there in time, got {got} of {len(data)} bytes") from None
+            raise TimeoutError(f"a message must arrive in time, got {got} of {len(data)} bytes") from None
         if not more:
-            raise ConnectionError(f"the other side has left, after {got} of {len(data)} bytes of a message")
+            raise ConnectionError(f"the other side closed the connection after {got} of {len(data)} bytes of a message")
         got += more
 
 
@@ -138,7 +138,7 @@ def _empty(form: Any, left: int) -> NDArray[Any]:
     if dtype not in DTYPES or len(shape) > MOST_AXES or not whole:
         raise ValueError(f"an array must be [dtype, *shape], of {', '.join(DTYPES)}, got {form!r:.100}")
     if math.prod(shape) * np.dtype(dtype).itemsize > left:
-        raise ValueError(f"an array must have up to {left} bytes, which are left of its message, got {form!r:.100}")
+        raise ValueError(f"an array must have at most {left} bytes, the rest of its message, got {form!r:.100}")
     return np.empty(shape, dtype)
 
 
@@ -177,7 +177,7 @@ class RemoteEnv(gym.Env[dict[str, Any], NDArray[np.float32]]):
         try:
             told = self._ask(protocol=PROTOCOL, version=VERSION, keywords=keywords)
             if told.get("version") != VERSION:
-                raise ValueError(f"version must be {VERSION}, got {told.get('version')!r}: take the server's client")
+                raise ValueError(f"version must be {VERSION}, got {told.get('version')!r}: use the server's client")
         except BaseException:
             self._leave()
             raise
@@ -213,13 +213,13 @@ class RemoteEnv(gym.Env[dict[str, Any], NDArray[np.float32]]):
     def _ask(self, **question: Any) -> dict[str, Any]:
         """The answer to a question. What breaks the connection off ends it, so that no answer comes one too late."""
         if self._link is None:
-            raise ConnectionError("the connection must be open, got one that was closed: make a new environment")
+            raise ConnectionError("the connection must be open, got a closed one: make a new environment")
         message = packed(question)
         try:
             send(self._link, message)
             told = receive(self._link, self._patience)
             if not isinstance(told, dict):
-                raise ValueError(f"an answer must have names, got {told!r:.100}")
+                raise ValueError(f"an answer must be an object, got {told!r:.100}")
         except BaseException:
             self._leave()
             raise

@@ -110,7 +110,9 @@ def serve(
     try:
         listening = socket.create_server((host, port))
     except OSError as error:
-        raise ValueError(f"host and port must be free and of this machine, got {host}:{port}: {error}") from None
+        raise ValueError(
+            f"host must be an address of this machine and port must be free, got {host}:{port}: {error}"
+        ) from None
     with listening, contextlib.suppress(KeyboardInterrupt):
         signal.signal(signal.SIGTERM, signal.default_int_handler)
         print("{}:{}".format(*listening.getsockname()), flush=True)
@@ -131,7 +133,7 @@ def admit(listening: socket.socket, make: Make, sessions: int, idle: float) -> N
             playing = [process for process in playing if process.is_alive()]
         if len(playing) >= sessions:
             with link:
-                _refuse(link, RuntimeError(f"clients at once must be up to {sessions}, got one more (see --sessions)"))
+                _refuse(link, RuntimeError(f"at most {sessions} clients can connect at once (see --sessions)"))
             continue
         process = multiprocessing.get_context("spawn").Process(target=_session, args=(link, make, idle), daemon=True)
         with link:  # the process has a copy of its own
@@ -149,12 +151,12 @@ def _session(link: socket.socket, make: Make, idle: float) -> None:
 def _wanted(hello: Any) -> dict[str, Any]:
     """The keywords of a client's first message."""
     if not isinstance(hello, dict) or hello.get("protocol") != PROTOCOL:
-        raise ValueError(f"the first message must be of the protocol {PROTOCOL!r}, got {hello!r:.100}")
+        raise ValueError(f"the first message must name the protocol {PROTOCOL!r}, got {hello!r:.100}")
     if hello.get("version") != VERSION:
-        raise ValueError(f"version must be {VERSION}, got {hello.get('version')!r}: take the server's hazard_client.py")
+        raise ValueError(f"version must be {VERSION}, got {hello.get('version')!r}: use the server's hazard_client.py")
     keywords = hello.get("keywords")
     if not isinstance(keywords, dict):
-        raise ValueError(f"keywords must have names, got {keywords!r:.100}")
+        raise ValueError(f"keywords must be an object, got {keywords!r:.100}")
     for name in keywords:
         one_of(name, KEYWORDS, "a keyword", shown=len(KEYWORDS))
     task = keywords.get("task", "")

@@ -92,7 +92,7 @@ def mirror(templates: Path = MIRRORS) -> str:
     )
     if not found:
         raise ValueError(
-            "HAZARD_MS_DEBIAN must be the address of a Debian mirror (or install python-apt-common), got nothing"
+            "HAZARD_MS_DEBIAN must be the address of a Debian mirror, got nothing; set it, or install python-apt-common"
         )
     return found[1]
 

@@ -29,7 +29,7 @@ from hazard_ms.spec.storage.parts import part_of
 from hazard_ms.tasks import task_of
 from hazard_ms.tasks.spare import spare_names
 
-ELSEWHERE = "another process takes its pictures"
+ELSEWHERE = "another process is taking its pictures"
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def capture(options: CaptureOptions) -> int:
     done = {scene for scene in wanted if _whole(home / layout.folder_of(scene), options)}
     jobs = [CaptureJob(options.episode(scene, 0), SILENCE, capture=options) for scene in wanted if scene not in done]
     if done:
-        print(f"{len(done)} of {len(wanted)} scenes are there already", flush=True)
+        print(f"{len(done)} of {len(wanted)} scenes are already captured", flush=True)
     failed = 0
     taken = spread(jobs, options.workers, options.backend, options.address, attempt)
     with taken as outcomes, tqdm(total=len(jobs) * options.per_scene, unit="picture", disable=not jobs) as bar:

@@ -28,7 +28,7 @@ def check(dataset: Path) -> int:
         if count <= MOST_TOLD:
             print(printable(fault), flush=True)
     pictures = sum(len(layout.read_instances(path, CHECKED)["images"]) for path in splits)
-    print(f"{pictures} pictures, {f'{count} faults' if count else 'no fault'}")
+    print(f"{pictures} pictures, {f'{count} faults' if count else 'no faults'}")
     return int(count > 0)
 
 

@@ -27,7 +27,7 @@ def tools() -> Any:
         from pycocotools import mask
     except ImportError:
         raise ValueError(
-            "pycocotools must be installed for COCO data, got none: pip install 'hazard_ms[perception]'"
+            "COCO data needs the package pycocotools, which is not installed: pip install 'hazard_ms[perception]'"
         ) from None
     return mask
 

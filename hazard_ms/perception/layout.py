@@ -95,7 +95,7 @@ def read_scene(place: Path) -> dict[str, Any]:
     shown = printable(str(path))
     found: dict[str, Any] = rows.read_json(path)
     if not isinstance(found, dict) or "format" not in found:
-        raise ValueError(f"{shown} must be a file of `perception capture`, got another; delete its folder")
+        raise ValueError(f"{shown} must be a file of `perception capture`, got another file; delete its folder")
     if found["format"] != FORMAT:
         raise ValueError(f"the format of {shown} must be {FORMAT}, got {found['format']!r:.100}; capture it again")
     if not isinstance(found.get("scene"), str) or not isinstance(found.get("recipe"), dict):

@@ -27,7 +27,7 @@ class CaptureOptions:
     per_scene: int = 200
     """Pictures of each scene."""
     scenes: tuple[str, ...] = ()
-    """Names of scenes; all of the split if not given."""
+    """Names of scenes; by default all of the split."""
     spare: int = 0
     """Scenes of each place beyond those of the split train, numbered from 25 on; they belong to no split."""
     size: int = 512
@@ -35,11 +35,11 @@ class CaptureOptions:
     fov: float = FOV
     """Field of view in degrees; the robots' head cameras have 120."""
     last_frame: int | None = None
-    """Last frame of an episode of which pictures are taken; 0: only what no hazard has changed yet."""
+    """Last frame of an episode to take pictures of; 0: only scenes that no hazard has changed yet."""
     shader: Literal["default", "rt-fast", "rt"] = "default"
-    """Raster (default), or ray-traced, which takes seconds a picture."""
+    """Rasterised (default) or ray-traced, which takes seconds per picture."""
     spp: int = 4
-    """Samples per pixel, ray-traced."""
+    """Samples per pixel of ray-traced pictures."""
     lights: Annotated[str, offer((VARIED, *LIGHTINGS))] = VARIED
     """Light of the scenes; varied draws one for each stop."""
     looks: Annotated[str, offer((VARIED, *EFFECTS))] = VARIED
@@ -49,15 +49,15 @@ class CaptureOptions:
     thermal: bool = False
     """Add what a thermal camera shows, in degrees C."""
     degraded: bool = False
-    """Colour and depth through the simulated smoke, through rain in wind, and water; depth is lost beyond sight."""
+    """Take colour and depth through the simulated smoke, rain and water; depth is lost beyond the range of sight."""
     seed: Annotated[int, flag("-s")] = 0
     """Seed of all episodes, viewpoints and lights."""
     workers: int = 1
     """Processes; 0: one for each core."""
     backend: Annotated[str, offer(BACKENDS)] = "local"
-    """Where it is done: serial, in this process; local processes; a ray cluster whose machines share the output."""
+    """Where to capture: in this process (serial), in local processes, or on a ray cluster that shares the output."""
     address: str | None = None
-    """Address of the ray cluster, such as auto; this machine alone if not given."""
+    """Address of the ray cluster, such as auto; by default only this machine."""
     output: Annotated[Path, flag("-o")] = Path("perception")
     """Folder for datasets; that of this task is OUTPUT/TASK."""
 
@@ -69,7 +69,9 @@ class CaptureOptions:
         whole(self.per_scene, 1, MOST, "per_scene")
         whole(self.spare, 0, MOST_SPARE, "spare")
         if self.spare and self.env.split != SPARED:
-            raise ValueError(f"spare must be 0 in the split {self.env.split}, got {self.spare}: they are for {SPARED}")
+            raise ValueError(
+                f"spare must be 0 in the split {self.env.split}, got {self.spare}: spare scenes are for {SPARED}"
+            )
         whole(self.size, SMALLEST, LARGEST, "size")
         if not NARROWEST <= self.fov <= WIDEST:
             raise ValueError(f"fov must be from {NARROWEST:g} to {WIDEST:g} degrees, got {self.fov!r}")

@@ -103,14 +103,18 @@ def check_shape(shape: Any, size: tuple[int, int], where: str) -> None:
     if isinstance(shape, list):
         polygons = made(tuple[tuple[float, ...], ...], shape, f"segmentation in {where}", Limits(farthest=REACH))
         if not polygons or any(len(p) < 6 or len(p) % 2 for p in polygons):
-            raise ValueError(f"polygons must have three corners or more, got others in {where}")
+            raise ValueError(f"polygons must have at least three corners of two numbers each, got others in {where}")
         corners = [np.reshape(p, (-1, 2)) for p in polygons]
         if sum(np.abs(np.diff(c, axis=0, append=c[:1])).max(1).sum() for c in corners) > LONGEST_WAY:
-            raise ValueError(f"polygons must be at most {LONGEST_WAY:g} pixels around, got longer ones in {where}")
+            raise ValueError(
+                f"outlines of a segmentation must be at most {LONGEST_WAY:g} pixels long in all, got more in {where}"
+            )
     elif isinstance(shape, dict) and isinstance(shape.get("counts"), list):
         runs = made(tuple[int, ...], shape["counts"], f"counts in {where}", Limits(most_entries=size[0] * size[1] + 1))
         if shape.get("size") != list(size) or min(runs, default=-1) < 0 or sum(runs) != size[0] * size[1]:
-            raise ValueError(f"segmentation must be run lengths of size {list(size)}, got others in {where}")
+            raise ValueError(
+                f"segmentation must be run lengths of size {list(size)}, got another size or sum in {where}"
+            )
     else:
         check_runs(shape, size, where)
 

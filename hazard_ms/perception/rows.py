@@ -198,7 +198,7 @@ def check_unique(rows: Iterable[Mapping[str, Any]], what: str) -> None:
     seen: set[int] = set()
     for row in rows:
         if row["id"] < 1 or row["id"] in seen:
-            raise ValueError(f"ids of {what} must be from 1 on and differ, got {row['id']}")
+            raise ValueError(f"ids of {what} must be positive and distinct, got {row['id']}")
         seen.add(row["id"])
 
 
@@ -209,11 +209,11 @@ def by_image(rows: Mapping[str, Any], what: str) -> dict[int, list[dict[str, Any
         number = annotation["image_id"]
         if number not in found:
             raise ValueError(
-                f"image_id must be that of an image, got {number} in annotation {annotation['id']} of {what}"
+                f"image_id must be the id of an image, got {number} in annotation {annotation['id']} of {what}"
             )
         found[number].append(annotation)
         if len(found[number]) > MOST_OF_PICTURE:
             raise ValueError(
-                f"an image must have at most {MOST_OF_PICTURE} annotations, got more of {number} in {what}"
+                f"an image must have at most {MOST_OF_PICTURE} annotations, got more for image {number} in {what}"
             )
     return found

@@ -150,7 +150,7 @@ def _play(env: Any, watch: Watch, frame: int) -> None:
         if now % WATCHED_EVERY == 0:
             watch.look()
     if bool(env.episode.sim_error[0]):
-        raise ValueError(f"the simulation of {env.specs[0].name} must stay sound, got a break before frame {frame}")
+        raise ValueError(f"the simulation of {env.specs[0].name} broke before frame {frame}")
 
 
 def _take(env: Any, eye: Eye, options: CaptureOptions, rng: np.random.Generator, states: list[dict[str, Any]]) -> Taken:

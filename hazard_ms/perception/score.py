@@ -67,7 +67,7 @@ def read_results(path: Path, truth: Row) -> list[dict[str, Any]]:
         _check(row, sizes, categories, f"entry {number} of {printable(str(path))}")
     for key in ("bbox", "segmentation"):
         if any(key in row for row in found) and not all(key in row for row in found):
-            raise ValueError(f"{key} must be in all entries or in none, got some without in {path}")
+            raise ValueError(f"{key} must be in all entries or in none, got only some in {path}")
     return [{key: row[key] for key in KEPT if key in row} for row in found]
 
 
@@ -75,7 +75,7 @@ def _check(row: Any, sizes: Mapping[int, tuple[int, int]], categories: set[int],
     """Check a detection. Raises ValueError that says what is wrong, and `where`."""
     found = typed(Detection, row, where)
     if found.image_id not in sizes:
-        raise ValueError(f"image_id must be that of a picture of the split, got {found.image_id} in {where}")
+        raise ValueError(f"image_id must be the id of a picture in the split, got {found.image_id} in {where}")
     if found.category_id not in categories:
         raise ValueError(f"category_id must be one of the dataset's categories, got {found.category_id} in {where}")
     if "bbox" not in row and "segmentation" not in row:

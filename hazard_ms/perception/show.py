@@ -47,11 +47,11 @@ def show(dataset: Path, output: Path, pictures: int, things: int = 0) -> Path:
     splits = layout.splits_of(dataset)
     endings = (".html", ".png", ".jpg")
     if output.suffix not in endings:
-        raise ValueError(f"output must be a name that ends in {' or '.join(endings)}, got {output.name!r}")
+        raise ValueError(f"output must end in {' or '.join(endings)}, got {output.name!r}")
     make_folder(output.parent)
     close = [cell for path in splits for cell in closeups(dataset, path, things)] if things else []
     if things and not close:
-        raise ValueError(f"{dataset} must hold annotated things to be shown, got none")
+        raise ValueError(f"{dataset} must hold annotated things to show, got none")
     if output.suffix != ".html" and things:
         write(output, _encoded(sheet(close, OF_THINGS), output.suffix))
         return output

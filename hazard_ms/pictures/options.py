@@ -24,20 +24,20 @@ class RenderOptions:
     output: Annotated[Path | None, flag("-o")] = None
     """Picture to write: .png or .jpg."""
     turntable: Path | None = None
-    """Film around the middle of the scene to write: .mp4."""
+    """Film to write, .mp4, for which the camera circles the middle of the scene."""
     episode: EpisodeOptions = EpisodeOptions(agent=IDLE)
     frame: int = 0
     """Frame of the episode; it is played that far without drawing. With the agent `idle` the robot stands still."""
     shader: Literal["default", "rt-fast", "rt"] = "default"
-    """Raster (default), or ray-traced; denoised where pyoidn is installed."""
+    """Rasterised (default) or ray-traced, which is denoised if pyoidn is installed."""
     spp: int = 16
-    """Samples per pixel, ray-traced."""
+    """Samples per pixel of ray-traced pictures."""
     size: str = "1024"
-    """Width and height in pixels, as 1024 or 1024x768."""
+    """Width and height in pixels, such as 1024 or 1024x768."""
     camera: Literal["third", "head", "home"] = "third"
-    """Third person; the camera of the robot's head; or all rooms of a home from above, without its ceiling."""
+    """View: third person, the camera in the robot's head, or all rooms of a home from above without its ceiling."""
     turns: int = 48
-    """Pictures of the turntable."""
+    """Number of pictures in the film of --turntable."""
 
     def check(self) -> None:
         """Check all options. Raises ValueError for what cannot be drawn."""
@@ -93,6 +93,6 @@ def _writable(path: Path | None, endings: tuple[str, ...], what: str) -> None:
     if path is None:
         return
     if path.suffix.lower() not in endings:
-        raise ValueError(f"{what} must be a name that ends in {' or '.join(endings)}, got {path.name!r}")
+        raise ValueError(f"{what} must end in {' or '.join(endings)}, got {path.name!r}")
     if not path.parent.is_dir():
         raise ValueError(f"{what} must be in a folder that exists, got {path}: there is no folder {path.parent}")

@@ -130,7 +130,7 @@ def sheet(spec: SceneSpec) -> Image:
 def save(spec: SceneSpec, path: Path) -> None:
     """Write plan and view of `spec` as a picture. Raises ValueError when the file cannot be written."""
     if path.suffix.lower() not in (".png", ".jpg", ".jpeg"):
-        raise ValueError(f"the ending of output must be .png, .jpg or .jpeg, got {path.suffix!r}")
+        raise ValueError(f"output must end in .png, .jpg or .jpeg, got {path.suffix!r}")
     if not path.parent.is_dir():
         raise ValueError(f"output must be in a folder that exists, got {path}: there is no folder {path.parent}")
     save_picture(path, sheet(spec), QUALITY)

@@ -25,7 +25,7 @@ def by_name(wanted: Any, allowed: Sequence[str], num_envs: int) -> list[str]:
     """
     names = [wanted] * num_envs if isinstance(wanted, str) else wanted
     if not isinstance(names, (list, tuple)) or len(names) != num_envs:
-        raise ValueError(f"reset option 'scene' must be a scene's name or a list of {num_envs}, got {wanted!r}")
+        raise ValueError(f"reset option 'scene' must be a scene's name or a list of {num_envs} names, got {wanted!r}")
     return [one_of(n, allowed, "scene", LISTING) for n in names]
 
 

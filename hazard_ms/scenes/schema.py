@@ -102,7 +102,7 @@ def _check_room(spec: SceneSpec) -> None:
         ("beyond of the room", room.beyond, SURROUNDINGS),
     ):
         if not low <= value <= high:
-            raise ValueError(f"{spec.name}: {what} must be {low:g} to {high:g} m, got {value}")
+            raise ValueError(f"{spec.name}: {what} must be from {low:g} to {high:g} m, got {value}")
     shell(room)  # refuses openings that do not fit, and unknown materials
     for a in room.areas:
         if not all(0.0 <= low < high <= edge for low, high, edge in zip(a.min, a.max, room.size, strict=True)):

@@ -66,7 +66,7 @@ def _ground(room: Room) -> Iterator[ShellBox]:
         layers[p] = layer
         size = (p.max[0] - p.min[0], p.max[1] - p.min[1], layer * PATCH_HEIGHT)
         if min(size) <= 0.0:
-            raise ValueError(f"max of a patch must be beyond its min on both axes, got {p}")
+            raise ValueError(f"max of a patch must exceed its min on both axes, got {p}")
         centre = ((p.min[0] + p.max[0]) / 2, (p.min[1] + p.max[1]) / 2, size[2] / 2)
         yield ShellBox(f"patch_{i}", "floor", centre, size, p.material, collides=False)
 
@@ -92,7 +92,8 @@ def _wall(room: Room, wall: str) -> Iterator[ShellBox]:
         left, right, top = o.centre - o.width / 2, o.centre + o.width / 2, o.sill + o.height
         if left < max(reached, 0.0) or right > length or top > room.height:
             raise ValueError(
-                f"an opening must be within the {wall} wall, {length} m x {room.height} m, beside the others, got {o}"
+                f"an opening must fit into the {wall} wall, {length} m x {room.height} m, without overlapping others, "
+                f"got {o}"
             )
         pieces = ((reached, left, 0.0, room.height), (left, right, 0.0, o.sill), (left, right, top, room.height))
         for piece in pieces:

@@ -108,7 +108,9 @@ def spare_scene(names: Sequence[str], number: int) -> SceneSpec:
     place = places[number % len(places)]
     homes = [(family, split) for family in FAMILIES.values() for split, of in family.places.items() if place in of]
     if not homes or number < SCENES:
-        raise ValueError(f"a spare scene must have a known place and a number from {SCENES}, got {place}/{number}")
+        raise ValueError(
+            f"a spare scene must have a known place and a number of at least {SCENES}, got {place}/{number}"
+        )
     (family, split), *_ = homes
     return family.make(place, f"{place}/{number:02d}", split)
 

@@ -37,10 +37,10 @@ def check(room: Room) -> None:
                 f"a doorway must be in a partition, a window in one of the walls {', '.join(WALLS)}, got {o}"
             )
         if o.open is not None and (o.kind != "door" or not 0.0 <= o.open <= 1.0):
-            raise ValueError(f"open must be a share from 0 to 1, and that of a door, got {o}")
+            raise ValueError(f"open must be a share from 0 to 1, and belong to a door, got {o}")
     if room.open_air and (room.openings or room.partitions):
         raise ValueError(
-            f"a place in the open must have no openings and partitions, got {(*room.openings, *room.partitions)}"
+            f"a place in the open must have no openings or partitions, got {(*room.openings, *room.partitions)}"
         )
     if room.patches and not room.open_air:
         raise ValueError(f"patches of ground must be in the open, got {len(room.patches)} of them in a room with walls")

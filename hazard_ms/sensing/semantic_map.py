@@ -141,7 +141,7 @@ class SemanticMap:
         than the last one.
         """
         if frame < self.frame:
-            raise ValueError(f"frame must not be earlier than that of the last view, {self.frame}, got {frame}")
+            raise ValueError(f"frame must not be earlier than {self.frame}, the frame of the last view, got {frame}")
         self.frame = frame
         if view.labels is not None:
             self._see_objects(view, frozenset(ignore), damaged)

@@ -74,6 +74,8 @@ class State:
         """
         names = {f.name for f in dataclasses.fields(self)}  # type: ignore[arg-type]
         if set(saved) != names:
-            raise ValueError(f"saved state of {type(self).__name__} must have {sorted(names)}, got {sorted(saved)}")
+            raise ValueError(
+                f"saved state of {type(self).__name__} must have the fields {sorted(names)}, got {sorted(saved)}"
+            )
         for name in names:
             getattr(self, name)[rows] = saved[name].to(getattr(self, name))

@@ -36,7 +36,7 @@ def from_bytes(what: str, version: int, content: bytes) -> dict[str, NDArray[Any
     """
     digest, packed = content[:DIGEST_BYTES], content[DIGEST_BYTES:]
     if hashlib.sha256(packed).digest() != digest:
-        raise ValueError(f"{what} must have the digest of its contents, got another: damaged, or something else")
+        raise ValueError(f"{what} must match its checksum, got other content: it is damaged, or another kind of file")
     columns = foreign.from_bytes(packed, what)
     number = columns.pop("format", np.asarray(-1))
     found = int(number.item()) if number.size == 1 and number.dtype.kind in "iu" else -1
@@ -55,4 +55,4 @@ def made_from(
     try:
         return kind(**{name: plain[name](column) if name in plain else column for name, column in columns.items()})
     except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError) as error:
-        raise ValueError(f"{what} must have its own columns, got {printable(str(error)):.200}") from None
+        raise ValueError(f"{what} must have the columns of its kind, got {printable(str(error)):.200}") from None

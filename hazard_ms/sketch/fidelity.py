@@ -82,7 +82,7 @@ def compared(agent: str, real: Sequence[SceneScore], sketch: Sequence[SceneScore
     An agent whose choices are drawn should play each scene several times: one rescue tells little of a scene.
     """
     if [(p.scene, p.seed) for p in real] != [(p.scene, p.seed) for p in sketch] or not real:
-        raise ValueError(f"real and sketch must be of the same episodes, got {len(real)} and {len(sketch)}")
+        raise ValueError(f"real and sketch must be scores of the same episodes, got {len(real)} and {len(sketch)}")
     values = np.array([[p.value for p in real], [p.value for p in sketch]])
     scenes = [p.scene for p in real]
     means_of = [values[:, [scene == each for scene in scenes]].mean(axis=1) for each in sorted(set(scenes))]

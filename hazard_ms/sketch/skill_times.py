@@ -54,11 +54,15 @@ class SkillRow:
             values = getattr(self, name)
             ordered = all(a <= b for a, b in zip(values, values[1:], strict=False))
             if not values or not ordered or not all(0.0 <= v <= LONGEST for v in values):
-                raise ValueError(f"{name} of {self.skill} must rise from 0 to {LONGEST}, got {values!r:.100}")
+                raise ValueError(
+                    f"{name} of {self.skill} must be sorted numbers from 0 to {LONGEST}, got {values!r:.100}"
+                )
         for name in ("height", "clearance"):
             low, high = getattr(self, name)
             if not low < high:
-                raise ValueError(f"{name} of {self.skill} must be a band (from, to), got {(low, high)}")
+                raise ValueError(
+                    f"{name} of {self.skill} must be a band (low, high) with low below high, got {(low, high)}"
+                )
 
     def holds(self, height: Floats, clearance: Floats) -> NDArray[np.bool_]:
         """Whether things at `height` [m] and `clearance` [m], [R] each, belong to this band, [R]."""

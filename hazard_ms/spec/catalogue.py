@@ -114,7 +114,7 @@ def check(rows: Iterable[Category]) -> dict[str, Category]:
     for c in rows:
         for attribute, (low, high) in LIMITS.items():
             if not low <= getattr(c, attribute) <= high:
-                raise ValueError(f"{attribute} of {c.name!r} must be {low} to {high}, got {getattr(c, attribute)}")
+                raise ValueError(f"{attribute} of {c.name!r} must be from {low} to {high}, got {getattr(c, attribute)}")
         if c.value not in (LOW_VALUE, HIGH_VALUE):
             raise ValueError(f"value of {c.name!r} must be {LOW_VALUE} or {HIGH_VALUE}, got {c.value}")
         if c.kind not in ("object", "fixture"):

@@ -123,7 +123,7 @@ def backends(num_envs: int, sim: Any, render: Any) -> None:
 
     if num_envs > 1 and (sim in ("cpu", "physx_cpu") or not torch.cuda.is_available()):
         raise ValueError(
-            f"num_envs must be 1 without a CUDA GPU, got {num_envs}; on a CPU they run in processes: "
+            f"num_envs must be 1 without a CUDA GPU, got {num_envs}; on a CPU, several environments run in processes: "
             f"hazard_ms.vector.make(..., num_envs={num_envs})"
         )
 

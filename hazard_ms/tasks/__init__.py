@@ -22,9 +22,9 @@ def task_of(name: str, physics: str, hazards: Sequence[str] | None = None, sever
     entry = find(TASKS, name, "task")
     maker = load(entry.maker)
     if hazards is not None and "hazards" not in inspect.signature(maker).parameters:
-        raise ValueError(f"hazards must be None for {name}, which has its own (others have not), got {hazards!r}")
+        raise ValueError(f"hazards must be None for {name}, whose hazards are fixed, got {hazards!r}")
     options: dict[str, Any] = severity_for(maker, name, physics, severity)
     made = maker(physics, **options) if hazards is None else maker(physics, hazards=hazards, **options)
     if not isinstance(made, Task):
-        raise ValueError(f"the maker of {name!r} must give a Task, got {type(made).__name__}")
+        raise ValueError(f"the maker of {name!r} must return a Task, got {type(made).__name__}")
     return dataclasses.replace(made, name=name, max_frames=entry.max_frames)

@@ -12,15 +12,18 @@ from hazard_ms.tasks import task_of
 def check(perturbation: Perturbation, task: Task) -> None:
     """Refuse a perturbation of which a kind would change nothing in a `task`: it raises ValueError, naming the kind."""
     if perturbation.words and not task.rewordings:
-        raise ValueError(f"words in perturb must be 0 for {task.name}, which has no others, got {perturbation.words}")
+        raise ValueError(
+            f"words in perturb must be 0 for {task.name}, which has no other wording, got {perturbation.words}"
+        )
     if perturbation.start and task.arrange is not None:
-        raise ValueError(f"start in perturb must be 0 for {task.name}, which chooses it, got {perturbation.start}")
+        raise ValueError(
+            f"start in perturb must be 0 for {task.name}, which chooses the start itself, got {perturbation.start}"
+        )
     if perturbation.objects:
         first = task.build(task.all_scenes[0])
         if len(first.targets) == len(first.bodies):
             raise ValueError(
-                f"objects in perturb must be 0 for {task.name}, in which all that moves are targets, "
-                f"got {perturbation.objects}"
+                f"objects in perturb must be 0 for {task.name}, in which only targets move, got {perturbation.objects}"
             )
 
 

@@ -143,7 +143,7 @@ def practice(
     one_of(physics, PRESETS, "physics")
     found = acting(hazards, physics, severity)
     if open_air := [hazard.name for hazard in found if hazard.open_air]:
-        raise ValueError(f"hazards must act in rooms for practice, got {', '.join(open_air)}")
+        raise ValueError(f"hazards for practice must be ones that act indoors, got {', '.join(open_air)}")
     if severity != USUAL and not found:
         raise ValueError(f"severity must be {USUAL!r} without hazards, got {severity!r}")
     return Task(

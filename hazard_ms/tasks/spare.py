@@ -52,7 +52,9 @@ def _spare(scene: str, names: Sequence[str]) -> tuple[str, int]:
     place, _, number = scene.partition("/")
     known = place in _places(names) and number.isascii() and number.isdigit() and number == f"{int(number):02d}"
     if not known or int(number) < SCENES:
-        raise ValueError(f"scenes must be of the split or of its places with numbers from {SCENES} on, got {scene!r}")
+        raise ValueError(
+            f"scenes must be in the split, or at its places with numbers of at least {SCENES}, got {scene!r}"
+        )
     return place, int(number)
 
 

@@ -86,7 +86,7 @@ def failure(said: str, code: int) -> StoppedError:
     full = next((line for line in reversed(lines) if EXHAUSTED.search(line)), None)
     if full is not None:
         return StoppedError(f"the memory is exhausted: {full[:LONGEST]}", limit=True)
-    last = lines[-1][:LONGEST] if lines else "it said nothing"
+    last = lines[-1][:LONGEST] if lines else "it printed nothing"
     if code == -signal.SIGKILL:
         return StoppedError(f"killed from outside, as Linux does where memory is exhausted: {last}", limit=True)
     if code < 0:

@@ -77,7 +77,7 @@ def difference(a: NDArray[Any], b: NDArray[Any]) -> float:
     Raises ValueError for different shapes.
     """
     if a.shape != b.shape:
-        raise ValueError(f"both courses must have one shape, got {a.shape} and {b.shape}")
+        raise ValueError(f"both runs must have arrays of one shape, got {a.shape} and {b.shape}")
     if a.dtype.kind != "f":
         return float((a != b).sum())
     same = (a == b) | (np.isnan(a) & np.isnan(b))
@@ -93,7 +93,7 @@ def differences_table(a: Mapping[str, NDArray[Any]], b: Mapping[str, NDArray[Any
     ValueError for courses of different quantities or frames.
     """
     if set(a) != set(b):
-        raise ValueError(f"both courses must have the same quantities, got a difference in {sorted(set(a) ^ set(b))}")
+        raise ValueError(f"both runs must have the same quantities, got a difference in {sorted(set(a) ^ set(b))}")
     found: dict[str, dict[str, str]] = {}
     for key, numbers in a.items():
         frame, name = key.split("/", 1)

@@ -52,7 +52,7 @@ def looks_job(file: str, renderer: str, **keywords: Any) -> Any:
     """
     if renderer == "cpu":
         if not (variables := without_gpu()):
-            raise ValueError("lavapipe must be installed to draw on the CPU, found no such Vulkan driver")
+            raise ValueError("drawing on the CPU needs the Vulkan driver lavapipe, which is not installed")
         os.environ.update(variables)
     from results.gpu.comparison import keep
     from results.gpu.looks import looks

@@ -90,7 +90,7 @@ def report(
     for part in parts:
         one_of(part, PARTS, "part")
     if not sizes:
-        raise ValueError("most must be at least 1, got no number of environments to measure")
+        raise ValueError("most must be at least 1, the smallest batch that is measured")
     if not budget > 0:
         raise ValueError(f"budget must be positive, got {budget}")
     page = Page(output, simulator, budget, seed)

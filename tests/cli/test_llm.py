@@ -45,7 +45,7 @@ def test_a_check_without_an_address_says_what_is_missing(
 def test_pictures_of_decisions_need_a_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "t.jsonl").write_text("")
     assert main(["llm", "page", str(tmp_path / "t.jsonl"), "-o", str(tmp_path / "a.html"), "--pictures"]) == 2
-    assert "result must be given for --pictures, got none" in capsys.readouterr().err
+    assert "--pictures needs --result" in capsys.readouterr().err
     assert not (tmp_path / "a.html").exists()
 
 

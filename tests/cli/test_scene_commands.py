@@ -94,7 +94,7 @@ def test_a_check_that_hangs_or_crashes_is_a_problem(
         (["reach", "kitchen_a/00", "-r", "fetsch"], "did you mean 'fetch'"),
         (["list", "--family", "indor"], "did you mean 'indoor'"),
         (["make", "kitchen_a/99"], "got 'kitchen_a/99'"),
-        (["make", "kitchen_a/00", "-o", "no/such/folder/x.json"], "can be written"),
+        (["make", "kitchen_a/00", "-o", "no/such/folder/x.json"], "writable"),
         (["show", "kitchen_a/00", "-o", "scene.exe"], ".jpeg, got '.exe'"),
         (["show", "kitchen_a/00", "-o", "no/such/folder/x.png"], "there is no folder"),
         (["show", "missing.json"], "there is no file missing.json"),

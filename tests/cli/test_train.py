@@ -46,7 +46,7 @@ def test_a_policy_is_trained_by_reinforcement_and_resumed(tmp_path: Path, capsys
     assert told["command"].endswith("--seed 0 --scenes 1 --reward value --physics paper")
     capsys.readouterr()
     assert main([*plain, "--decisions", "8192"]) == 0
-    assert "goes on after 4,096 decisions" in capsys.readouterr().out
+    assert "resumes after 4,096 decisions" in capsys.readouterr().out
     after = (tmp_path / f"rl_{FIRE}.csv").read_text().splitlines()
     assert after[: len(first)] == first and after[-1].startswith("8192,")
     path = tmp_path / f"rl_{FIRE}.safetensors"
@@ -67,9 +67,9 @@ def test_the_six_actions_are_trained_resumed_and_scored(tmp_path: Path, capsys: 
     assert told["command"].endswith("--reward paper --physics paper --actions paper --share 0.125")
     assert load_map(path, FIRE).shape.share == 0.125
     assert main([*plain, "--decisions", "1024"]) == 0
-    assert "goes on after 512 decisions" in capsys.readouterr().out
+    assert "resumes after 512 decisions" in capsys.readouterr().out
     assert main([*plain, "--decisions", "1024"]) == 0
-    assert capsys.readouterr().out == f"{path} has learnt for as long as that, or no longer gets better\n"
+    assert capsys.readouterr().out == f"{path} has already trained for that long, or no longer improves\n"
     assert main(["train", "score", str(path), "-e", FIRE]) == 0
     out = capsys.readouterr().out
     assert str(path) in out and "random six actions" in out and "greedy, over options" in out
@@ -89,11 +89,14 @@ def test_what_cannot_be_trained_or_scored_is_refused(tmp_path: Path, capsys: pyt
         (["--decisions", "0"], "decisions must be a whole number"),
         (["--reward", "gold"], "reward must be one of value, paper"),
         (["--actions", "papr"], "did you mean 'paper'"),
-        (["--masked"], "masked must be left out with actions options"),
-        (["--share", "0.25"], "share must be left out with actions options, whose network has one width, got 0.25"),
+        (["--masked"], "masked must be left out with --actions options"),
+        (["--share", "0.25"], "share must be left out with --actions options, whose network has one width, got 0.25"),
         (["--minutes", "nan"], "minutes must be positive, got nan"),
-        (["--actions", "paper", "--start", given, "--masked"], "share and masked must be those of the policy in start"),
-        (["--actions", "paper", "--start", given, "--share", "1"], "share and masked must be those of the policy"),
+        (["--actions", "paper", "--start", given, "--masked"], "share and masked must be those of the --start policy"),
+        (
+            ["--actions", "paper", "--start", given, "--share", "1"],
+            "share and masked must be those of the --start policy",
+        ),
         (["--actions", "paper", "--share", "2"], "share of a policy must be from 1/32 to 1"),
         (["--start", str(tmp_path / "none.safetensors")], "none.safetensors must hold a policy"),
     ):

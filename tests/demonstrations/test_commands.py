@@ -30,9 +30,9 @@ AGENT = "tests.evaluation.test_play:Short"
 def test_a_dataset_is_looked_after_by_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     dataset = tmp_path / "a" / "HazardFire-v1" / "oracle"
     stored(dataset, 0)
-    assert main(["demos", "verify", str(tmp_path)]) == 0 and "1 episodes, no fault" in capsys.readouterr().out
+    assert main(["demos", "verify", str(tmp_path)]) == 0 and "1 episodes, no faults" in capsys.readouterr().out
     assert main(["demos", "merge", str(dataset), "-o", str(tmp_path / "b")]) == 0
-    assert "1 episodes more" in capsys.readouterr().out
+    assert "1 episodes added" in capsys.readouterr().out
     (dataset / "kitchen_b-00-s000000" / "frames.npz").write_bytes(b"")
     assert main(["demos", "verify", str(dataset)]) == 1
     assert "other bytes in frames.npz" in capsys.readouterr().out
@@ -80,7 +80,7 @@ def test_episodes_are_recorded_verified_and_not_played_twice(
     assert main(["demos", "verify", str(tmp_path), "--replay", "--workers", "1"]) == 0
     capsys.readouterr()
     assert main(words) == 0
-    assert "2 of 2 episodes are there already" in capsys.readouterr().out and entries(dataset) == made
+    assert "2 of 2 episodes are already recorded" in capsys.readouterr().out and entries(dataset) == made
     assert main([*words, "--physics", "shipped"]) == 2
     assert "output must hold episodes with {'settings'" in capsys.readouterr().err
     assert "| 2 of 2 " in (dataset / "README.md").read_text()

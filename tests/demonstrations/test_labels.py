@@ -135,7 +135,7 @@ def test_with_keep_0_only_broken_simulations_are_not_kept() -> None:
         ({"obs": "rgb+none"}, "obs must be one of state, rgb, depth, segmentation"),
         ({"every": 0}, "every must be"),
         ({"cameras": "head+elbow", "obs": "rgb"}, "cameras must be one of head, wrist, shoulder, got 'elbow'"),
-        ({"cameras": "wrist", "obs": "rgb"}, "cameras must have head, and others only with rgb in obs, got 'wrist'"),
+        ({"cameras": "wrist", "obs": "rgb"}, "cameras must include head, and others only with rgb in obs, got 'wrist'"),
         ({"cameras": "head+wrist", "obs": "depth"}, "others only with rgb in obs, got 'head.wrist'"),
         ({"env": EnvOptions("HazardFlod-v1")}, "did you mean 'HazardFlood-v1'"),
     ],

@@ -64,7 +64,7 @@ def test_what_is_missing_or_superfluous_is_found(dataset: Path) -> None:
     (folder / "more.txt").unlink()
     (folder / "frames.npz").unlink()
     assert verify(dataset) == 1
-    with pytest.raises(DamagedDatasetError, match=r"must be as its manifest says, got no frames\.npz"):
+    with pytest.raises(DamagedDatasetError, match=r"must match its manifest, got no frames\.npz"):
         list(demonstrations(dataset))
 
 
@@ -120,10 +120,10 @@ def test_datasets_are_merged_and_what_is_in_both_is_copied_once(dataset: Path, t
 def test_datasets_that_differ_are_not_merged(dataset: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     stored(tmp_path / "a", 9, recipe={**RECIPE, "settings": {"physics": "realistic"}})
-    with pytest.raises(ValueError, match="the recipe of .* got another settings in"):
+    with pytest.raises(ValueError, match="must have one recipe, got a different settings in"):
         merge([dataset, tmp_path / "a"], out)
     stored(tmp_path / "b", 1, saved=False)
-    with pytest.raises(ValueError, match="an episode kitchen_b-00-s000001 must be the same in all datasets"):
+    with pytest.raises(ValueError, match="episode kitchen_b-00-s000001 must be the same in all datasets"):
         merge([dataset, tmp_path / "b"], out)
     path = dataset / MANIFEST
     path.write_text(path.read_text().replace('"format": 1', '"format": 0'))

@@ -128,6 +128,6 @@ def test_what_cannot_be_shown_is_refused(tmp_path: Path, capsys: pytest.CaptureF
     (tmp_path / "manifest.jsonl").write_text("torn")
     assert main(["demos", "show", str(tmp_path)]) == 2
     assert "folder must hold a recorded episode, got" in capsys.readouterr().err
-    for words in (["-o", "page.mp4"], ["--films", "-1"]):
+    for words, told in ((["-o", "page.mp4"], "output must end in .html"), (["--films", "-1"], "films must be")):
         assert main(["demos", "show", str(tmp_path), *words]) == 2
-        assert "must be" in capsys.readouterr().err
+        assert told in capsys.readouterr().err

@@ -86,7 +86,7 @@ def test_an_episode_whose_description_was_edited_is_not_entered(tmp_path: Path) 
     folder = stored(tmp_path, 0)
     path = folder / EPISODE
     path.write_text(path.read_text().replace('"seed": 0', '"seed": 1'))
-    with pytest.raises(DamagedDatasetError, match="must hold the files that its episode.json lists"):
+    with pytest.raises(DamagedDatasetError, match="must match its episode.json"):
         entry_of(folder)
 
 

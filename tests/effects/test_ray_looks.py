@@ -202,5 +202,5 @@ def test_shaders_become_ours_wherever_they_stand() -> None:
 
 
 def test_sapiens_own_ray_tracing_is_refused() -> None:
-    with pytest.raises(ValueError, match="must be 'rt'.* got SAPIEN's own for the camera 'head'"):
+    with pytest.raises(ValueError, match="the camera 'head' must be 'rt'.* got SAPIEN's own"):
         gym.make("HazardFire-v1", obs_mode="none", shader_dir="rt-fast")

@@ -98,7 +98,7 @@ def test_a_place_in_furniture_is_refused_and_the_robot_stays() -> None:
         return digest.digest()
 
     before = state()
-    with pytest.raises(ValueError, match=r"must be 0.29 m clear of all things, got \(3.975, 3.125\), too near to "):
+    with pytest.raises(ValueError, match=r"must start 0.29 m clear of all things, got \(3.975, 3.125\), too close to "):
         base.place_robot(spot, 1.98)
     for place, heading in ((None, 0.0), ((1.0,), 0.0), ((1.0, torch.nan), 0.0), ((1.0, 1.0), "north"), (("a", 1), 0.0)):
         with pytest.raises(ValueError, match=" must be "):

@@ -188,7 +188,7 @@ def test_a_robot_of_a_team_is_put_where_asked(env: Any) -> None:
     base = env.unwrapped
     there = base.robots["g1-1"].base()
     x, y, _ = base.robots["fetch-0"].base()
-    with pytest.raises(ValueError, match="too near to the robot fetch-0"):
+    with pytest.raises(ValueError, match="too close to the robot fetch-0"):
         base.place_robot((x + 0.3, y), 0.0, robot=1)
     assert base.robots["g1-1"].base() == there
     base.place_robot((there[0], there[1]), 1.0, robot=1)

@@ -145,7 +145,7 @@ def test_files_that_hold_no_whole_result_are_named_and_played_again(
     refill(options, {0: b"", 2: WHOLE[:100]})
     assert sweep.evaluate(options) == 1
     printed = capsys.readouterr().out
-    for k, told in ((0, "an empty file"), (2, "it must be valid JSON")):
+    for k, told in ((0, "it is empty"), (2, "it must be valid JSON")):
         place = options.place(options.episode_options()[k])
         assert f"{place} must hold the result of an episode: " in printed and told in printed
         assert f"no result: {tmp_path}/own.py:Quits, seed {k}: RuntimeError: the agent {tmp_path}/own.py" in printed
@@ -206,7 +206,7 @@ def test_episodes_are_played_again_when_their_agent_has_other_weights(
     assert sweep.kept(options, episode) is None
     assert (
         capsys.readouterr().out
-        == f"{place} was played with other files than there are now: its episode is played again\n"
+        == f"{place} was played with files that have changed since: its episode is played again\n"
     )
 
 
@@ -235,7 +235,7 @@ def test_a_result_is_replaced_whole(tmp_path: Path) -> None:
 
 def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    with pytest.raises(ValueError, match=f"a folder that can be written, got {tmp_path}/file"):
+    with pytest.raises(ValueError, match=f"a writable folder, got {tmp_path}/file"):
         sweep.evaluate(SweepOptions(agents=("greedy",), episodes=1, output=tmp_path / "file"))
 
 

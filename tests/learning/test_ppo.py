@@ -77,7 +77,7 @@ def test_an_interrupted_training_goes_on_as_it_was() -> None:
     second.train(128, 60.0, told.append)
     assert second.curve[: len(first.curve)] == first.curve and second.curve[-1].decisions == 128
     assert second.curve[-1].best == max(check.validation for check in second.curve)
-    with pytest.raises(ValueError, match="must be one that was saved"):
+    with pytest.raises(ValueError, match="must be one that hazard_ms saved"):
         second.resume(b"nothing")
 
 

@@ -115,7 +115,7 @@ def test_whole_scenes_are_not_taken_again(
 ) -> None:
     before = (dataset / layout.SUMS).read_bytes()
     assert capture(options) == 0
-    assert "1 of 1 scenes are there already" in capsys.readouterr().out
+    assert "1 of 1 scenes are already captured" in capsys.readouterr().out
     assert (dataset / layout.SUMS).read_bytes() == before
 
 

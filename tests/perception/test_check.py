@@ -92,7 +92,7 @@ def test_what_is_spoilt_is_found(copied: Path, spoil: Callable[[Path], None], to
 
 def test_the_check_ends_with_what_it_found(copied: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert check(copied) == 0
-    assert "12 pictures, no fault" in capsys.readouterr().out
+    assert "12 pictures, no faults" in capsys.readouterr().out
     lose(copied)
     assert check(copied) == 1
     assert "2 faults" in capsys.readouterr().out, "of the checksums, and of the picture"

@@ -82,7 +82,7 @@ def test_crowds_are_left_out_of_label_files_and_told_elsewhere(tmp_path: Path) -
         ({"segmentation": {"size": [9, 9], "counts": "0"}}, "segmentation must be run lengths of size"),
         ({"segmentation": [[0.0, 0.0, 1e12, 0.0, 0.0, 1e12]]}, "segmentation in annotation"),
         ({"segmentation": None}, "must have segmentation"),
-        ({"image_id": 77}, "image_id must be that of an image"),
+        ({"image_id": 77}, "image_id must be the id of an image"),
     ],
 )
 def test_rows_of_strangers_are_checked(tmp_path: Path, row: dict[str, Any], words: str) -> None:

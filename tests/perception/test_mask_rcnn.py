@@ -53,7 +53,7 @@ def test_weights_may_be_safetensors(weights: Path, tmp_path: Path) -> None:
         (None, "there is no file .*mugs.json"),
         ({"network": "yolo", "classes": CLASSES}, "must hold the network maskrcnn_resnet50_fpn_v2 or .*got .*yolo"),
         ({"network": RESNET18}, "must hold the network .* and its classes"),
-        ({"network": RESNET18, "classes": ["bowl", "bowl"]}, "must be a list of different categories"),
+        ({"network": RESNET18, "classes": ["bowl", "bowl"]}, "must be a list of distinct categories"),
         ({"network": RESNET18, "classes": ["bowl", "unicorn"]}, "a class in .* must be one of"),
         ({"network": RESNET18, "classes": ["bowl", "mug", "apple"]}, "weights must fit the network resnet18_fpn"),
     ],

@@ -169,13 +169,15 @@ def test_folders_without_models_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="path must be a folder with an OWLv2 model, or with grounding_dino and sam"):
         OpenVocabulary(str(tmp_path))
     (tmp_path / "config.json").write_text("{}")
-    with pytest.raises(ValueError, match="must hold a model of transformers"):
+    with pytest.raises(ValueError, match="must hold a transformers model"):
         OpenVocabulary(str(tmp_path))
 
 
 def test_without_transformers_it_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "transformers", None)
-    with pytest.raises(ValueError, match="transformers must be installed for perception open, got none: pip install"):
+    with pytest.raises(
+        ValueError, match="perception open needs the package transformers, which is not installed: pip install"
+    ):
         OpenVocabulary(str(tmp_path))
 
 

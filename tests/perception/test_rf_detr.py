@@ -98,7 +98,9 @@ def test_files_that_do_not_belong_together_are_refused(tmp_path: Path, changed: 
 
 def test_without_the_package_one_is_told_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "rfdetr", None)
-    with pytest.raises(ValueError, match=r"rfdetr must be installed .* pip install 'hazard_ms\[rfdetr\]'"):
+    with pytest.raises(
+        ValueError, match=r"perception rf_detr needs the package rfdetr .* pip install 'hazard_ms\[rfdetr\]'"
+    ):
         RfDetr(str(plain(tmp_path)))
 
 
@@ -106,9 +108,9 @@ def test_weights_must_have_the_names_of_the_network_but_for_its_flags() -> None:
     network = torch.nn.BatchNorm1d(2)  # num_batches_tracked is no weight
     load(network, {k: v + 3.0 for k, v in network.state_dict().items() if v.is_floating_point()}, "it")
     assert network.weight.tolist() == [4.0, 4.0]
-    with pytest.raises(ValueError, match="weights must fit it: 1 names differ, scale among them"):
+    with pytest.raises(ValueError, match="weights must fit it, got 1 names that differ, such as scale"):
         load(network, {**network.state_dict(), "scale": torch.zeros(2)}, "it")
-    with pytest.raises(ValueError, match="weights must fit it: .* weight among them"):
+    with pytest.raises(ValueError, match="weights must fit it, .* such as weight"):
         load(network, {"bias": torch.zeros(2), "running_mean": torch.zeros(2), "running_var": torch.zeros(2)}, "it")
     with pytest.raises(ValueError, match="weights must fit it"):
         load(network, {**network.state_dict(), "weight": torch.zeros(3)}, "it")

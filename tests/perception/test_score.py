@@ -111,7 +111,7 @@ def test_the_tables_have_the_groups_that_there_are(truth: dict[str, Any], tmp_pa
 @pytest.mark.parametrize(
     ("spoilt", "told"),
     [
-        ({"image_id": 77}, "image_id must be that of a picture"),
+        ({"image_id": 77}, "image_id must be the id of a picture"),
         ({"category_id": -5}, "category_id must be one of"),
         ({"score": float("nan")}, "numbers must be finite, got NaN"),
         ({"bbox": [1, 2, 3]}, "bbox must have 4 entries"),
@@ -133,9 +133,9 @@ def test_bad_detections_are_named(truth: dict[str, Any], tmp_path: Path, spoilt:
     ("change", "told"),
     [
         ({"iscrowd": None}, r"annotations\[1\] of .* must have iscrowd, got none"),
-        ({"id": 0}, "ids of annotations of .* must be from 1 on and differ, got 0"),
-        ({"id": -3}, "must be from 1 on and differ, got -3"),
-        ({"id": 1}, "must be from 1 on and differ, got 1"),
+        ({"id": 0}, "ids of annotations of .* must be positive and distinct, got 0"),
+        ({"id": -3}, "must be positive and distinct, got -3"),
+        ({"id": 1}, "must be positive and distinct, got 1"),
     ],
 )
 def test_ids_and_crowds_that_pycocotools_needs_are_asked_for(

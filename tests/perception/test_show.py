@@ -63,7 +63,7 @@ def test_what_says_most_about_a_thing_gives_its_colour() -> None:
 
 @pytest.mark.parametrize("name", ["page.txt", "page"])
 def test_other_endings_are_refused(dataset: Path, tmp_path: Path, name: str) -> None:
-    with pytest.raises(ValueError, match="output must be a name that ends in"):
+    with pytest.raises(ValueError, match="output must end in"):
         show(dataset, tmp_path / name, 5)
 
 

@@ -166,7 +166,7 @@ def test_the_weights_take_less_than_eight_megabytes(weights: Path) -> None:
     [
         (None, "there is no file .*small.json"),
         ({"network": "resnet18_fpn", "classes": CLASSES}, "must hold the network small and its classes"),
-        ({"network": "small", "classes": ["apple", "apple"]}, "must be a list of different categories"),
+        ({"network": "small", "classes": ["apple", "apple"]}, "must be a list of distinct categories"),
         ({"network": "small", "classes": ["apple", "unicorn"]}, "a class in .* must be one of"),
         ({"network": "small", "classes": ["apple"]}, "weights must fit the network small"),
     ],

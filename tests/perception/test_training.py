@@ -108,7 +108,7 @@ def test_a_finished_training_goes_on_with_more_steps_and_not_with_another_seed(
     train(first)
     train(replace(first, steps=2))
     assert "resumes at step 1" in capsys.readouterr().out
-    with pytest.raises(ValueError, match="must be of the training .* give another folder, or delete it"):
+    with pytest.raises(ValueError, match="must belong to the training .* give another folder, or delete it"):
         train(replace(first, seed=1))
     (tmp_path / "small.training").write_bytes(b"no state")
     with pytest.raises(ValueError, match="must be the state of a training.*; delete it"):
@@ -118,7 +118,7 @@ def test_a_finished_training_goes_on_with_more_steps_and_not_with_another_seed(
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        ({"data": ()}, "DATA must be one dataset or more"),
+        ({"data": ()}, "DATA must be at least one dataset"),
         ({"data": (Path("nowhere"),)}, "folder must be a dataset of `hazard-ms perception capture`, got nowhere"),
         ({"split": "hard"}, "split must be one of test, train in"),
         ({"minutes": float("nan")}, "minutes must be positive"),
@@ -148,7 +148,7 @@ def test_weights_of_a_network_with_other_classes_are_taken_but_for_their_heads(d
     assert len(given) == len(state) - 6  # weights and biases of classes, boxes and masks
     assert all(torch.equal(state[name].cpu(), value) for name, value in given.items())
     torch.save({"weight": torch.zeros(3)}, path)
-    with pytest.raises(ValueError, match="weights must be those of a Mask R-CNN of torchvision"):
+    with pytest.raises(ValueError, match="weights must be those of torchvision's Mask R-CNN"):
         begun(path, None)
 
 
@@ -180,7 +180,9 @@ def test_a_training_does_not_go_on_with_things_of_other_kinds(model: str, data: 
     apples = [replace(p, things=tuple(t for t in p.things if t["category_id"] == apple)) for p in pictures]
     begun_with = student(asked, apples)
     assert begun_with.classes == ["apple"]
-    with pytest.raises(ValueError, match="DATA must hold only categories that the training began with, got box, too"):
+    with pytest.raises(
+        ValueError, match="DATA must hold only the categories that the training began with, got box as well"
+    ):
         student(asked, pictures, {"recipe": begun_with.recipe()})
 
 

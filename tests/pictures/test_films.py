@@ -136,7 +136,7 @@ def test_a_film_that_the_disk_cannot_hold_is_no_film(tmp_path: Path) -> None:
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT, LIMIT)),
         env={**os.environ, "OMP_NUM_THREADS": "1"},
     )
-    assert made.returncode == 1 and "refused: ffmpeg must write" in made.stderr and str(path) in made.stderr
+    assert made.returncode == 1 and "refused: ffmpeg could not write" in made.stderr and str(path) in made.stderr
     assert path.read_bytes() == b"older" and list(tmp_path.iterdir()) == [path]
 
 

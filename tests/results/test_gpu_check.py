@@ -76,7 +76,7 @@ def test_a_table_ends_with_a_line_where_the_memory_does() -> None:
         ("loading", -9, "killed from outside", True),
         ("loading", -11, "crashed (signal 11): loading", False),
         ("Traceback\nValueError: seed must be a number\n", 1, "ValueError: seed must be a number", False),
-        ("", 3, "it said nothing", False),
+        ("", 3, "it printed nothing", False),
     ],
 )
 def test_a_failure_is_told_in_a_line(said: str, code: int, reason: str, limit: bool) -> None:

@@ -35,7 +35,7 @@ HOSTILE: list[tuple[Change, str]] = [
     (_at(2, scale_factor=0), "scale_factor must be a number above 0, got 0"),
     (_at(2, colour="red"), "line 1, command 3.*keys must be among .*, got 'colour'"),
     (lambda log, info, flood: log[2].pop("position"), "keys must include .*, got no 'position'"),
-    (_at(3, id=77), "id must be that of an object that exists here, got 77"),
+    (_at(3, id=77), "id must be the id of an object that exists here, got 77"),
     (
         _at(0, **{"$type": "launch_rocket"}),
         r"line 1, command 1 \(launch_rocket\): a command must be one of add_scene, .*, got 'launch_rocket'",

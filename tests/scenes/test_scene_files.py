@@ -68,7 +68,7 @@ def test_what_may_be_left_out_gets_its_default() -> None:
         ("target_categories.0", "dragon", "target category must be one of .*, got 'dragon'"),
         ("fires.0", [50.0, 1.0], "fire must be within the room .*, got .50.0, 1.0."),
         ("agent_start.position", [-1.0, 1.0], "agent start must be within the room"),
-        ("room.size", [0.0, 5.0], "size of the room must be 1 to 100 m, got 0.0"),
+        ("room.size", [0.0, 5.0], "size of the room must be from 1 to 100 m, got 0.0"),
         ("room.floor", "lava", "material must be one of .* names such as wood, .*, got 'lava'"),
         ("room.openings.0.wall", "upper", "a wall must be one of south, .*, got 'upper'"),
         ("room.openings.0.kind", "hole", "must be one of door, window, doorway"),

@@ -34,8 +34,8 @@ def test_the_shell_keeps_to_its_openings() -> None:
     area = sum(b.size[1] * b.size[2] for b in walls)
     assert area == pytest.approx(4.0 * 2.6 - 1.0 * 1.2)
     for bad, message in (
-        (Opening("door", "south", 0.2, 0.9, 2.0), "must be within the south wall"),
-        (Opening("door", "south", 2, 1, 3), "must be within"),
+        (Opening("door", "south", 0.2, 0.9, 2.0), "must fit into the south wall"),
+        (Opening("door", "south", 2, 1, 3), "must fit into"),
     ):
         with pytest.raises(ValueError, match=message):
             shell(dataclasses.replace(room, openings=(bad,)))

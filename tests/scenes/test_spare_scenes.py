@@ -16,7 +16,7 @@ def test_spare_scenes_take_turns_among_the_places_and_are_new() -> None:
 
 
 def test_scenes_of_splits_are_no_spare_ones() -> None:
-    with pytest.raises(ValueError, match=f"a number from {SCENES}, got .*/{SCENES - 1}"):
+    with pytest.raises(ValueError, match=f"a number of at least {SCENES}, got .*/{SCENES - 1}"):
         spare_scene(scene_names("train"), SCENES - 1)
     with pytest.raises(ValueError, match="known place"):
         spare_scene(["moon/00"], SCENES)

@@ -29,7 +29,7 @@ def test_only_partitions_have_holes_that_stay_open(kind: str, wall: str) -> None
 @pytest.mark.parametrize("centre", [2.0, 2.5, 2.89])
 def test_openings_of_a_wall_stand_beside_each_other(centre: float) -> None:
     first = Opening("door", "south", 2.0, 0.9, 2.0)
-    with pytest.raises(ValueError, match="within the south wall, 6.0 m x 2.6 m, beside the others"):
+    with pytest.raises(ValueError, match="fit into the south wall, 6.0 m x 2.6 m, without overlapping others"):
         shell(dataclasses.replace(ROOM, openings=(first, Opening("window", "south", centre, 0.9, 1.0, 0.9))))
     shell(dataclasses.replace(ROOM, openings=(first, Opening("window", "south", 3.0, 0.9, 1.0, 0.9))))
 

@@ -203,7 +203,7 @@ def test_bad_maps_and_orders_are_refused() -> None:
         SemanticMap((0.0, 0.0), LOOSE, cell=0.0)
     seen = fresh()
     seen.update(view(()), 7, EYE[:2])
-    with pytest.raises(ValueError, match="7, got 3"):
+    with pytest.raises(ValueError, match="7, the frame of the last view, got 3"):
         seen.update(view(()), 3, EYE[:2])
 
 

@@ -72,10 +72,10 @@ def test_a_height_outside_of_all_bands_is_refused() -> None:
     [
         ({"skill": "jump"}, "skill must be one of"),
         ({"success": 1.2}, "success of pick_up must be from 0 to 1, got 1.2"),
-        ({"frames": ()}, "frames of pick_up must rise"),
-        ({"frames": (9.0, 3.0)}, "frames of pick_up must rise"),
-        ({"failed": (-1.0,)}, "failed of pick_up must rise"),
-        ({"failed": (float("nan"),)}, "failed of pick_up must rise"),
+        ({"frames": ()}, "frames of pick_up must be sorted"),
+        ({"frames": (9.0, 3.0)}, "frames of pick_up must be sorted"),
+        ({"failed": (-1.0,)}, "failed of pick_up must be sorted"),
+        ({"failed": (float("nan"),)}, "failed of pick_up must be sorted"),
         ({"height": (1.0, 0.0)}, "height of pick_up must be a band"),
     ],
 )

@@ -72,13 +72,13 @@ def test_a_file_with_one_changed_bit_is_refused(share: float, tmp_path: Path) ->
     content = bytearray(timeline().to_bytes())
     content[int(share * (len(content) - 1))] ^= 1
     path.write_bytes(content)
-    with pytest.raises(ValueError, match=f"{path} must hold a timeline: .* damaged, or something else"):
+    with pytest.raises(ValueError, match=f"{path} must hold a timeline: .* damaged, or another kind of file"):
         read(path)
 
 
 @pytest.mark.parametrize("length", [0, DIGEST_BYTES, 200])
 def test_a_file_that_was_cut_off_is_refused(length: int) -> None:
-    with pytest.raises(ValueError, match="damaged, or something else"):
+    with pytest.raises(ValueError, match="damaged, or another kind of file"):
         from_bytes(timeline().to_bytes()[:length])
 
 

@@ -132,7 +132,7 @@ def test_what_is_not_kept_any_more_is_made_again(monkeypatch: pytest.MonkeyPatch
     [
         ({"cell": 0.0}, "cell and radius must be positive lengths, got 0.0 m"),
         ({"radius": -1.0}, "got 0.1 m and -1.0 m"),
-        ({"bodies": ["ghost"]}, "bodies must be names of the scene's bodies, got 'ghost'"),
+        ({"bodies": ["ghost"]}, "bodies must be names of bodies in the scene, got 'ghost'"),
     ],
 )
 def test_nonsense_is_refused(options: dict, message: str) -> None:

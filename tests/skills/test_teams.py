@@ -152,11 +152,11 @@ def test_planners_that_plan_together_never_fetch_the_same(pair: TeamSkills) -> N
 def test_team_agents_are_found_by_name() -> None:
     assert isinstance(team_agent("independent"), Independent)
     assert isinstance(team_agent("joint"), Joint) and isinstance(team_agent("independent:planner"), Independent)
-    with pytest.raises(ValueError, match="team agent must be joint alone, since its robots' agents are its own"):
+    with pytest.raises(ValueError, match="team agent must be joint alone, since it brings its own agents"):
         team_agent("joint:planner")
     with pytest.raises(ValueError, match="team agent must be one of"):
         team_agent("planner")
-    with pytest.raises(ValueError, match="agents of a team must see what robots see .* got oracle"):
+    with pytest.raises(ValueError, match="agents of a team must see only what robots see .* got oracle"):
         Independent("oracle")
 
 

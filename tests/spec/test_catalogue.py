@@ -100,7 +100,7 @@ def test_what_floats() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"ignition_temperature": 20.0}, "ignition_temperature of 'apple' must be 40 to 4000, got 20.0"),
+        ({"ignition_temperature": 20.0}, "ignition_temperature of 'apple' must be from 40 to 4000, got 20.0"),
         ({"density": float("nan")}, "density of 'apple' must be .* got nan"),
         ({"value": 3}, "value of 'apple' must be 1 or 5, got 3"),
         ({"kind": "fruit"}, "kind of 'apple' must be object or fixture, got 'fruit'"),

@@ -40,7 +40,7 @@ def test_a_field_has_one_writer_and_its_readers_come_after_it() -> None:
     world = room_world([("book", (5.0, 5.0, 0.0))], [(6.0, 5.0)])
     with pytest.raises(ValueError, match="'flood' must come before 'fire', which reads 'water'"):
         begun(world, "fire", "flood")
-    with pytest.raises(ValueError, match="'water' must be written by one hazard, got a second: 'flood'"):
+    with pytest.raises(ValueError, match="'water' must be written by one hazard alone, got a second: 'flood'"):
         begun(world, "flood", "flood")
     assert set(begun(world, "flood", "wind", "fire").world.fields) == {"water", "air"}
     assert begun(world, "fire").world.fields == {}

@@ -120,7 +120,7 @@ def test_hazards_are_graded_where_physics_is_realistic(practice: Any) -> None:
     assert len(set(made)) == 3
     with pytest.raises(ValueError, match="severity must be 'severe' without hazards, got 'moderate'"):
         practice.fetch("realistic", (), "moderate")
-    with pytest.raises(ValueError, match="hazards must act in rooms for practice, got wind"):
+    with pytest.raises(ValueError, match="hazards for practice must be ones that act indoors, got wind"):
         practice.pick_up("paper", ["wind"])
     with pytest.raises(ValueError, match="hazards must be some of"):
         practice.pick_up("paper", ["storm"])

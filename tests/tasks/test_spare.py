@@ -43,14 +43,14 @@ def test_a_spare_scene_is_played_from_a_file_that_holds_it_and_goes() -> None:
 
 @pytest.mark.parametrize("scene", ["moon/31", "kitchen_b/31", "kitchen_a/025", "kitchen_a/-1", "kitchen_a", "../../31"])
 def test_names_that_are_neither_of_the_split_nor_spare_are_refused(scene: str) -> None:
-    with pytest.raises(ValueError, match=f"scenes must be of the split or .* numbers from {SCENES} on, got "):
+    with pytest.raises(ValueError, match=f"scenes must be in the split, or .* numbers of at least {SCENES}, got "):
         number_of(scene, NAMES)
 
 
 @pytest.mark.parametrize(
     ("split", "spare", "told"),
     [
-        ("test", 1, "spare must be 0 in the split test, got 1: they are for train"),
+        ("test", 1, "spare must be 0 in the split test, got 1: spare scenes are for train"),
         ("train", -1, "spare must be .*got -1"),
         ("train", 10**6, "spare must be .*got 1000000"),
     ],

@@ -39,9 +39,11 @@ def test_every_task_has_sentences_of_every_level() -> None:
 
 def test_a_perturbation_that_would_change_nothing_is_refused() -> None:
     check(Perturbation(words=3), task_of("HazardPickUp-v1", "paper"))
-    with pytest.raises(ValueError, match="start in perturb must be 0 for HazardPickUp-v1, which chooses it, got 2"):
+    with pytest.raises(
+        ValueError, match="start in perturb must be 0 for HazardPickUp-v1, which chooses the start itself, got 2"
+    ):
         check(Perturbation(start=2), task_of("HazardPickUp-v1", "paper"))
-    with pytest.raises(ValueError, match="objects in perturb must be 0 for HazardWind-v1, in which all that moves"):
+    with pytest.raises(ValueError, match="objects in perturb must be 0 for HazardWind-v1, in which only targets move"):
         check_perturbation("objects:1", "HazardWind-v1", "paper", (), "severe")
     with pytest.raises(ValueError, match="hazard in perturb must be 0 for all physics but 'realistic'"):
         check_perturbation("hazard:1", "HazardWind-v1", "paper", (), "severe")
@@ -50,5 +52,7 @@ def test_a_perturbation_that_would_change_nothing_is_refused() -> None:
 
 def test_words_need_a_task_that_has_others() -> None:
     silent = dataclasses.replace(task_of("HazardFire-v1", "paper"), rewordings=())
-    with pytest.raises(ValueError, match="words in perturb must be 0 for HazardFire-v1, which has no others, got 1"):
+    with pytest.raises(
+        ValueError, match="words in perturb must be 0 for HazardFire-v1, which has no other wording, got 1"
+    ):
         check(Perturbation(words=1), silent)

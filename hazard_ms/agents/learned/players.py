@@ -39,8 +39,8 @@ def weights_file(given: str, name: str, task: str, made_by: str) -> Path:
     path = SHIPPED / f"{name}_{task}{ENDING}"
     if not path.exists():
         raise ValueError(
-            f"weights of the agent {name} must be a file, since the package has none for {task}, got none: "
-            f"make one with `hazard-ms {made_by} -e {task} -o FOLDER`, and play {name}:weights=FILE"
+            f"weights must be given for the agent {name}, since none are shipped for {task}: train them with "
+            f"`hazard-ms {made_by} -e {task} -o FOLDER`, then play {name}:weights=FILE"
         )
     return path
 
@@ -49,7 +49,9 @@ def check_hazards(ranges: Sequence[tuple[float, float]], brief: Brief) -> None:
     """Raises ValueError unless a policy that learned with hazards of the usual levels `ranges` can play an episode."""
     if len(ranges) != len(brief.hazards):
         told = ", ".join(hazard.name for hazard in brief.hazards)
-        raise ValueError(f"weights must be of a policy for as many hazards as there are ({told}), got {len(ranges)}")
+        raise ValueError(
+            f"weights must hold a policy for as many hazards as the episode has ({told}), got one for {len(ranges)}"
+        )
 
 
 class Learned(Agent):

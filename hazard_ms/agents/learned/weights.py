@@ -114,9 +114,11 @@ def _read(
                 raise ValueError(f"{name} must be {wanted}, got {facts.get(name)!s:.100}")
         shape = plain.made(MapShape if kind is MapPolicy else Shape, facts.get("shape"), "shape", LIMITS)
         if isinstance(shape, Shape) and shape.measures != measures:
-            raise ValueError(f"measures of its shape must be {measures}, got {shape.measures}")
+            raise ValueError(f"shape.measures must be {measures}, got {shape.measures}")
         if len(shape.ranges) > MOST_HAZARDS or any(not low < high for low, high in shape.ranges):
-            raise ValueError(f"ranges must be (low, high) of at most {MOST_HAZARDS} hazards, got {shape.ranges!r:.100}")
+            raise ValueError(
+                f"shape.ranges must be (low, high) pairs of at most {MOST_HAZARDS} hazards, got {shape.ranges!r:.100}"
+            )
         numbers = _numbers(read_foreign(path, LARGEST))
         with torch.device("meta"):  # which allocates nothing
             _check(numbers, kind(shape).state_dict())
@@ -135,7 +137,7 @@ def _numbers(content: bytes) -> dict[str, Tensor]:
     found = unpacked(content)
     for name, part in found.items():
         if not part.is_floating_point() or not bool(torch.isfinite(part.float()).all()):
-            raise ValueError(f"{name} must hold finite floating-point numbers, got others")
+            raise ValueError(f"{name} must hold only finite floating-point numbers, got NaN, infinity or whole numbers")
     return found
 
 
@@ -143,7 +145,7 @@ def _check(numbers: Mapping[str, Tensor], wanted: Mapping[str, Tensor]) -> None:
     """Raises ValueError unless `numbers`, [...] each, have the names and the shapes of those that are `wanted`."""
     if numbers.keys() != wanted.keys():
         other = sorted(numbers.keys() ^ wanted.keys())
-        raise ValueError(f"its numbers must be those of its shape, got others: {', '.join(other):.200}")
+        raise ValueError(f"its tensors must be those of its shape, got a difference in {', '.join(other):.200}")
     for name, part in wanted.items():
         if numbers[name].shape != part.shape:
             raise ValueError(f"{name} must be {list(part.shape)}, got {list(numbers[name].shape)}")

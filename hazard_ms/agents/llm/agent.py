@@ -241,7 +241,7 @@ class Llm(Agent):
         """What is done in place of an answer. Raises RuntimeError where none has come for several decisions."""
         self._lost = 0 if answered else self._lost + 1
         if self._lost >= MOST_LOST:
-            raise RuntimeError(f"{MOST_LOST} decisions one after another got no answer: {error}") from None
+            raise RuntimeError(f"no answer came for {MOST_LOST} decisions in a row: {error}") from None
         self._asker.counts.fallbacks += 1
         self.fallback = True
         letter = RULES[self.stand_in](told)

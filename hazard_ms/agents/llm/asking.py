@@ -49,7 +49,7 @@ class Budget:
             if number is not None and not 0 <= number < float("inf"):
                 raise ValueError(f"{name} must be at least 0, got {number!r}")
         if self.cost is not None and not (self.price_in or self.price_out):
-            raise ValueError("price_in or price_out must be above 0 for most_cost, got none")
+            raise ValueError("price_in or price_out must be above 0 for most_cost, got 0 for both")
 
     def spent(self, counts: Counts) -> float:
         """The cost of the calls that were counted [USD]."""
@@ -152,8 +152,8 @@ class Asker:
         """The reply of the server, which is kept."""
         if self._client is None:
             raise ValueError(
-                f"cache must hold the answer to every call for replay=true, got none to call {self.counts.calls}; "
-                f"is it of the same model and settings? The prompt begins with {prompt[:60]!r}"
+                f"cache must hold an answer to every call for replay=true, got none for call {self.counts.calls}; was "
+                f"it recorded with the same model and settings? The prompt begins with {prompt[:60]!r}"
             )
         begun, retries = time.monotonic(), self._client.retries
         lost: NoAnswerError | None = None

@@ -57,7 +57,9 @@ class Cache:
                 database.execute(TABLE.replace("TABLE", "TABLE IF NOT EXISTS", 1))
             found = database.execute(f"SELECT type, name, sql FROM sqlite_master LIMIT {len(SCHEMA) + 1}").fetchall()
             if _plain(found) != _plain(SCHEMA):
-                raise ValueError(f"cache must be a file of recorded answers, got other tables in {self._shown}")
+                raise ValueError(
+                    f"cache must be a file of recorded answers, got a database with other tables: {self._shown}"
+                )
 
     def get(self, key: str) -> Stored | None:
         """The answer that was kept under a key; None if there is none. Raises ValueError for one that is damaged."""
@@ -68,7 +70,10 @@ class Cache:
         body, seconds = row
         found = parse(body, f"an answer in {self._shown}") if isinstance(body, str) else None
         if not isinstance(found, dict) or not isinstance(seconds, float) or not 0.0 <= seconds < math.inf:
-            raise ValueError(f"cache must hold answers as objects with their times, got another row in {self._shown}")
+            raise ValueError(
+                "each row of a cache must hold an answer, as a JSON object, and its time, got another row in "
+                f"{self._shown}"
+            )
         return Stored(found, seconds)
 
     def put(self, key: str, answer: Stored, host: str, model: str) -> None:
@@ -88,7 +93,7 @@ class Cache:
         """The database, for one use, so that no connection outlives a fork. Raises ValueError on its errors."""
         try:
             if self._path.exists() and not stat.S_ISREG(os.stat(self._path).st_mode):
-                raise OSError("no regular file")
+                raise OSError("not a regular file")
             with closing(sqlite3.connect(self._path, timeout=PATIENCE)) as database, database:
                 _guard(database)
                 yield database

@@ -42,7 +42,9 @@ class Client:
         try:
             import openai
         except ImportError:
-            raise ValueError("openai must be installed, got none: pip install 'hazard_ms[llm]'") from None
+            raise ValueError(
+                "the agent llm needs the package openai, which is not installed: pip install 'hazard_ms[llm]'"
+            ) from None
         self._openai, self.endpoint, self._tries = openai, endpoint, tries
         self._chance = random.Random(seed)
         self.retries = 0
@@ -73,7 +75,7 @@ class Client:
             self._within(FIRST_CONTACT, listed)
         except RefusedError as refused:
             if refused.status in (401, 403):
-                raise ValueError(f"{KEY_VARIABLE} must be a key that {host} takes; {refused}") from None
+                raise ValueError(f"{KEY_VARIABLE} must be a key that {host} accepts; {refused}") from None
         except AgainError as error:
             if "status" not in str(error):
                 raise ValueError(

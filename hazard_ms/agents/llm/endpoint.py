@@ -71,15 +71,20 @@ def endpoint(base_url: str, model: str) -> Endpoint:
 
         return Endpoint(local_server()[0], name or weights().stem)
     if not name:
-        raise ValueError(f"model must be the name of a model of {address}, got none; or set {MODEL_VARIABLE}")
+        raise ValueError(f"model must name a model that {address} serves, got none; give one, or set {MODEL_VARIABLE}")
     made = Endpoint(address, name, _key())
     parts = urlsplit(address)
     if parts.username or parts.password or parts.query:
-        raise ValueError(f"base_url must not hold a user, a password or a query: use {KEY_VARIABLE}, got one of them")
+        raise ValueError(
+            "base_url must not contain a user name, a password or a query, got one of them; give the key in "
+            f"{KEY_VARIABLE}"
+        )
     if parts.scheme not in ("http", "https") or not parts.hostname:
         raise ValueError(f"base_url must begin with https:// or http:// and a host, got {address!r:.100}")
     if parts.scheme == "http" and made.key and not made.local:
-        raise ValueError(f"base_url must be https where a key is sent to another machine, got http://{parts.hostname}")
+        raise ValueError(
+            f"base_url must begin with https:// when a key is sent to another machine, got http://{parts.hostname}"
+        )
     return made
 
 
@@ -92,8 +97,11 @@ def _key() -> str:
         if not path.is_file():
             raise ValueError(f"{KEY_FILE_VARIABLE} must name a file, got {place!r}")
         if path.stat().st_mode & (stat.S_IRWXG | stat.S_IRWXO):
-            raise ValueError(f"{place} must be closed to other users, as it holds a key: chmod 600 {place}")
+            raise ValueError(f"{place} must be readable by its owner alone, since it holds a key: chmod 600 {place}")
         key = path.read_text(encoding="utf-8").strip()
     if key and (len(key) < SHORTEST_KEY or not key.isascii() or not key.isprintable()):
-        raise ValueError(f"{KEY_VARIABLE} must be at least {SHORTEST_KEY} plain characters, got {len(key)} others")
+        raise ValueError(
+            f"{KEY_VARIABLE} must have at least {SHORTEST_KEY} characters, all of them printable ASCII, got {len(key)} "
+            "characters"
+        )
     return key

@@ -26,7 +26,7 @@ def local_server() -> tuple[str, Any]:
     try:
         import xllamacpp
     except ImportError:
-        raise ValueError(f"xllamacpp must be installed for base_url=local, got none: {INSTALL}") from None
+        raise ValueError(f"base_url=local needs the package xllamacpp, which is not installed: {INSTALL}") from None
     options = xllamacpp.CommonParams()
     options.model.path = str(weights())
     options.n_ctx, options.n_parallel = CONTEXT, 1
@@ -46,6 +46,6 @@ def weights() -> Path:
     files = [Path(named)] if named else sorted(file for folder in folders for file in Path(folder).glob("*.gguf"))
     if not files or not files[0].is_file():
         raise ValueError(
-            f"{WEIGHTS_VARIABLE} must be a file of weights, NAME.gguf, got {named or 'none'}; or: {INSTALL}"
+            f"{WEIGHTS_VARIABLE} must name a file of weights, NAME.gguf, got {named or 'none'}; or: {INSTALL}"
         )
     return files[0]

@@ -28,10 +28,10 @@ def block_in(text: str) -> Block:
     """The last JSON block in a text. Raises ValueError where there is none."""
     found = FENCED.findall(text)
     if not found:
-        raise ValueError("a prompt must hold a block ```json, got none")
+        raise ValueError("a prompt must contain a block ```json, got none")
     block = json.loads(found[-1])
     if not isinstance(block, dict) or not block.get("options"):
-        raise ValueError("the block of a prompt must hold options, got none")
+        raise ValueError("the ```json block of a prompt must contain options, got none")
     return block
 
 

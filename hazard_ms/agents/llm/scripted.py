@@ -222,10 +222,10 @@ def _check_picture(messages: list[dict[str, Any]]) -> None:
     parts = [part for message in messages if isinstance(message["content"], list) for part in message["content"]]
     urls = [part["image_url"]["url"] for part in parts if part.get("type") == "image_url"]
     if len(urls) != 1 or not urls[0].startswith("data:image/jpeg;base64,"):
-        raise ValueError(f"a prompt must hold one picture as a data URL, got {len(urls)}")
+        raise ValueError(f"a prompt must contain one picture as a data URL, got {len(urls)}")
     image = Image.open(io.BytesIO(base64.b64decode(urls[0].partition(",")[2])))
     if max(image.size) > PICTURE:
-        raise ValueError(f"a picture must have edges of at most {PICTURE} pixels, got {image.size}")
+        raise ValueError(f"a picture must be at most {PICTURE} pixels wide and high, got {image.size}")
 
 
 def _error(message: str) -> dict[str, Any]:

@@ -33,7 +33,7 @@ class Trace:
             folder.mkdir(parents=True, exist_ok=True)
             self.path.write_text("", encoding="utf-8")
         except OSError as error:
-            raise ValueError(f"trace must be a folder that can be written, got {folder}: {error.strerror}") from None
+            raise ValueError(f"trace must be a writable folder, got {folder}: {error.strerror}") from None
 
     def add(
         self,

@@ -93,7 +93,7 @@ def _play(address: str, process: Any, env_id: str, seed: int, course: Course, en
                 continue
             row = json.loads(message)
             if row["type"] in ("failed", "died", "gone"):
-                raise ValueError(f"the rescue must go on, got {row}")
+                raise ValueError(f"the rescue must continue, got {row}")
             asking = row["type"] == "state" and row["phase"] == "asking"
             if (asking or row["type"] == "over") and doing:
                 course.seconds, doing = course.seconds + now - doing, 0.0

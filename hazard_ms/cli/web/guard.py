@@ -87,7 +87,7 @@ class Guard:
             return ""
         if not changes and (scope["path"] == OPEN[0] or scope["path"].startswith(OPEN[1])):
             return ""
-        return "the token must be that of the address which hazard-ms serve printed"
+        return "the token must be the one in the address that hazard-ms serve printed"
 
 
 def _parted(path: str) -> tuple[str, str]:

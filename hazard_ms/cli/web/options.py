@@ -19,9 +19,9 @@ class ServeOptions:
     folder: tuple[Path, ...] = ()
     """Folders of results; rescues go to the first. By default `rescues`."""
     sessions: int = MOST_SESSIONS
-    """Most rescues at once, each a process of 1 to 2 GB."""
+    """Largest number of rescues at once; each is a process of 1 to 2 GB."""
     idle: float = IDLE_MINUTES
-    """Time after which a rescue that no page shows gives up its process; it can be resumed later [min]."""
+    """Time after which a rescue that no page shows ends its process; it can be resumed later [min]."""
     load: tuple[str, ...] = ()
     """Modules, or files NAME.py, that register your own tasks, hazards, robots and agents."""
 

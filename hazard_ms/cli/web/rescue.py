@@ -78,7 +78,8 @@ class Rescue:
             raise ValueError(f"affects_agent must be true or false, got {e.affects_agent!r:.100}")
         if len(os.fsencode(e.agent)) > LONGEST_AGENT:
             raise ValueError(
-                f"agent must have at most {LONGEST_AGENT} bytes, as its result is named by it, got {e.agent!r:.100}"
+                f"agent must have at most {LONGEST_AGENT} bytes, since its result is named after it, got "
+                f"{e.agent!r:.100}"
             )
         e.check()
         if e.scene is not None and (not isinstance(e.scene, str) or e.scene.endswith(".json")):
@@ -121,7 +122,7 @@ def taken_over(rescue: Rescue, decisions: int) -> Rescue:
     whole(decisions, 0, len(rescue.taken), "at")
     source = rescue.after or rescue.episode.agent
     if rescue.kind == WATCH and agent(source).privileged:
-        raise ValueError(f"agent must be one that sees no more than a person to be taken over from, got {source}")
+        raise ValueError(f"agent must see no more than a person does, so that a person can take over, got {source}")
     name = f"{HUMAN}:after={source.replace(',', ';')}" if rescue.kind == WATCH else rescue.episode.agent
     return Rescue(
         PLAY,
@@ -151,7 +152,7 @@ def _check_stays(agent: str) -> None:
     """
     for key, value in _registered(agent, "agent").items():
         if key in ELSEWHERE or "/" in value:
-            raise ValueError(f"an agent of a journal must name no address and no path, got {key}; begin a new rescue")
+            raise ValueError(f"an agent in a journal must not name an address or a path, got {key}; start a new rescue")
 
 
 def pace(every: object) -> int:
@@ -175,10 +176,10 @@ def keep(folder: Path, rescue: Rescue) -> None:
 
 
 def read(folder: Path, name: str, load: tuple[str, ...]) -> Rescue:
-    """The rescue of a journal. Raises ValueError where there is none, or none that can be gone on with."""
+    """The rescue of a journal. Raises ValueError where there is none, or one that cannot be continued."""
     path = inside(folder, f"{JOURNALS}/{journal(folder, name).name}", "rescue")
     if not path.exists():
-        raise ValueError(f"rescue must be one that is under way, got {name}: it is over, or has been deleted")
+        raise ValueError(f"rescue must be under way, got {name}, which is over or has been deleted")
     try:
         row = plain.read(path, LARGEST)
         if row.pop("format", None) != FORMAT:

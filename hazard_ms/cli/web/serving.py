@@ -54,5 +54,5 @@ def _listening(port: int) -> socket.socket:
         made.bind((HOST, port))
     except OSError as error:
         made.close()
-        raise ValueError(f"port must be one that is free, got {port}: {error.strerror}") from None
+        raise ValueError(f"port must be free, got {port}: {error.strerror}") from None
     return made

@@ -24,7 +24,7 @@ class Sessions:
         self._all: dict[str, Session] = {}
 
     def begin(self, rescue: Rescue) -> Session:
-        """Begin a rescue, or go on with one. Raises ValueError where there are too many."""
+        """Begin a rescue, or continue one. Raises ValueError where there are too many."""
         self._make_room()
         rescues.keep(self._folder, rescue)
         return self._start(Session(rescue, self._folder))
@@ -60,7 +60,7 @@ class Sessions:
         """Take a rescue that is watched back to after its first `decisions`. Raises ValueError where it cannot be."""
         session = self.find(name)
         if session.rescue.kind != rescues.WATCH:
-            raise ValueError("rescue must be one that is watched to go back in it, got one that is played")
+            raise ValueError("rescue must be watched to go back in it, got one that is played")
         whole(decisions, 0, len(session.taken), "decisions")
         known = self._known(session)
         session.end()
@@ -94,7 +94,7 @@ class Sessions:
         path.unlink(missing_ok=True)
 
     def listed(self) -> list[dict[str, Any]]:
-        """The rescues that can be gone on with, those under way first."""
+        """The rescues that can be continued, those under way first."""
         found = []
         for path in sorted((self._folder / rescues.JOURNALS).glob(f"*{rescues.END}")):
             try:
@@ -125,8 +125,8 @@ class Sessions:
         idle = sorted((s for s in alive if not s.pages), key=lambda s: s.looked_at)
         if not idle:
             raise ValueError(
-                f"rescues must be at most {self._options.sessions} at once, got one more: end one, or start "
-                "hazard-ms serve with --sessions"
+                f"at most {self._options.sessions} rescues can run at once: end one, or start hazard-ms serve with "
+                "more --sessions"
             )
         self._drop(idle[0])
 

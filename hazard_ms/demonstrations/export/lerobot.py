@@ -50,7 +50,8 @@ def rate_of(common: Common) -> int:
     step = _step(common)
     if step < 1 or common.fps % step:
         raise ValueError(
-            f"every must divide the {common.fps:g} frames of a second for lerobot, got {step}; record it with another"
+            f"every must divide {common.fps:g}, the frames per second, for lerobot, got {step}; record with another "
+            "value"
         )
     return round(common.fps / step)
 

@@ -37,12 +37,12 @@ class Film:
         with _opened(path) as (film, stream):
             packets = [packet for packet in film.demux(stream) if packet.size][:count]
             if len(packets) < count or any(packet.pts != packet.dts for packet in packets):
-                raise ValueError(f"{path} must hold {count} pictures in their order, got {len(packets)}")
+                raise ValueError(f"{path} must hold {count} pictures in order, got {len(packets)}")
             size = sum(packet.size for packet in packets)
             if self._file is None or self._size + size > FILM_SIZE * MB:
                 self._begin(stream)
             if stream.codec_context.extradata != self._header:
-                raise ValueError(f"{path} must be encoded as the films before, got another header")
+                raise ValueError(f"{path} must be encoded like the films before it, got another header")
             start = self._shown
             for packet in packets:
                 packet.stream, packet.time_base = self._stream, Fraction(1, self._rate)

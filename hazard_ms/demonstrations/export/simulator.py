@@ -50,8 +50,8 @@ def _play(source: Source, env: gym.Env, one: Demonstration) -> tuple[Any, Any]:
             frame in rows and not np.array_equal(_first(base.get_state()), one.frames["state"][rows[frame]])
         ):
             raise ValueError(
-                f"{one.folder} must come out as it was recorded, got another state in frame {frame}; "
-                f"use the versions of its manifest, {one.result.versions}"
+                f"{one.folder} must replay exactly as recorded, got another state in frame {frame}; use the versions "
+                f"in its manifest, {one.result.versions}"
             )
         if source.obs is not None:
             seen.append(_first(obs))

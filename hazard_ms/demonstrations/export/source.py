@@ -103,7 +103,9 @@ class Source:
         for one in tqdm(demonstrations(self.dataset), total=self.count, unit="episode", desc="export"):
             found = Common.of(one)
             if found != self.common:
-                raise ValueError(f"{one.folder} must be recorded as the others, with {self.common}, got {found}")
+                raise ValueError(
+                    f"{one.folder} must be recorded like the other episodes, with {self.common}, got {found}"
+                )
             yield one
 
     @cached_property
@@ -141,6 +143,5 @@ def needed(package: str, form: str) -> Any:
         return importlib.import_module(package)
     except ImportError:
         raise ValueError(
-            f"format must be one whose packages are installed, got {form} without {package}; "
-            f"pip install 'hazard_ms[{EXTRA}]'"
+            f"format {form} needs the package {package}, which is not installed: pip install 'hazard_ms[{EXTRA}]'"
         ) from None

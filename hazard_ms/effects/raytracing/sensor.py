@@ -143,6 +143,6 @@ def take_over(cameras: dict[str, Camera], clock: Callable[[], float]) -> None:
             cameras[name] = RayCamera(camera, clock)
         elif pack == STOCK:
             raise ValueError(
-                "shader_pack of sensor_configs and human_render_camera_configs must be 'rt', 'rt-med' or 'rt-fast' "
-                f"for ray tracing with effects, got SAPIEN's own for the camera {name!r} (shader_dir?)"
+                f"shader_pack of the camera {name!r} must be 'rt', 'rt-med' or 'rt-fast' for ray tracing with effects, "
+                "got SAPIEN's own; set it in sensor_configs or human_render_camera_configs, not by shader_dir"
             )

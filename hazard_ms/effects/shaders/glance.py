@@ -92,7 +92,7 @@ def glance_pack() -> str | None:
         return str(write("hazard-glance", files))
     except (KeyError, UnknownSapienError, OSError) as fault:
         logging.getLogger(__name__).warning(
-            "looks take three times as long: there are no shaders without colours for SAPIEN %s (%s)",
+            "looks take three times as long: cannot derive shaders without colours from SAPIEN %s (%s)",
             sapien.__version__,
             fault,
         )

@@ -56,7 +56,7 @@ def regret(folders: Sequence[Path], where: Where, load: tuple[str, ...]) -> list
     if made:
         print(table([made[path] for path in sorted(made)]))
     if failed:
-        raise ValueError(f"all {len(found)} episodes must be as their results say, got {len(failed)} that are not")
+        raise ValueError(f"all {len(found)} episodes must replay as their results say, got {len(failed)} that do not")
     return [made[path] for path in sorted(made)]
 
 
@@ -131,7 +131,7 @@ def _records(folders: Sequence[Path]) -> dict[Path, EpisodeResult]:
         if result.robot_collisions is None:
             found[path] = result
         else:
-            print(f"left out: {path} is of a team, whose decisions cannot be judged so far")
+            print(f"left out: {path} was played by a team, whose decisions cannot be judged yet")
     return found
 
 

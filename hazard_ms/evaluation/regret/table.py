@@ -13,7 +13,7 @@ def shares(found: Sequence[EpisodeRegret]) -> dict[str, float]:
     Raises ValueError for no episodes.
     """
     if not found:
-        raise ValueError("episodes must be at least one, got none")
+        raise ValueError("episodes must hold at least one, got none")
     made = {"start": _mean([one.start for one in found]), "value": _mean([one.value for one in found])}
     return made | {part: _mean([one.lost[part] for one in found]) for part in PARTS}
 

@@ -36,6 +36,8 @@ class Card:
 def read_card(path: Path) -> Card:
     """The card in a JSON file. Raises ValueError that names what is missing or wrong in it."""
     if not path.is_file():
-        raise ValueError(f"card must be a file with the agent's card (docs/leaderboard.md), got {path}, which is none")
+        raise ValueError(
+            f"card must be a file with the agent's card (docs/leaderboard.md), got {path}, which is not a file"
+        )
     found: Card = plain.made(Card, plain.read(path, LARGEST), f"card {path}")
     return found

@@ -92,7 +92,7 @@ def check(commitments: Commitments, published: Published) -> Track:
         for k, (own, wanted) in enumerate(zip(hashes, committed, strict=True)):
             if own != wanted:
                 scene = published.scenes[task][k].scene
-                raise ValueError(f"scene {k} of {task} must be the one that was committed, got {scene!r}")
+                raise ValueError(f"scene {k} of {task} must match its commitment, got {scene!r}")
     return hidden_track(
         published.name, {task: tuple(one.scene for one in own) for task, own in published.scenes.items()}
     )
@@ -118,7 +118,7 @@ def write_drawn(path: Path, secret: Path, name: str, count: int) -> None:
     """
     for file in (path, secret):
         if file.exists():
-            raise ValueError(f"a drawn set must be written to new files, got {file}, which is there")
+            raise ValueError(f"a drawn set must be written to new files, got {file}, which already exists")
     commitments, published = draw(name, count)
     secret.touch(mode=0o600)
     write(secret, json.dumps(dataclasses.asdict(published), indent=1) + "\n")
@@ -147,7 +147,7 @@ def _hashes(published: Published) -> dict[str, tuple[str, ...]]:
 
 def _hash(task: str, number: int, hidden: Hidden, names: Sequence[str]) -> str:
     if hidden.scene in names:
-        raise ValueError(f"hidden scenes must belong to no split, got {hidden.scene!r}")
+        raise ValueError(f"hidden scenes must not belong to a split, got {hidden.scene!r}")
     with file_of(hidden.scene, names) as file:
         content = sha256_of(Path(file))
     return hashlib.sha256(f"{task} {number} {hidden.scene} {content} {hidden.salt}".encode()).hexdigest()

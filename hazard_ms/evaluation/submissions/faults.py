@@ -37,20 +37,20 @@ COPIED = "copied decisions"
 CARD = "wrong card"
 KINDS = {  # what each means
     DAMAGED: "it is cut off, no archive, or not in the form of a submission",
-    ORDER: "its episodes stand in another order than its track asks for",
-    MISSING: "an episode that its track asks for is not there, or one is that it does not ask for",
-    REPEATED: "an episode is there twice, or in the place of another one",
-    HASH: "a file has another SHA-256 than the manifest says, or the simulation other hashes than the record",
+    ORDER: "its episodes are not in the order of its track",
+    MISSING: "an episode of its track is missing, or an episode does not belong to its track",
+    REPEATED: "an episode is there twice, or in the place of another",
+    HASH: "a file has another SHA-256 than its manifest says, or the simulation has other hashes than the record",
     VERSION: "it was played with another version of hazard_ms",
     PHYSICS: "an episode was played with other settings",
     RULES: "an episode was played by another agent, perception or clock than the submission says",
     SCENE: "an episode was played in another scene than its seed chooses",
-    SCORE: "a score is not that of the targets, or targets or collisions of robots are others in the simulation",
-    START: "the simulation begins otherwise than the record: that is of another scene or other physics than it says",
-    CUT: "an episode ends before its end, or its record before the episode",
-    COURSE: "the simulation of the decisions goes another way than the record",
+    SCORE: "a score does not follow from its targets, or the simulation has other targets or robot collisions",
+    START: "the simulation starts in another state than the record, which must be of another scene or physics",
+    CUT: "an episode stops before it is over, or its record stops before the episode",
+    COURSE: "the simulation of the decisions takes another course than the record",
     COPIED: "its decisions are those of another submission",
-    CARD: "its card says what is not so",
+    CARD: "its card makes a false claim",
 }
 MOST = 200  # faults that are told of one submission [ours]
 
@@ -100,10 +100,10 @@ def _order(submission: Submission, track: Track) -> Iterator[Fault]:
             yield Fault(MISSING, MANIFEST, f"{name_of(place)} is not listed")
     for place in places:
         if place not in wanted:
-            yield Fault(MISSING, MANIFEST, f"{name_of(place)} is none of track {track.name}")
+            yield Fault(MISSING, MANIFEST, f"{name_of(place)} does not belong to track {track.name}")
     if sorted(places) == sorted(wanted) and places != wanted:
         first = next(a for a, b in zip(places, wanted, strict=True) if a != b)
-        yield Fault(ORDER, MANIFEST, f"{name_of(first)} stands where another episode must")
+        yield Fault(ORDER, MANIFEST, f"{name_of(first)} is in the place of another episode")
     listed = [entry.name for entry in entries]
     if set(names) != set(listed):
         odd = sorted(set(names) ^ set(listed))[0]

@@ -44,7 +44,9 @@ def signer(path: Path, signers: Path) -> str:
         raise ValueError(f"{printable(path.name)} must be signed by one of {signers.name}, got another signature")
     done = _ssh_keygen("verify", *files, "-I", name, "-n", NAMESPACE, content=content)
     if done.returncode:
-        raise ValueError(f"{printable(path.name)} must be as {printable(name)} signed it, got another content")
+        raise ValueError(
+            f"{printable(path.name)} must be unchanged since {printable(name)} signed it, got other content"
+        )
     return printable(name)
 
 

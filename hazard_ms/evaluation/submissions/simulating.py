@@ -145,7 +145,7 @@ def _decisions(record: EpisodeResult, played: EpisodeResult) -> Iterator[Fault]:
     for k, (told, found) in enumerate(zip(record.decisions, played.decisions, strict=False)):
         again = replace(found, note=told.note, fallback=told.fallback, thought=told.thought)
         if told != again:
-            yield Fault(COURSE, where, f"decision {k}, {told.verb} at frame {told.frame}, went otherwise")
+            yield Fault(COURSE, where, f"decision {k}, {told.verb} at frame {told.frame}, had another outcome")
             return
 
 
@@ -195,12 +195,12 @@ def _played(jobs: dict[Place, Simulation], where: Where) -> Iterator[tuple[Place
 def _check_machine(played: EpisodeResult) -> None:
     """Raise ValueError for a simulation by a machine that differs in what can change an episode."""
     if not str(taken := played.machine.get("instructions")).startswith("AVX"):
-        raise ValueError(f"machines must all compute with AVX2, got one where torch takes {taken}")
+        raise ValueError(f"all machines must compute with AVX2, got one where torch uses {taken}")
     others = other_versions(played.versions)
     if others:
-        raise ValueError(f"machines must all have the versions that this one has, got one with {others}")
+        raise ValueError(f"all machines must have the versions of this one, got one with {others}")
     if (there := played.machine.get("processor")) != maker():
-        raise ValueError(f"machines must all have processors of one maker, got {there}, here {maker()}")
+        raise ValueError(f"all machines must have processors of the same maker, got {there} there and {maker()} here")
 
 
 def _seen(place: Place, record: EpisodeResult, played: EpisodeResult | None, verdict: str) -> Seen:

@@ -92,7 +92,7 @@ def standings(folder: Path) -> tuple[dict[str, list[Row]], list[str]]:
     Raises ValueError for a folder without a file of signers.
     """
     if not (folder / SIGNERS).is_file():
-        raise ValueError(f"folder must hold a file {SIGNERS} with those whose reports count, got {folder}")
+        raise ValueError(f"folder must contain the file {SIGNERS}, which names those whose reports count, got {folder}")
     found: dict[str, Row] = {}
     left_out: list[str] = []
     for path in sorted(folder.rglob(f"*{SUFFIX}")):

@@ -116,7 +116,7 @@ def track_of(name: str, hidden: Track | None = None) -> Track:
     if hidden is not None and name == hidden.name:
         return hidden
     if name.startswith(HIDDEN):
-        raise ValueError(f"track {name!r:.100} must be given with its files, --hidden COMMITMENTS PUBLISHED")
+        raise ValueError(f"track {name!r:.100} must be given with its files: --hidden COMMITMENTS PUBLISHED")
     return TRACKS[one_of(name, TRACKS, "track")]
 
 

@@ -35,9 +35,9 @@ def verify(
     simulation says nothing of the submission.
     """
     if key is not None and output is None:
-        raise ValueError("output must be given with key, so that there is a report to sign, got none")
+        raise ValueError("--key needs --output, since the key signs the report that is written there")
     if output is not None and not output.name.endswith(SUFFIX):
-        raise ValueError(f"output must be a name that ends in {SUFFIX}, got {output.name!r}")
+        raise ValueError(f"output must end in {SUFFIX}, got {output.name!r}")
     earlier = [read_report(path) for path in sorted(known.rglob(f"*{SUFFIX}"))] if known else []
     report = simulated(file, _track(file, read_hidden(hidden)), episodes, seed, where)
     report = replace(report, faults=(*report.faults, *copied(report, earlier)))

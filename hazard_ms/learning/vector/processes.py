@@ -73,9 +73,11 @@ class ProcessVectorEnv(gym.vector.VectorEnv[Any, Any, NDArray[Any]]):
         given = dict(options or {})
         mask = np.asarray(given.pop("reset_mask", np.ones(self.num_envs, bool)))
         if mask.shape != (self.num_envs,) or mask.dtype != np.bool_ or not mask.any():
-            raise ValueError(f"reset option 'reset_mask' must be {self.num_envs} flags with one set, got {mask!r:.100}")
+            raise ValueError(
+                f"reset option 'reset_mask' must be {self.num_envs} flags, at least one of them True, got {mask!r:.100}"
+            )
         if not (self._begun or mask.all()):
-            raise ValueError("reset option 'reset_mask' must be all at the first reset")
+            raise ValueError("reset option 'reset_mask' must select all environments at the first reset")
         others = given if options else None
         self._begun = False
         infos = self._play("reset", [(s, others) if on else None for s, on in zip(seeds, mask, strict=True)])
@@ -135,7 +137,7 @@ class ProcessVectorEnv(gym.vector.VectorEnv[Any, Any, NDArray[Any]]):
         self._check_open()
         each = [*values] if isinstance(values, (list, tuple)) else [values] * self.num_envs
         if len(each) != self.num_envs:
-            raise ValueError(f"values must be one, or {self.num_envs} in a list, got {len(each)}")
+            raise ValueError(f"values must be one value, or a list of {self.num_envs}, got {len(each)}")
         self._play("call", [("set_wrapper_attr", (name, value), {}) for value in each])
 
     def close_extras(self, **_: Any) -> None:
@@ -164,4 +166,4 @@ class ProcessVectorEnv(gym.vector.VectorEnv[Any, Any, NDArray[Any]]):
 
     def _check_open(self) -> None:
         if self.closed or self._processes.ended:
-            raise ClosedEnvironmentError("the vector environment must not be closed")
+            raise ClosedEnvironmentError("the vector environment must be open, got a closed one: make a new one")

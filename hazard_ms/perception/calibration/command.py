@@ -1,4 +1,4 @@
-"""`hazard-ms perception calibrate`: the errors of a detector as a table, and whether beliefs by such tables are so."""
+"""`hazard-ms perception calibrate`: the errors of a detector as a table, and how reliable beliefs from it are."""
 
 from __future__ import annotations
 
@@ -32,10 +32,11 @@ def calibrate(datasets: Sequence[Path], text: str, splits: Sequence[str], every:
     whole(every, 1, MOST_EVERY, "every")
     detector = perception_of(text).detector
     if detector is None or not detector.classes:
-        raise ValueError(f"perception must have a detector that says which categories it tells, got {text!r}")
+        raise ValueError(f"perception must name a detector that lists its categories, got {text!r}")
     parts = [(home, split) for home in datasets for split in splits if (home / layout.instances(split)).is_file()]
     if {home for home, _ in parts} != set(datasets):
-        raise ValueError(f"each of DATA must have one of the splits {', '.join(splits)}")
+        without = ", ".join(sorted({str(home) for home in datasets} - {str(home) for home, _ in parts}))
+        raise ValueError(f"each of DATA must have one of the splits {', '.join(splits)}, got none in {without}")
     pictures = [Thinned(picture, every) for home, split in parts for picture in read([home], split)]
     looks = observed(detector, pictures, detector.classes)
     command = f"hazard-ms perception calibrate {' '.join(home.name for home in datasets)} --perception {text}"

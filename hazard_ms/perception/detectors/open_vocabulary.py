@@ -35,7 +35,7 @@ class OpenVocabulary(Detector):
             import transformers
         except ImportError:
             raise ValueError(
-                "transformers must be installed for perception open, got none: pip install transformers"
+                "perception open needs the package transformers, which is not installed: pip install transformers"
             ) from None
         folder = Path(path)
         both = (folder / DINO).is_dir() and (folder / SAM).is_dir()
@@ -58,7 +58,7 @@ class OpenVocabulary(Detector):
             read = processor.from_pretrained(folder, local_files_only=True, trust_remote_code=False)
             return made.to(self._device).eval(), read
         except (OSError, ValueError, KeyError) as error:
-            raise ValueError(f"{folder} must hold a model of transformers, got {error!r:.200}") from None
+            raise ValueError(f"{folder} must hold a transformers model, got {error!r:.200}") from None
 
     def begin(self, categories: tuple[str, ...]) -> None:
         """Look for things of `categories`, in words; in several portions where the model reads no longer text."""

@@ -83,7 +83,7 @@ def network(name: str, classes: int, size: int | None = None) -> Any:
             import rfdetr
     except ImportError as error:
         raise ValueError(
-            f"rfdetr must be installed for perception rf_detr, got none ({error}): pip install 'hazard_ms[rfdetr]'"
+            f"perception rf_detr needs the package rfdetr ({error}): pip install 'hazard_ms[rfdetr]'"
         ) from None
     logging.getLogger("rf-detr").setLevel(logging.ERROR)  # it warns that weights are not downloaded
     more = {} if size is None else {"resolution": size}
@@ -104,4 +104,6 @@ def load(network: Any, weights: dict[str, torch.Tensor], what: str) -> None:
         raise ValueError(f"weights must fit {what}: {str(error).splitlines()[-1].strip():.200}") from None
     lost = sorted({*left.missing_keys} - flags) + sorted(left.unexpected_keys)
     if lost:
-        raise ValueError(f"weights must fit {what}: {len(lost)} names differ, {printable(lost[0])[:100]} among them")
+        raise ValueError(
+            f"weights must fit {what}, got {len(lost)} names that differ, such as {printable(lost[0])[:100]}"
+        )

@@ -41,7 +41,7 @@ def checked_recipe(recipe: Any, what: str, networks: Sequence[str]) -> dict[str,
         )
     classes = recipe["classes"]
     if not isinstance(classes, list) or not classes or len(set(map(str, classes))) < len(classes):
-        raise ValueError(f"classes in {what} must be a list of different categories, got {classes!r:.100}")
+        raise ValueError(f"classes in {what} must be a list of distinct categories, got {classes!r:.100}")
     for name in classes:
         one_of(name, CATEGORIES, f"a class in {what}")
     if recipe.get("size") is not None:
@@ -97,15 +97,15 @@ def _check_names(content: bytes) -> None:
 def _check(weights: Any, what: str) -> None:
     """Check that `weights` are tensors of finite numbers. Raises ValueError that calls their file `what`."""
     if not isinstance(weights, Mapping) or not all(isinstance(value, torch.Tensor) for value in weights.values()):
-        raise ValueError(f"weights must be tensors by name, got {type(weights).__name__} in {what}")
+        raise ValueError(f"weights must map names to tensors, got {type(weights).__name__} in {what}")
     for name, value in weights.items():
         shown = printable(str(name))[:100]
         if value.layout != torch.strided or value.numel() * value.element_size() > value.untyped_storage().nbytes():
             raise ValueError(f"weights must be plain tensors, got {shown} of shape {tuple(value.shape)} in {what}")
         if not value.is_floating_point() and not str(name).endswith(COUNTS):
-            raise ValueError(f"weights must be numbers with a fraction, got {value.dtype} for {shown} in {what}")
+            raise ValueError(f"weights must be floating-point numbers, got {value.dtype} for {shown} in {what}")
         if not bool(torch.isfinite(value).all()):
-            raise ValueError(f"weights must be finite, got others for {shown} in {what}")
+            raise ValueError(f"weights must be finite, got NaN or infinity for {shown} in {what}")
 
 
 def _refused(path: Path, error: Exception) -> ValueError:

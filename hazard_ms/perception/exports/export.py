@@ -32,19 +32,21 @@ def export(dataset: Path, to: str, output: Path) -> int:
     tools()
     output = output.absolute()
     if os.path.lexists(output):
-        raise ValueError(f"output must be a new folder, got {output}, which is there already")
+        raise ValueError(f"output must be a new folder, got {output}, which already exists")
     source = Source(dataset)
     make_folder(output.parent)
     with part_of(output) as part:
         if part is None:
-            raise ValueError(f"output must be a folder of one export, got {output}, which another process fills")
+            raise ValueError(
+                f"output must be written by one export alone, got {output}, which another process is writing"
+            )
         write(source, part)
         if (dataset / LICENCES).exists():
             (part / LICENCES).write_bytes(read_foreign(dataset / LICENCES, LARGEST_TABLE))
         for path in [*part.rglob("*"), part]:
             flush(path)
         if os.path.lexists(output):
-            raise ValueError(f"output must be a new folder, got {output}, which somebody else made meanwhile")
+            raise ValueError(f"output must be a new folder, got {output}, which another process has just made")
         os.rename(part, output)
         flush(output.parent)
     return sum(source.counts.values())

@@ -77,7 +77,7 @@ class Split:
         self.name = path.stem.removeprefix("instances_")
         shown = printable(path.name)
         if not SPLIT.fullmatch(self.name):
-            raise ValueError(f"the name of a split must be letters, digits and _, got {shown}")
+            raise ValueError(f"the name of a split must have only letters, digits and _, got {shown}")
         self._dataset, self._file = dataset, shown
         self._rows = layout.read_instances(path, NEEDS)
         check_unique(self._rows["images"], f"images of {shown}")

@@ -130,4 +130,4 @@ def begun(path: Path, size: int | None) -> tuple[str, dict[str, Tensor], int | N
         if not lack and not spare:
             return name, kept, size
         faults.append(f"{name}: {len(lack)} tensors are missing and {len(spare)} are not known")
-    raise ValueError(f"weights must be those of a Mask R-CNN of torchvision, got {path}: {'; '.join(faults):.300}")
+    raise ValueError(f"weights must be those of torchvision's Mask R-CNN, got {path}: {'; '.join(faults):.300}")

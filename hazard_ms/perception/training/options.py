@@ -30,8 +30,8 @@ class TrainOptions:
     output: Annotated[Path, flag("-o")]
     """Folder for MODEL.safetensors, MODEL.json, MODEL.csv and MODEL.svg (the curve) and MODEL.training."""
     model: Literal["mask_rcnn", "small", "second_stage"] = "mask_rcnn"
-    """Mask R-CNN of torchvision, the small detector that looks at depth, too, or the second stage of a trained small
-    one, which names what that one finds."""
+    """Network to train: Mask R-CNN of torchvision, the small detector, which also uses depth, or the second stage of a
+    trained small detector, which names what that one finds."""
     weights: str = UNTRAINED
     """File .pth or .safetensors to begin with: torchvision's COCO weights, or an earlier training's; for small those of
     another small one, with its NAME.json; for second_stage those of its first stage; none: random weights, for Mask
@@ -39,21 +39,21 @@ class TrainOptions:
     split: str = "train"
     """Split to learn from."""
     validate: tuple[Path, ...] = ()
-    """Datasets on which the network is scored, in rooms that it did not learn from."""
+    """Datasets to score the network on, in rooms that it did not learn from."""
     validate_split: str = "test"
-    """Split of these."""
+    """Split of the datasets in --validate."""
     epochs: float = 12.0
     """Passes over the pictures after which training ends."""
     steps: int | None = None
     """Steps after which training ends, in place of epochs."""
     minutes: float = 1e6
-    """Wall time after which training ends, if it has not ended before."""
+    """Wall time after which training ends, if it has not ended before [min]."""
     every: int = 500
-    """Steps between two times that files are written and the network is scored."""
+    """Interval in steps at which files are written and the network is scored."""
     seed: Annotated[int, flag("-s")] = 0
     """Seed of weights, pictures and crops."""
     batch: int | None = None
-    """Pictures or crops of a step; by default 2, small 8, second_stage 64 things."""
+    """Pictures or crops per step; by default 2, with small 8, with second_stage 64 things."""
     size: int | None = None
     """Shorter side to which Mask R-CNN brings pictures (by default 192 untrained, else as `weights` learned, or
     torchvision's), or side of the crops of small (160, a multiple of 32), in pixels."""
@@ -63,7 +63,7 @@ class TrainOptions:
         from hazard_ms.spec.checks import whole  # loads numpy
 
         if not self.data:
-            raise ValueError("DATA must be one dataset or more, got none")
+            raise ValueError("DATA must be at least one dataset, got none")
         for name, number in (("epochs", self.epochs), ("minutes", self.minutes)):
             if not number > 0:
                 raise ValueError(f"{name} must be positive, got {number!r}")

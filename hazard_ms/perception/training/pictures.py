@@ -61,12 +61,12 @@ class Picture:
         """One number of 16 bits for each pixel, [H, W]. Raises ValueError for another picture."""
         found = pixels_of(self.dataset, self.row, key)
         if found.ndim != 2 or found.dtype != np.uint16:
-            raise ValueError(f"{key} of picture {self.row['id']} must have one channel of 16 bits, got {found.dtype}")
+            raise ValueError(f"{key} of picture {self.row['id']} must have one 16-bit channel, got {found.dtype}")
         return found
 
     def _camera(self) -> dict[str, Any]:
         if self.row.get("camera") is None:
-            raise ValueError(f"picture {self.row['id']} in {self.dataset} must have its camera, got none")
+            raise ValueError(f"picture {self.row['id']} in {self.dataset} must have a camera, got none")
         camera: dict[str, Any] = self.row["camera"]
         return camera
 
@@ -83,7 +83,7 @@ def read(datasets: Sequence[Path], split: str) -> list[Picture]:
         things = by_image(rows, str(path))
         known = set(layout.category_ids().values())
         if bad := next((t for t in rows["annotations"] if t["category_id"] not in known), None):
-            raise ValueError(f"category_id must be one of the catalogue's, got {bad['category_id']} in {path}")
+            raise ValueError(f"category_id must be a category of the catalogue, got {bad['category_id']} in {path}")
         found += [Picture(dataset, image, tuple(things[image["id"]])) for image in rows["images"]]
     return found
 
@@ -113,10 +113,12 @@ def classes_of(found: list[str], recipe: Mapping[str, Any] | None) -> list[str]:
     Raises ValueError if nothing was found, and for what the recipe does not have.
     """
     if not found:
-        raise ValueError("DATA must hold annotated things of the kinds that the model tells, got none")
+        raise ValueError("DATA must hold annotated things of the categories that the model knows, got none")
     classes = found if recipe is None else list(recipe["classes"])
     if new := sorted(set(found) - set(classes)):
-        raise ValueError(f"DATA must hold only categories that the training began with, got {', '.join(new)}, too")
+        raise ValueError(
+            f"DATA must hold only the categories that the training began with, got {', '.join(new)} as well"
+        )
     return classes
 
 
@@ -134,7 +136,7 @@ def _table(dataset: Path) -> dict[str, dict[int, str]]:
 def _number(text: str) -> int:
     """A number of an ids picture. Raises ValueError for another text."""
     if not (text.isascii() and text.isdigit() and int(text) <= MOST_NUMBER):
-        raise ValueError(f"a number of a thing must be from 0 to {MOST_NUMBER}, got {text!r:.100}")
+        raise ValueError(f"the number of a thing must be from 0 to {MOST_NUMBER}, got {text!r:.100}")
     return int(text)
 
 

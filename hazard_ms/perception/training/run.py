@@ -104,7 +104,7 @@ def _before(path: Path, command: str) -> dict[str, Any] | None:
         raise ValueError(f"{kept} must be the state of a training, got {error!r:.200}; delete it") from None
     if made_by != command:
         raise ValueError(
-            f"{kept} must be of the training `{command}`, got `{made_by}`: give another folder, or delete it"
+            f"{kept} must belong to the training `{command}`, got `{made_by}`: give another folder, or delete it"
         )
     return found
 

@@ -64,10 +64,12 @@ class SecondStageStudent(AveragedStudent):
         Raises ValueError without weights of the small detector, and for pictures without things that it tells.
         """
         if weights is None:
-            raise ValueError("weights must be those of a small detector, whose second stage is to be trained, got none")
+            raise ValueError(
+                "weights must be those of a small detector, so that its second stage can be trained, got none"
+            )
         self.classes: list[str] = read_recipe(weights.with_suffix(".json"), (NETWORK,))["classes"]
         if recipe is not None and list(recipe["classes"]) != self.classes:
-            raise ValueError(f"weights must tell the categories that the training began with, got {weights}")
+            raise ValueError(f"weights must have the categories that the training began with, got {weights}")
         kept = read_weights(weights)
         self._first = {name: value for name, value in kept.items() if not name.startswith(PREFIX)}
         self._network = SmallNetwork(len(self.classes) + 2)

@@ -49,13 +49,13 @@ def boxes_of(name: str) -> tuple[Box, ...]:
     found = NAME.fullmatch(name)
     if found is None:
         raise ValueError(
-            f"a shape must be one like plain_box, plain_case_100-500, plain_rack_0-300_320-980, got {name!r:.100}"
+            f"a shape must look like plain_box, plain_case_100-500 or plain_rack_0-300_320-980, got {name!r:.100}"
         )
     if found[2] is None:
         return ((0.0, 0.0, 0.5, 0.5, 0.5, 0.5),)
     edges = [int(v) for v in re.split("[_-]", found[3].lstrip("_"))]
     if edges != sorted(set(edges)) or edges[-1] > PARTS:
-        raise ValueError(f"heights of cavities must rise and end at {PARTS} at most, got {name!r}")
+        raise ValueError(f"heights of cavities must rise and be at most {PARTS}, got {name!r}")
     return tuple(_hollow([v / PARTS for v in edges], closed=found[2] == "case"))
 
 

@@ -86,13 +86,11 @@ def read_user_row(row: Any, folder: Path) -> Asset:
         )
     if a.category not in CATEGORIES or a.kind != CATEGORIES[a.category].kind:
         raise ValueError(
-            f"category of asset {a.id!r} must be one of {', '.join(CATEGORIES)} and of its kind, "
-            f"got {a.category!r:.100} and {a.kind!r}"
+            f"category of asset {a.id!r} must be one of {', '.join(CATEGORIES)} with the asset's kind, got "
+            f"{a.category!r:.100} with kind {a.kind!r}"
         )
     if not LICENCE.fullmatch(a.licence):
-        raise ValueError(
-            f"licence of asset {a.id!r} must be the name of one, of at most 80 characters, got {a.licence!r:.100}"
-        )
+        raise ValueError(f"licence of asset {a.id!r} must be a name of at most 80 characters, got {a.licence!r:.100}")
     numbers = (
         *(v for box in a.boxes for v in box),
         *(v for s in a.supports for v in (s.z, *s.min, *s.max, s.clearance)),

@@ -58,8 +58,8 @@ def read(folder: Path) -> Found:
     """The scene in `folder`. Raises ValueError that names file and line for anything that is not as it must be."""
     if not re.fullmatch(schema.NAME.pattern, folder.name) or len(folder.name) > schema.LONGEST_TEXT:
         raise ValueError(
-            f"a folder must be named with letters, digits and _ . : -, for it names the scene, "
-            f"got {printable(str(folder))}"
+            "the name of a folder must have only letters, digits and _ . : -, since it names the scene, got "
+            f"{printable(str(folder))}"
         )
     log, info = replay(folder / "log.txt"), read_object(folder / "info.json")
     info.only(("task", "containers", "agent", "targets", "other"))
@@ -104,7 +104,8 @@ def _targets(log: Log, info: Record) -> tuple[str, ...]:
     others = sorted(c for c in published - set(wanted) if category_of(c)[0] in ours)
     if others:
         raise ValueError(
-            f"{info.place}: targets must include {others[0]!r}, the same category here as others, got {wanted!r:.100}"
+            f"{info.place}: targets must include {others[0]!r}, which has the same category here as others, got "
+            f"{wanted!r:.100}"
         )
     return ours
 

@@ -140,7 +140,7 @@ def _text(path: Path) -> str:
     shown = printable(str(path))
     if not path.exists():
         raise ValueError(
-            f"{shown}: there is no such file; a scene's folder holds log.txt and info.json, indoors flood.json, too"
+            f"{shown}: there is no such file; a scene's folder holds log.txt, info.json and, indoors, flood.json"
         )
     raw = read_foreign(path, LARGEST_FILE)
     try:

@@ -44,7 +44,7 @@ class Log:
     def thing(self, r: Record, key: str = "id") -> Thing:
         """The thing that a command names. Raises ValueError if there is none."""
         if r.id(key) not in self.things:
-            raise ValueError(f"{r.place}: {key} must be that of an object that exists here, got {r.id(key)}")
+            raise ValueError(f"{r.place}: {key} must be the id of an object that exists here, got {r.id(key)}")
         return self.things[r.id(key)]
 
     def attach(self, thing: Thing, parent: int | None) -> None:

@@ -81,17 +81,18 @@ class Confusion:
     def __post_init__(self) -> None:
         """Raises ValueError for buckets that do not fit each other, and for categories that are not known."""
         if not len(self.pixels) == len(self.found) == len(self.right):
-            raise ValueError(f"found and right must have {len(self.pixels)} buckets, as pixels has")
+            raise ValueError(
+                f"found and right must have {len(self.pixels)} buckets, like pixels, got {len(self.found)} and "
+                f"{len(self.right)}"
+            )
         if self.pixels[0] != 0 or list(self.pixels) != sorted(set(self.pixels)):
             raise ValueError(f"pixels must increase from 0, got {self.pixels}")
         if len(set(self.classes)) < len(self.classes):
-            raise ValueError("classes must be different categories")
+            raise ValueError(f"classes must be distinct categories, got {self.classes!r:.100}")
         named = {*self.taken, *(told for row in self.taken.values() for told in row), *self.clutter}
         named |= {*self.again_of, *self.steady_of, *self.false_of, *self.odds_of}
         if odd := [row for row in (self.real, self.false, *self.false_of.values()) if len(row) != len(self.surer)]:
-            raise ValueError(
-                f"real, false and false_of must have {len(self.surer)} buckets, as surer has, got {odd[0]}"
-            )
+            raise ValueError(f"real, false and false_of must have {len(self.surer)} buckets, like surer, got {odd[0]}")
         if bad := sorted(named - set(self.classes)):
             raise ValueError(f"a category of the table must be one of its classes, got {bad[0]!r:.100}")
 

@@ -79,7 +79,7 @@ def parts(text: str) -> tuple[str, Common, dict[str, Any]]:
     if name == TRUTH and given:
         raise ValueError(f"perception must be {TRUTH} without parameters, got {text!r}")
     if len(paths) > 1:
-        raise ValueError(f"perception must name one file or folder, got {text!r}")
+        raise ValueError(f"perception must name at most one file or folder, got {text!r}")
     common = [part for part in pairs if part.partition("=")[0] in COMMON]
     own = [*(f"path={path}" for path in paths), *(part for part in pairs if part not in common)]
     shared = Common(**parameters(Common, common))

@@ -44,8 +44,8 @@ def writable(folder: str) -> Iterator[None]:
         yield
     except OSError as error:
         raise ValueError(
-            f"compiled kernels must be kept where files can be written, got {folder}: {error.strerror or error}; "
-            "free some space, or set HAZARD_MS_HOME (or WARP_CACHE_PATH, if it is set) to another folder"
+            f"compiled kernels must be kept in a writable folder, got {folder}: {error.strerror or error}; free some "
+            "space, or set HAZARD_MS_HOME (or WARP_CACHE_PATH, if it is set) to another folder"
         ) from None
 
 
@@ -63,7 +63,7 @@ def verified(folder: Path) -> Iterator[None]:
                 shutil.rmtree(folder)
             except OSError as error:
                 raise ValueError(
-                    f"compiled kernels in {folder} must be whole, got others: {error.strerror}; delete this folder"
+                    f"the damaged kernels in {folder} could not be deleted: {error.strerror}; delete this folder"
                 ) from None
         yield
         if not _whole(folder, seal):

@@ -62,12 +62,14 @@ class Settings:
         first = None
         if generated is not None:
             if scenes is not None or not isinstance(generated, Sequence) or len(generated) != 2:
-                raise ValueError(f"generated must be (first, count), without scenes, got {generated!r}")
+                raise ValueError(
+                    f"generated must be (first, count), and scenes must be None beside it, got {generated!r}"
+                )
             first, count = generated
             more_scenes(task, physics, first, 0)  # refuses numbers of scenes that belong to a split
             names = tuple(str(first + k) for k in range(whole(count, 1, MOST_SCENES, "the count of generated")))
         if not names:
-            raise ValueError("scenes must be at least one, got none")
+            raise ValueError("scenes must hold at least one scene, got none")
         frames = TASKS[task].frames(split) if max_frames is None else whole(max_frames, 1, LONGEST, "max_frames")
         return cls(task, names, physics, one_of(robot_uids, EYES, "robot_uids"), frames, first)
 

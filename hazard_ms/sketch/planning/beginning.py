@@ -85,7 +85,7 @@ class _Search:
     def __init__(self, problem: Problem, measures: Measures, most_labels: int, beam: int, beside: float) -> None:
         travel = problem.travel
         if not isinstance(travel, StaticTravel):
-            raise ValueError(f"the travel of a problem with measures must be static, got {type(travel).__name__}")
+            raise ValueError(f"travel must be a StaticTravel in a problem with measures, got {type(travel).__name__}")
         nodes, shape = travel.targets + travel.carts + 1, np.shape(measures.to)
         if shape[0] != nodes:
             raise ValueError(f"to must have shape ({nodes}, K) for this problem, got {shape}")

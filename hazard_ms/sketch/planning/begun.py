@@ -22,7 +22,9 @@ def begun(problem: Problem, measures: Measures, number: int) -> tuple[Problem, M
     StaticTravel. A measure that was done spares nothing again. Raises ValueError for another travel.
     """
     if not isinstance(problem.travel, StaticTravel):
-        raise ValueError(f"the travel of a problem with measures must be static, got {type(problem.travel).__name__}")
+        raise ValueError(
+            f"travel must be a StaticTravel in a problem with measures, got {type(problem.travel).__name__}"
+        )
     if measures.in_hand == number:
         return problem, measures
     needs = measures.measures[number].needs

@@ -84,7 +84,9 @@ class Measures:
         fetches = {k for k, measure in enumerate(self.measures) if measure.charge > 0.0}
         for tool in (self.in_hand, *(measure.needs for measure in self.measures)):
             if tool is not None and tool not in fetches:
-                raise ValueError(f"a tool must be that of a measure that fetches one, of {sorted(fetches)}, got {tool}")
+                raise ValueError(
+                    f"a tool must be the number of a measure that fetches one, of {sorted(fetches)}, got {tool}"
+                )
 
 
 def with_unseen(problem: Problem, frames: NDArray[np.float64], unseen: Sequence[tuple[float, float]]) -> Problem:

@@ -61,7 +61,7 @@ class Problem:
             object.__setattr__(self, name, tuple(numbers.tolist()))
         for name in ("limit", "frame"):
             if not 0 <= getattr(self, name) < np.inf:
-                raise ValueError(f"{name} must be a frame from 0 on, got {getattr(self, name)}")
+                raise ValueError(f"{name} must be a frame of at least 0, got {getattr(self, name)}")
         if not 0 <= self.damaged_share <= 1:
             raise ValueError(f"damaged_share must be from 0 to 1, got {self.damaged_share}")
         if max(self.shares or (), default=0.0) > 1.0:
@@ -69,7 +69,7 @@ class Problem:
         if not 0 <= self.fading * max(self.limit - self.frame, 1.0) <= 1:
             raise ValueError(f"fading must be from 0 to 1 over the frames up to the limit, got {self.fading}")
         if not 0 <= self.spread < np.inf:
-            raise ValueError(f"spread must be a number from 0 on, got {self.spread}")
+            raise ValueError(f"spread must be finite and at least 0, got {self.spread}")
         if self.holding is not None and not 0 <= self.holding < targets:
             raise ValueError(f"holding must be None or a target from 0 to {targets - 1}, got {self.holding}")
 

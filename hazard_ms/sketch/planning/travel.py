@@ -218,7 +218,7 @@ class MovingTravel(Travel):
         spots = np.concatenate([self._fixed, self._positions[times].reshape(-1, self._fixed.shape[1])])
         way = np.asarray(self._walk(spots[:, None], spots[None]))
         if way.shape != (len(spots), len(spots)):
-            raise ValueError(f"walk must give frames of shape {(len(spots), len(spots))} here, got {way.shape}")
+            raise ValueError(f"walk must return frames of shape {(len(spots), len(spots))} here, got {way.shape}")
         refuse_unless_frames(way, "walk")
         detour = (way[:, :, None] + way[None]).min(axis=1)
         return bool(np.allclose(way, way.T, atol=TOLERANCE) and (way <= detour + TOLERANCE).all())
@@ -236,4 +236,4 @@ def straight_line(frames_per_metre: float) -> Walk:
 def refuse_unless_frames(value: NDArray[np.float64], name: str) -> None:
     """Check numbers of frames, [...]. Raises ValueError for negative ones and NaN."""
     if not (value >= 0).all():
-        raise ValueError(f"{name} must hold numbers of frames that are not negative, got {value[~(value >= 0)][0]}")
+        raise ValueError(f"{name} must hold numbers of frames of at least 0, got {value[~(value >= 0)][0]}")

@@ -107,7 +107,7 @@ class SketchScene:
                 raise ValueError(f"{self.name} must have at most {most} {name}, got {count}")
         if self.target_site.shape[-1] != targets or self.level.shape[1:] != (targets, hazards):
             shapes = (self.target_site.shape, self.level.shape)
-            raise ValueError(f"target_site and level of {self.name} must be about {targets} targets, got {shapes}")
+            raise ValueError(f"target_site and level of {self.name} must have {targets} targets, got shapes {shapes}")
 
 
 class Stack:
@@ -116,7 +116,9 @@ class Stack:
     def __init__(self, scenes: Sequence[SketchScene]) -> None:
         """Stack `scenes`. Raises ValueError for none, and for scenes with different numbers of hazards."""
         if not scenes or len({scene.limit.shape[1] for scene in scenes}) != 1:
-            raise ValueError(f"scenes must be at least one, with the same hazards, got {len(scenes)} scenes")
+            raise ValueError(
+                f"scenes must hold at least one scene, all with the same number of hazards, got {len(scenes)} scenes"
+            )
         self.names = tuple(scene.name for scene in scenes)
         self.max_frames = np.array([scene.max_frames for scene in scenes])
         self.heading = np.array([scene.heading for scene in scenes])

@@ -50,9 +50,9 @@ def split(problems: Sequence[Problem]) -> Split:
     counts = {problem.travel.targets for problem in problems}
     if len(counts) != 1 or max(counts) > MOST_TARGETS:
         told = ", ".join(map(str, sorted(counts))) or "no robots"
-        raise ValueError(f"targets must be up to {MOST_TARGETS}, the same for all robots, got {told}")
+        raise ValueError(f"all robots must have the same number of targets, at most {MOST_TARGETS}, got {told}")
     if any(problem.holding is not None for problem in problems):
-        raise ValueError("problems must begin with empty hands, got one with a target in the hand")
+        raise ValueError("problems must begin with empty hands, got one that holds a target")
     found: dict[int, dict[int, _Label]] = {}  # by the identity of problems: robots that start alike share theirs
     for problem in problems:
         if id(problem) not in found:

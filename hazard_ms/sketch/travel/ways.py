@@ -231,5 +231,5 @@ def _standing(spec: SceneSpec, bodies: Iterable[str] | None) -> list[Box]:
     wanted = [name for name in names if name not in targets] if bodies is None else list(bodies)
     for name in wanted:
         if name not in names:
-            raise ValueError(f"bodies must be names of the scene's bodies, got {name!r}")
+            raise ValueError(f"bodies must be names of bodies in the scene, got {name!r}")
     return [*fixtures, *(box for name, box in zip(names, loose, strict=True) if name in wanted)]

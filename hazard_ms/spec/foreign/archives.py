@@ -31,7 +31,7 @@ def read_archive(content: bytes, what: str, most: int, members: int) -> dict[str
                 with archive.open(member) as file:
                     found[member.filename] = file.read()  # never more than it announces; else its checksum is wrong
                 if len(found[member.filename]) != member.file_size:
-                    raise ValueError(f"members as large as they announce, got {member.filename!r:.100}")
+                    raise ValueError(f"members of the size that they declare, got {member.filename!r:.100}")
     except Exception as error:  # zipfile and zlib raise many kinds
         told = str(error) if type(error) is ValueError else f"{type(error).__name__}: {error}"
         raise ValueError(f"{printable(what)} must be an archive with {printable(told)[:300]}") from None

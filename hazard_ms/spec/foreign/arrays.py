@@ -58,7 +58,7 @@ def check_archive(content: bytes, what: str, most: int = MOST_UNPACKED) -> None:
     plain = end.startswith(END) and end.endswith(b"\0\0")  # else zipfile looks for another end further up
     directory = _directory_size(content) if plain and len(end) == END_SIZE else None
     if directory is None:
-        raise ValueError(f"{shown} must be a zip archive of numpy or torch, got something else, or a part of one")
+        raise ValueError(f"{shown} must be a zip archive of numpy or torch, got something else or an incomplete one")
     if directory > MOST_DIRECTORY:
         raise ValueError(f"{shown} must list its members in at most {MOST_DIRECTORY} bytes, got {directory}")
     try:

@@ -173,7 +173,9 @@ def _add(table: dict[str, Any], entry: Entry, form: re.Pattern[str] = NAME, show
     if entry.name in table:
         if table[entry.name] == entry:
             return
-        raise ValueError(f"a registered name must be new, got {entry.name!r}, which is {table[entry.name]}")
+        raise ValueError(
+            f"a registered name must be new, got {entry.name!r}, which is already registered as {table[entry.name]}"
+        )
     table[entry.name] = entry
     for added, _ in _followers:
         added(entry)

@@ -22,7 +22,7 @@ def register_detector(name: str, detector: Any) -> None:
     if not isinstance(name, str) or not NAME.fullmatch(name):
         raise ValueError(f"a registered name must look like 'name', got {name!r}")
     if name == TRUTH or _detectors.get(name, detector) != detector:
-        raise ValueError(f"a registered name must be new, got {name!r}")
+        raise ValueError(f"a registered name must be new, got {name!r}, which is taken")
     _detectors[name] = detector
 
 

@@ -55,7 +55,7 @@ def register_mitigation(
         raise ValueError(f"a verb must be lower-case words joined by underscores, got {verb!r}")
     entry = MitigationEntry(verb, skill, targets, text, tools, reasons)
     if verb in PUBLISHED or _mitigations.get(verb, entry) != entry:
-        raise ValueError(f"a verb must be new, got {verb!r}")
+        raise ValueError(f"a verb must be new, got {verb!r}, which is taken")
     _mitigations[verb] = entry
 
 

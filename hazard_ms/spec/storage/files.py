@@ -93,7 +93,7 @@ def drafts(*targets: Path) -> Iterator[tuple[Draft, ...]]:
 
 
 def write(path: Path, content: str | bytes) -> None:
-    """Write a file whole. Raises ValueError where it cannot be written; a file that was there is then as before."""
+    """Write a file whole. Raises ValueError where it cannot be written; a file that existed is left unchanged."""
     with drafts(path) as (draft,):
         draft.write(content)
 
@@ -219,6 +219,4 @@ def _refusing(target: Path, kind: str = "file") -> Iterator[None]:
         yield
     except OSError as error:
         remedy = REMEDIES.get(error.errno or 0, "name another place")
-        raise ValueError(
-            f"output must be a {kind} that can be written, got {target}: {error.strerror}; {remedy}"
-        ) from None
+        raise ValueError(f"output must be a writable {kind}, got {target}: {error.strerror}; {remedy}") from None

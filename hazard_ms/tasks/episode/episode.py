@@ -239,7 +239,7 @@ def shared_fields(
     for hazard in hazards:
         for name, method in hazard.provides.items():
             if name in fields:
-                raise ValueError(f"{name!r} must be written by one hazard, got a second: {hazard.name!r}")
+                raise ValueError(f"{name!r} must be written by one hazard alone, got a second: {hazard.name!r}")
             early = [h.name for h in hazards[: hazards.index(hazard)] if name in h.uses]
             if early:
                 raise ValueError(f"{hazard.name!r} must come before {early[0]!r}, which reads {name!r}, got it after")

@@ -85,7 +85,7 @@ def test_without_weights_it_says_how_to_make_them(
     with pytest.raises(ValueError, match=rf"none.safetensors must hold a policy for HazardFire-v1: .*{command} -e"):
         player.reset(brief())
     monkeypatch.setattr(players, "SHIPPED", tmp_path)
-    with pytest.raises(ValueError, match=f"has none for HazardFire-v1, got none: .*{command} -e HazardFire-v1"):
+    with pytest.raises(ValueError, match=f"none are shipped for HazardFire-v1: .*{command} -e HazardFire-v1"):
         agent(name).reset(brief())
 
 
@@ -99,7 +99,7 @@ def test_weights_of_the_package_are_found_by_task(name: str, tmp_path: Path, mon
         player.reset(brief())
     assert shipped.act(ground.decision()) == given.act(ground.decision())
     (tmp_path / f"{name}_HazardFire-v1.safetensors").unlink()
-    with pytest.raises(ValueError, match="has none for HazardFire-v1"):
+    with pytest.raises(ValueError, match="none are shipped for HazardFire-v1"):
         agent(name).reset(brief())
 
 
@@ -108,5 +108,5 @@ def test_a_policy_for_other_hazards_is_refused(name: str, tmp_path: Path) -> Non
     store = stored_map if name == "rl_paper" else stored
     player, told = agent(f"{name}:weights={store(tmp_path / 'one.safetensors')}"), brief()
     player.reset(told)
-    with pytest.raises(ValueError, match=r"as many hazards as there are \(fire, fire\), got 1"):
+    with pytest.raises(ValueError, match=r"as many hazards as the episode has \(fire, fire\), got one for 1"):
         player.reset(dataclasses.replace(told, hazards=told.hazards * 2))

@@ -76,16 +76,16 @@ def test_a_policy_without_measures_is_refused_where_there_are_some_and_the_other
     with pytest.raises(ValueError, match="features_version must be 1, got 2"):
         weights.load(path, FIRE)
     path.with_suffix(".json").write_text(told.replace('"measures": true', '"measures": false'))
-    with pytest.raises(ValueError, match="measures of its shape must be True, got False"):
+    with pytest.raises(ValueError, match="shape.measures must be True, got False"):
         weights.load(path, FIRE, measures=True)
 
 
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        (lambda part: torch.full_like(part, float("nan")), "must hold finite floating-point numbers"),
-        (lambda part: torch.full_like(part, float("inf")), "must hold finite floating-point numbers"),
-        (lambda part: part.long(), "must hold finite floating-point numbers"),
+        (lambda part: torch.full_like(part, float("nan")), "must hold only finite floating-point numbers"),
+        (lambda part: torch.full_like(part, float("inf")), "must hold only finite floating-point numbers"),
+        (lambda part: part.long(), "must hold only finite floating-point numbers"),
         (lambda part: part[:1], r"must be \[.*\], got \[1"),
     ],
 )
@@ -120,7 +120,7 @@ def test_the_largest_shape_is_refused_without_its_memory(tmp_path: Path) -> None
     plain = json.loads(beside.read_text())
     beside.write_text(json.dumps({**plain, "shape": {**plain["shape"], "width": 1024, "heads": 4, "blocks": 32}}))
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    with pytest.raises(ValueError, match="its numbers must be those of its shape, got others"):
+    with pytest.raises(ValueError, match="its tensors must be those of its shape, got a difference"):
         weights.load(path, FIRE)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 200_000  # [kB]
 

@@ -50,7 +50,7 @@ def test_answers_to_other_questions_are_not_used(llm: Made, tmp_path: Path, othe
     file = str(tmp_path / "answers.sqlite")
     play(llm(cache=file, version="llm-2"), Ground(), most=4)
     player = llm(**{"cache": file, "replay": True, "version": "llm-2", **other})
-    with pytest.raises(ValueError, match="cache must hold the answer to every call"):
+    with pytest.raises(ValueError, match="cache must hold an answer to every call"):
         play(player, Ground(), most=4)
 
 
@@ -104,7 +104,7 @@ ROW = "INSERT INTO answers (key, body, seconds, host, model) VALUES ('k', {body}
 def test_files_with_other_tables_are_refused(tmp_path: Path, script: str) -> None:
     with sqlite3.connect(tmp_path / "other") as other:
         other.executescript(script)
-    with pytest.raises(ValueError, match="cache must be a file of recorded answers, got other tables"):
+    with pytest.raises(ValueError, match="cache must be a file of recorded answers, got a database with other tables"):
         Cache(tmp_path / "other")
 
 

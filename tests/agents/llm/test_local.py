@@ -16,14 +16,16 @@ from tests.worlds.playground import play
 def test_a_missing_package_is_named_with_the_way_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xllamacpp", None)  # as if it were not installed
     local_server.cache_clear()
-    with pytest.raises(ValueError, match="xllamacpp must be installed for base_url=local.*pip install xllamacpp"):
+    with pytest.raises(ValueError, match="base_url=local needs the package xllamacpp.*pip install xllamacpp"):
         Llm(base_url="local")
 
 
 def test_weights_are_a_file(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     place = tmp_path / "small.gguf"
     monkeypatch.setenv("HAZARD_MS_LLM_GGUF", str(place))
-    with pytest.raises(ValueError, match=r"HAZARD_MS_LLM_GGUF must be a file of weights, NAME.gguf, got .*small.gguf"):
+    with pytest.raises(
+        ValueError, match=r"HAZARD_MS_LLM_GGUF must name a file of weights, NAME.gguf, got .*small.gguf"
+    ):
         weights()
     place.touch()
     assert weights() == place

@@ -108,9 +108,9 @@ def test_the_key_is_hidden_wherever_it_stands(monkeypatch: pytest.MonkeyPatch, s
 @pytest.mark.parametrize(
     ("address", "told"),
     [
-        ("http://models.example/v1", "must be https where a key is sent"),
-        ("https://user:hunter2@models.example/v1", "must not hold a user"),
-        ("https://models.example/v1?key=hunter2", "must not hold a user"),
+        ("http://models.example/v1", "must begin with https:// when a key is sent"),
+        ("https://user:hunter2@models.example/v1", "must not contain a user"),
+        ("https://models.example/v1?key=hunter2", "must not contain a user"),
         ("ftp://models.example/v1", "must begin with https"),
         ("models.example", "must begin with https"),
     ],
@@ -142,7 +142,7 @@ def test_a_key_file_must_be_closed_to_others(monkeypatch: pytest.MonkeyPatch, tm
     place.chmod(0o600)
     assert endpoint("https://models.example/v1", "m").key == SENTINEL
     place.write_text("short")
-    with pytest.raises(ValueError, match="at least 6 plain characters, got 5"):
+    with pytest.raises(ValueError, match="at least 6 characters, all of them printable ASCII, got 5"):
         endpoint("https://models.example/v1", "m")
 
 
@@ -151,5 +151,5 @@ def test_address_and_model_must_be_named(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.delenv("HAZARD_MS_LLM_MODEL")
     with pytest.raises(ValueError, match="base_url must be the address of a server"):
         Llm()
-    with pytest.raises(ValueError, match="model must be the name of a model"):
+    with pytest.raises(ValueError, match="model must name a model"):
         Llm(base_url="http://127.0.0.1:1/v1")

@@ -165,7 +165,7 @@ def test_servers_that_say_nothing_end_the_episode_in_time(server: ScriptedServer
     player = begun(team_agent(f"llm:base_url={server.address},model=hang,deadline=0.5,tries=1"))
     for _ in range(2):
         player.act({"a-0": decision(seeing(), "b-1"), "b-1": decision(seeing(), "a-0")})
-    with pytest.raises(RuntimeError, match="3 decisions one after another got no answer"):
+    with pytest.raises(RuntimeError, match="no answer came for 3 decisions in a row"):
         player.act({"a-0": decision(seeing(), "b-1")})
     assert player.counters["lost"] == 5 and player.counters["fallbacks"] == 4
     server.stop()

@@ -50,7 +50,7 @@ def test_a_team_of_ones_own_is_made_with_its_parameters(own: Path) -> None:
     [
         ("One", ValueError, r"must be a subclass of hazard_ms\.agents\.team\.TeamAgent, got '.*own\.py:One'"),
         ("Mine:speed=1", ValueError, "a parameter of Mine must be one of patience=..., got 'speed=1'"),
-        ("Nobody", ValueError, r"agent must be a class of .*own\.py, got 'Nobody'"),
+        ("Nobody", ValueError, r"agent must name a class in .*own\.py, got 'Nobody'"),
         ("Leaves", RuntimeError, r"got sys\.exit\(3\)"),
     ],
 )

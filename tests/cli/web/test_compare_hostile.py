@@ -38,8 +38,8 @@ def deep(changed: Callable[[dict[str, Any]], None]) -> str:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "an empty file"),
-        ("[1, 2]", "no object with a format"),
+        ("", "it is empty"),
+        ("[1, 2]", "it is not an object with a format"),
         ("[" * 100_000, "nested at most 64 deep"),
         (row(format=1), "the format of bad.json must be one of 2, 3, 4, got 1"),
         (row(format={}), "the format of bad.json must be one of 2, 3, 4"),

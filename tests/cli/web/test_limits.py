@@ -86,7 +86,7 @@ def test_a_rescue_too_many_is_refused_while_all_are_looked_at_and_else_takes_the
         first = client.begin()
         with client.looking(first):
             (process,) = client.processes()
-            with pytest.raises(ValueError, match="400: rescues must be at most 1 at once, got one more"):
+            with pytest.raises(ValueError, match="400: at most 1 rescues can run at once"):
                 client.begin()
             assert client.processes() == {process}
         second = client.begin()

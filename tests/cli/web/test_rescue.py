@@ -70,7 +70,7 @@ def test_a_person_goes_on_where_an_agent_was() -> None:
 
 
 def test_nobody_goes_on_with_a_map_that_shows_what_is_hidden() -> None:
-    with pytest.raises(ValueError, match="sees no more than a person"):
+    with pytest.raises(ValueError, match="must see no more than a person"):
         taken_over(asked_for({"kind": "watch", "agent": "oracle"}, ()), 0)
 
 

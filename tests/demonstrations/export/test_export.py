@@ -78,13 +78,16 @@ def test_episodes_that_were_recorded_differently_are_refused(tmp_path: Path) -> 
         manifest.write((tmp_path / "one/two/manifest.jsonl").read_text().replace("kitchen", "bedroom"))
     (tmp_path / "one/two/kitchen_b-00-s000010").rename(tmp_path / "one/bedroom_b-00-s000010")
     (tmp_path / "one/two/manifest.jsonl").unlink()
-    with pytest.raises(ValueError, match="bedroom_b-00-s000010 must be recorded as the others"):
+    with pytest.raises(ValueError, match="bedroom_b-00-s000010 must be recorded like the other"):
         export(ExportOptions(tmp_path / "one", "chat", tmp_path / "out"))
 
 
 def test_a_missing_package_is_named_with_its_extra() -> None:
     assert needed("json", "lerobot").dumps([]) == "[]"
-    with pytest.raises(ValueError, match=r"got lerobot without no_such_package; pip install 'hazard_ms\[demos\]'"):
+    with pytest.raises(
+        ValueError,
+        match=r"lerobot needs the package no_such_package, .*: pip install 'hazard_ms\[demos\]'",
+    ):
         needed("no_such_package", "lerobot")
 
 

@@ -210,11 +210,11 @@ def test_full_files_are_followed_by_others(pictured: Path, tmp_path: Path, monke
 
 
 def test_what_lerobot_cannot_hold_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="every must divide the 30 frames of a second for lerobot, got 4"):
+    with pytest.raises(ValueError, match="every must divide 30, the frames per second, for lerobot, got 4"):
         lerobot.write(Source(dataset(tmp_path / "four", (5,), "rgb", 4)), tmp_path)
     short = dataset(tmp_path / "short", (5,), "rgb", 3)
     one = next(iter(Source(short)))
-    with pytest.raises(ValueError, match="must hold 9 pictures in their order, got 2"):
+    with pytest.raises(ValueError, match="must hold 9 pictures in order, got 2"):
         lerobot_film.Film(tmp_path, HEAD, 10).add(one.films["head"], 9)
 
 

@@ -102,7 +102,7 @@ def test_what_is_no_result_is_named_and_left_out(folder: Path, capsys: pytest.Ca
     [
         (["nowhere"], "folder must be one that `hazard-ms evaluate -o FOLDER` wrote, got nowhere"),
         (["empty"], "folders must hold results of `hazard-ms evaluate -o FOLDER`, got none in empty"),
-        (["results", "-o", "page.pdf"], "output must be a name that ends in .html, got 'page.pdf'"),
+        (["results", "-o", "page.pdf"], "output must end in .html, got 'page.pdf'"),
         (["results", "copy"], "results must hold each episode of an agent once, got .*0.json and .*0.json"),
     ],
 )

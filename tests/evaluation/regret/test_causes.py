@@ -124,7 +124,7 @@ def test_an_agents_loss_is_the_mean_over_its_episodes(tmp_path: Path) -> None:
     assert MITIGATION not in lines[0]
     there = table([*found, dataclasses.replace(found[0], averts=True)]).splitlines()[0].split()
     assert there.index(MITIGATION) + 1 == there.index(PLANNING)
-    with pytest.raises(ValueError, match="episodes must be at least one, got none"):
+    with pytest.raises(ValueError, match="episodes must hold at least one, got none"):
         shares([])
 
 

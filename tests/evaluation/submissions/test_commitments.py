@@ -54,13 +54,13 @@ def test_whatever_is_exchanged_afterwards_is_named(drawn: tuple[Commitments, Pub
 
     other = Hidden("kitchen_b/2000", first.salt)
     for own, told in (
-        ((other, second), "scene 0 of HazardFire-v1 must be the one that was committed, got 'kitchen_b/2000'"),
-        ((first, replace(second, salt="0" * 64)), "scene 1 of HazardFire-v1 must be the one"),
-        ((second, first), "scene 0 of HazardFire-v1 must be the one"),
+        ((other, second), "scene 0 of HazardFire-v1 must match its commitment, got 'kitchen_b/2000'"),
+        ((first, replace(second, salt="0" * 64)), "scene 1 of HazardFire-v1 must match its commitment"),
+        ((second, first), "scene 0 of HazardFire-v1 must match its commitment"),
         ((first,), "2 scenes of HazardFire-v1 must be published, got 1"),
         ((first, first), "hidden scenes of HazardFire-v1 must differ"),
-        ((first, Hidden("kitchen_b/03", second.salt)), "hidden scenes must belong to no split, got 'kitchen_b/03'"),
-        ((first, Hidden("/etc/passwd", second.salt)), "scenes must be of the split"),
+        ((first, Hidden("kitchen_b/03", second.salt)), "hidden scenes must not belong to a split, got 'kitchen_b/03'"),
+        ((first, Hidden("/etc/passwd", second.salt)), "scenes must be in the split"),
     ):
         with pytest.raises(ValueError, match=told):
             check(commitments, with_fire(*own))
@@ -73,7 +73,7 @@ def test_a_set_is_drawn_and_checked_by_the_command(tmp_path: Path, capsys: pytes
     assert main(["commitments", str(file), "--draw", "1", "--secret", str(secret)]) == 0
     assert stat.S_IMODE(secret.stat().st_mode) == 0o600
     assert main(["commitments", str(file), "--published", str(secret), "-o", str(tmp_path / "scenes")]) == 0
-    assert "all 3 scenes of hidden-winter are those that were committed" in capsys.readouterr().out
+    assert "all 3 scenes of hidden-winter match their commitments" in capsys.readouterr().out
     scenes = sorted(str(path.relative_to(tmp_path)) for path in (tmp_path / "scenes").rglob("*.json"))
     assert scenes == [f"scenes/Hazard{task}-v1/scene-000.json" for task in ("Fire", "Flood", "Wind")]
     assert main(["commitments", str(file), "--draw", "1", "--secret", str(secret)]) == 2
@@ -82,7 +82,7 @@ def test_a_set_is_drawn_and_checked_by_the_command(tmp_path: Path, capsys: pytes
     changed["scenes"][FIRE][0]["scene"] = "kitchen_b/2000"
     secret.write_text(json.dumps(changed))
     assert main(["commitments", str(file), "--published", str(secret)]) == 2
-    assert "scene 0 of HazardFire-v1 must be the one that was committed" in capsys.readouterr().err
+    assert "scene 0 of HazardFire-v1 must match its commitment" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("file", sorted((Path(__file__).parents[3] / "results" / "hidden").glob("*.json")))

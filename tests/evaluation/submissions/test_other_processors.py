@@ -49,4 +49,4 @@ def test_a_processor_that_computes_otherwise_accuses_nobody(name: str, whole: Pa
     """Without fused multiplications and additions an episode differs, which is no fault of the submission."""
     done = verify(whole, NOT_PROMISED[name])
     assert done.returncode == 2 and "not verified" not in done.stdout, done.stdout + done.stderr
-    assert "machines must all compute with AVX2, got one where torch takes DEFAULT" in done.stderr
+    assert "all machines must compute with AVX2, got one where torch uses DEFAULT" in done.stderr

@@ -61,7 +61,7 @@ def test_only_signed_reports_of_whole_submissions_count(folder: Path) -> None:
 
 
 def test_a_folder_without_signers_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="folder must hold a file signers"):
+    with pytest.raises(ValueError, match="folder must contain the file signers"):
         standings(tmp_path)
 
 

@@ -60,7 +60,9 @@ def test_a_submission_is_verified_signed_and_listed(results: Path, capsys: pytes
     assert "trial: short" in capsys.readouterr().out
     assert "verified: all 2 episodes" in (place / "site" / f"{report.submission[:16]}.html").read_text()
     path.write_text(path.read_text().replace('"frames": ', '"frames": 1', 1))
-    with pytest.raises(ValueError, match=r"short\.report\.json must be as anna signed it, got another content"):
+    with pytest.raises(
+        ValueError, match=r"short\.report\.json must be unchanged since anna signed it, got other content"
+    ):
         signer(path, place / "signers")
 
 
@@ -134,9 +136,14 @@ def test_a_quick_look_says_that_it_is_one(results: Path, capsys: pytest.CaptureF
 @pytest.mark.parametrize(
     ("versions", "machine", "ended", "told"),
     [
-        ({"torch": "1.0"}, {}, "", "machines must all have the versions .* got one with torch 1.0"),
-        ({}, {"processor": "Other"}, "", f"machines must all have processors of one maker, got Other, here {maker()}"),
-        ({}, {"instructions": "DEFAULT"}, "", "machines must all compute with AVX2, got one where torch takes DEFAULT"),
+        ({"torch": "1.0"}, {}, "", "all machines must have the versions .* got one with torch 1.0"),
+        (
+            {},
+            {"processor": "Other"},
+            "",
+            f"all machines must have processors of the same maker, got Other there and {maker()} here",
+        ),
+        ({}, {"instructions": "DEFAULT"}, "", "all machines must compute with AVX2, got one where torch uses DEFAULT"),
         ({}, {}, DIED, r"each episode must be simulated, got episodes/HazardFire-v1-0000\.json: worker died"),
     ],
 )

@@ -43,7 +43,7 @@ def test_teams_have_files_of_their_own() -> None:
 BAD: list[tuple[dict[str, Any], str]] = [
     ({"agents": ("joint", "greedy")}, "team agent must be one of independent, auction, joint.*got 'greedy'"),
     ({"agents": ("independent:gready",)}, "did you mean 'greedy'"),
-    ({"agents": ("independent:oracle",)}, "agents of a team must see what robots see .* got oracle"),
+    ({"agents": ("independent:oracle",)}, "agents of a team must see only what robots see .* got oracle"),
     ({"agents": ("joint:planner",)}, "must be joint alone"),
     ({"clock": "wall"}, "clock of a team must be one of off, got 'wall'"),
     ({"perception": "noisy"}, "perception of a team must be one of truth, got 'noisy'"),
@@ -63,7 +63,7 @@ def test_what_no_team_can_do_is_refused_before_anything_is_played(
 
 
 def test_no_robot_is_refused() -> None:
-    with pytest.raises(ValueError, match="robot_uids must be one robot or more"):
+    with pytest.raises(ValueError, match="robot_uids must be at least one robot"):
         EnvOptions(robot_uids=())
 
 
@@ -86,7 +86,7 @@ def test_decisions_of_teams_are_not_judged(tmp_path: Path, capsys: pytest.Captur
     TEAM.write(tmp_path / "team.json")
     with pytest.raises(ValueError, match="got none in"):
         regret([tmp_path], Where(1), ())
-    assert f"left out: {tmp_path}/team.json is of a team, whose decisions" in capsys.readouterr().out
+    assert f"left out: {tmp_path}/team.json was played by a team, whose decisions" in capsys.readouterr().out
 
 
 def test_each_robot_of_a_team_may_ask_a_model() -> None:

@@ -97,10 +97,10 @@ def test_errors_of_the_environment_arrive_and_the_episode_goes_on() -> None:
     ("hello", "message"),
     [
         ({**HELLO, "version": 2}, "version must be 1, got 2"),
-        ({**HELLO, "protocol": "other"}, "must be of the protocol 'hazard_ms'"),
-        ({"version": 1, "keywords": {}}, "must be of the protocol"),
+        ({**HELLO, "protocol": "other"}, "must name the protocol 'hazard_ms'"),
+        ({"version": 1, "keywords": {}}, "must name the protocol"),
         ([1, 2], r"got \[1, 2\]"),
-        ({**HELLO, "keywords": [1]}, r"keywords must have names, got \[1\]"),
+        ({**HELLO, "keywords": [1]}, r"keywords must be an object, got \[1\]"),
         ({**HELLO, "keywords": {"scenes": "/etc"}}, "a keyword must be one of task, .*, got 'scenes'"),
         ({**HELLO, "keywords": {"render_backend": "cuda"}}, "got 'render_backend'"),
         ({**HELLO, "keywords": {"task": "antigravity:HazardFire-v1"}}, "without a module, got 'antigravity:Haz"),
@@ -122,7 +122,7 @@ def test_what_a_server_does_not_take_is_told_and_no_environment_stays(hello: Any
 @pytest.mark.parametrize(
     ("bytes_", "message"),
     [
-        (b"GET / HTTP/1.1\r\nHost: here\r\n\r\n", "up to 65536"),
+        (b"GET / HTTP/1.1\r\nHost: here\r\n\r\n", "at most 65536"),
         (b"\x00\x00\x00\x02\x00\x00\x00\x00{]" + b"x" * 50000, "must begin with JSON"),
     ],
 )
@@ -173,7 +173,7 @@ def test_a_late_answer_is_not_taken_for_the_next_one() -> None:
     with conversation(Slow) as address:
         env = RemoteEnv(server=address, patience=0.3)
         env.reset(seed=1)
-        with pytest.raises(TimeoutError, match="must be there in time"):
+        with pytest.raises(TimeoutError, match="must arrive in time"):
             env.step([0, 0])
         time.sleep(0.5)  # the answer is there now
         with pytest.raises(ConnectionError, match="make a new environment"):
@@ -185,7 +185,7 @@ def test_a_client_that_says_nothing_is_not_waited_for(monkeypatch: pytest.Monkey
     with conversation() as address:
         host, _, port = address.rpartition(":")
         with socket.create_connection((host, int(port))) as link:
-            assert "there in time" in receive(link, 5.0)["error"]
+            assert "arrive in time" in receive(link, 5.0)["error"]
 
 
 @pytest.mark.parametrize(
@@ -193,8 +193,8 @@ def test_a_client_that_says_nothing_is_not_waited_for(monkeypatch: pytest.Monkey
     [
         ({"version": 2}, ValueError, "version must be 1, got 2"),
         ({}, ValueError, "version must be 1, got None"),
-        (3, ValueError, "an answer must have names, got 3"),
-        (None, TimeoutError, "must be there in time, got 0 of 8 bytes"),
+        (3, ValueError, "an answer must be an object, got 3"),
+        (None, TimeoutError, "must arrive in time, got 0 of 8 bytes"),
     ],
 )
 def test_a_client_believes_no_other_server(answer: Any, error: type[Exception], message: str) -> None:
@@ -225,7 +225,7 @@ def test_numbers_of_a_server_that_cannot_be_are_refused() -> None:
         ({"sessions": 0}, "sessions must be"),
         ({"port": 70000}, "port must be"),
         ({"idle": 0.0}, "idle must be more than 0 min, got 0.0"),
-        ({"host": "192.0.2.1"}, "host and port must be free and of this machine, got 192.0.2.1"),
+        ({"host": "192.0.2.1"}, "host must be an address of this machine and port must be free, got 192.0.2.1"),
     ):
         with pytest.raises(ValueError, match=message):
             server.serve(**words)  # type: ignore[arg-type]

@@ -45,7 +45,7 @@ CASES: dict[str, tuple[str, dict[str, bytes], str]] = {  # the file to read, all
     "not valid JSON": ("m.glb", {"m.glb": glb(b"{]]]")}, "must be a valid glTF"),
     "list": ("m.gltf", {"m.gltf": b"[1, 2]"}, "must be a valid glTF"),
     "version 1": ("m.glb", {"m.glb": glb(gltf(), version=1)}, "version 2"),
-    "cut off": ("m.glb", {"m.glb": glb(gltf())[:60]}, "whole JSON chunk"),
+    "cut off": ("m.glb", {"m.glb": glb(gltf())[:60]}, "complete JSON chunk"),
     "empty": ("m.glb", {"m.glb": b""}, "must be a GLB"),
     "no mesh": ("m.glb", {"m.glb": glb(gltf(meshes=[], nodes=[{}]))}, "m.glb"),
     "must be finite": ("m.stl", {"m.stl": stl(0, 0, 0, 1, 0, 0, 0, NAN, 0)}, "must be finite"),
@@ -140,7 +140,7 @@ def test_the_frame_turns_up_to_z_and_front_to_minus_y() -> None:
 @pytest.mark.parametrize("edges", [(0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1e-5, 1e-5, 1e-5), (0.1, 0.1, 40.0)])
 def test_sizes_that_nothing_has_are_refused(edges: tuple[float, float, float]) -> None:
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) * edges
-    with pytest.raises(ValueError, match="size"):
+    with pytest.raises(ValueError, match="of the model must be"):
         shaped(trimesh.Scene(trimesh.Trimesh(corners, [[0, 1, 2], [0, 1, 3]], process=False)), None)
 
 

@@ -27,6 +27,6 @@ def test_plain_shapes_fill_their_cube() -> None:
         assert (np.abs(boxes[:, 0] - at) < boxes[:, 1]).all(1).sum() == solid, at
     assert len(asset("plain_box").boxes) == 1
     for bad in ("plain_sphere", "plain_case", "plain_case_5-3", "plain_case_0-1001", "plain_case_1-2_2-3"):
-        with pytest.raises(ValueError, match="a shape must be one like|must rise"):
+        with pytest.raises(ValueError, match="a shape must look like|must rise"):
             asset(bad)
     assert all(0.0 <= v <= 1.0 for c in CATEGORIES for v in primitives.colour(c))

@@ -147,7 +147,7 @@ def test_nodes_must_be_trees(word: str, tmp_path: Path) -> None:
         "two parents": [{"children": [i + 1, i + 1]} for i in range(40)] + [{"mesh": 0}],
         "chain": [{"children": [i + 1]} for i in range(200)] + [{"mesh": 0}],
     }[word]
-    with pytest.raises(ValueError, match="nodes of m.gltf must be trees of at most 200 levels"):
+    with pytest.raises(ValueError, match="nodes of m.gltf must form trees of at most 200 levels"):
         read_model(model_at(tmp_path, {"m.gltf": text(models.solid(nodes=nodes))}))
     chain = [{"children": [i + 1]} for i in range(199)] + [{"mesh": 0}]
     assert read_model(model_at(tmp_path, {"m.gltf": text(models.solid(nodes=chain))})).geometry

@@ -159,7 +159,7 @@ def test_beliefs_by_a_known_detector_are_so() -> None:
         ({"again_of": {"cup": 1.0}}, "must be one of its classes, got 'cup'"),
         ({"surer": (0.0, 0.5), "real": (0.3, 0.7), "false": (1.0,)}, "real, false and false_of must have 2 buckets"),
         ({"false_of": {"mug": (1.0,)}}, "real, false and false_of must have 0 buckets"),
-        ({"classes": ("mug", "bowl", "book", "mug")}, "classes must be different"),
+        ({"classes": ("mug", "bowl", "book", "mug")}, "classes must be distinct"),
         ({"again": 1.5}, "confusion.again must be a number from 0 to 1, got 1.5"),
         ({"found": (0.5, "much")}, r"confusion.found\[1\] must be a number"),
         ({"more": 1}, "key of confusion"),

@@ -57,7 +57,7 @@ def test_a_file_is_the_path_of_the_detector() -> None:
         ("noisy:association=mine", "association must be one of own, paper, got 'mine'"),
         ("noisy:threshold=2", "threshold must be from 0 to 1, got 2.0"),
         ("blind", "perception must name the file or folder of its detector, blind:PATH, got 'blind'"),
-        ("blind:a,b", "perception must name one file or folder, got 'blind:a,b'"),
+        ("blind:a,b", "perception must name at most one file or folder, got 'blind:a,b'"),
     ],
 )
 def test_what_cannot_be_is_refused_before_anything_is_loaded(text: str, told: str) -> None:

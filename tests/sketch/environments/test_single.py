@@ -109,7 +109,7 @@ def test_spaces_are_those_of_the_simulator(task: str) -> None:
         ({"actions": "option"}, "did you mean 'options'"),
         ({"split": "tran"}, "did you mean 'train'"),
         ({"scenes": ["kitchen_a/99"]}, "scene must be"),
-        ({"scenes": []}, "scenes must be at least one"),
+        ({"scenes": []}, "scenes must hold at least one"),
         ({"reward": "gold"}, "reward must be one of value, paper"),
         ({"max_frames": 0}, "max_frames"),
         ({"robot_uids": "fetsch"}, "did you mean 'fetch'"),
@@ -118,7 +118,7 @@ def test_spaces_are_those_of_the_simulator(task: str) -> None:
         ({"generated": (3, 2)}, "first must be"),
         ({"generated": 25}, r"generated must be \(first, count\)"),
         ({"generated": (25, 10**9)}, "the count of generated must be"),
-        ({"generated": (25, 2), "scenes": TWO}, "without scenes"),
+        ({"generated": (25, 2), "scenes": TWO}, "scenes must be None beside it"),
     ],
 )
 def test_wrong_keywords_are_refused_at_once(wrong: dict[str, Any], said: str) -> None:

@@ -50,7 +50,7 @@ def test_what_comes_too_late_cannot_be_begun() -> None:
     assert begun(problem(travel, [10.0], [420.0], limit=150.0), shut, 0) is not None
     assert begun(problem(travel, [10.0], [420.0], limit=149.0), shut, 0) is None
     moving = MovingTravel([0.0], [[[5.0, 0.0]]], [0.0, 0.0], straight_line(100.0))
-    with pytest.raises(ValueError, match="must be static, got MovingTravel"):
+    with pytest.raises(ValueError, match="must be a StaticTravel .*, got MovingTravel"):
         begun(problem(moving, [10.0], [INF]), shut, 0)  # type: ignore[arg-type]
 
 

@@ -90,5 +90,5 @@ def test_fading_beyond_nothing_is_refused(fading: float) -> None:
 
 @pytest.mark.parametrize("spread", [-1.0, float("inf"), float("nan")])
 def test_a_spread_below_nothing_is_refused(spread: float) -> None:
-    with pytest.raises(ValueError, match="spread must be a number from 0 on"):
+    with pytest.raises(ValueError, match="spread must be finite and at least 0"):
         problem(spread=spread)

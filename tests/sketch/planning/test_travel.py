@@ -114,8 +114,8 @@ def test_to_meet_early_is_known_to_be_best_where_walks_keep_up_and_detours_are_n
         ([[0, 1]], 0, r"frames must have shape \(N, N\).*got \(1, 2\)"),
         ([], 0, r"frames must have shape .*got \(0,\)"),
         ([[0.0]], 1, r"frames must have shape \(N, N\) for targets, 1 carts and the start, got \(1, 1\)"),
-        ([[0, -1], [1, 0]], 0, "frames must .* not negative, got -1.0"),
-        ([[0, math.nan], [1, 0]], 0, "frames must .* not negative, got nan"),
+        ([[0, -1], [1, 0]], 0, "frames must .* of at least 0, got -1.0"),
+        ([[0, math.nan], [1, 0]], 0, "frames must .* of at least 0, got nan"),
     ],
 )
 def test_bad_tables_are_refused(frames: list, carts: int, message: str) -> None:
@@ -136,8 +136,8 @@ def test_bad_tables_are_refused(frames: list, carts: int, message: str) -> None:
         ({"start": [0.0, 0.0]}, r"start must have shape \(1,\), got \(2,\)"),
         ({"carts": [[math.inf]]}, "start or carts must hold finite numbers, got inf"),
         ({"carts": [1.0, 2.0]}, r"carts must have shape \(C, 1\), got \(2,\)"),
-        ({"walk": lambda a, b: (a - b)[..., 0]}, "walk must .* not negative, got -1.0"),
-        ({"walk": lambda a, b: a - b}, r"walk must give frames of shape \(3, 3\) here, got \(3, 3, 1\)"),
+        ({"walk": lambda a, b: (a - b)[..., 0]}, "walk must .* of at least 0, got -1.0"),
+        ({"walk": lambda a, b: a - b}, r"walk must return frames of shape \(3, 3\) here, got \(3, 3, 1\)"),
     ],
 )
 def test_bad_recordings_are_refused(changes: dict, message: str) -> None:

@@ -132,7 +132,7 @@ def test_an_unknown_name_is_told_with_the_nearest() -> None:
 def test_a_maker_must_give_what_it_is_registered_for() -> None:
     with (
         registered_task("HazardOdd-v0", lambda physics: "no task") as name,
-        pytest.raises(ValueError, match="must give a Task, got str"),
+        pytest.raises(ValueError, match="must return a Task, got str"),
     ):
         task_of(name, "paper")
 

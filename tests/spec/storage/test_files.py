@@ -113,7 +113,7 @@ def test_places_where_no_file_can_be_are_refused(name: str, told: str, tmp_path:
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(ValueError) as refused:
         write(tmp_path / name, "x")
-    assert str(refused.value) == f"output must be a file that can be written, got {tmp_path / name}: {told}"
+    assert str(refused.value) == f"output must be a writable file, got {tmp_path / name}: {told}"
     assert names(tmp_path) == ["file", "folder", "pipe"]
 
 
@@ -125,7 +125,7 @@ def test_devices_are_not_replaced() -> None:
 
 def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    with pytest.raises(ValueError, match=f"a folder that can be written, got {tmp_path}/file/in: Not a directory"):
+    with pytest.raises(ValueError, match=f"a writable folder, got {tmp_path}/file/in: Not a directory"):
         make_folder(tmp_path / "file/in")
     make_folder(tmp_path / "a/b")
     make_folder(tmp_path / "a/b")

@@ -145,7 +145,7 @@ def read_state(folder: Path) -> None:
     try:
         curve_of(weights.packed_state(folder / "one.training"))
     except Exception as error:  # as what resumes a training does
-        raise ValueError(f"the state of a training must be one that was saved, got {error!r}") from None
+        raise ValueError(f"the training state must be one that hazard_ms saved, got {error!r}") from None
 
 
 def make_answers(folder: Path) -> None:

@@ -26,7 +26,7 @@ def extra_of(text: str) -> dict[str, Any]:
         made = {name.strip(): _value(value.strip()) for name, _, value in pairs}
     for name in made:
         if name in OURS:
-            raise ValueError(f"extra must name no field of {', '.join(OURS)}, got {name}")
+            raise ValueError(f"extra must not set {', '.join(OURS)}, which hazard_ms sets itself, got {name}")
     return made
 
 
@@ -35,5 +35,5 @@ def _value(word: str) -> Any:
         return json.loads(word, **HOOKS)
     except (ValueError, RecursionError):
         if word[0] in '{["':
-            raise ValueError(f"extra must have values of JSON or words, got {printable(word)[:100]}") from None
+            raise ValueError(f"each value in extra must be JSON or a word, got {printable(word)[:100]}") from None
         return word

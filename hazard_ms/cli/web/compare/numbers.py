@@ -69,7 +69,7 @@ def numbers(settings: str, books: Sequence[Book]) -> dict[str, Any]:
     """
     own, left_out = _bounded([book for book in books if title(book.kept.result) == settings])
     if not own:
-        raise ValueError(f"settings must be those of results in the chosen folders, got {settings!r:.100}")
+        raise ValueError(f"settings must be those of a result in the chosen folders, got {settings!r:.100}")
     (group,) = grouped(book.kept for book in own)
     keys = {book.kept.path: book.key for book in own}
     frames = curves.times(group.max_frames)

@@ -139,7 +139,7 @@ def _stamp(path: Path, bytes_left: int) -> Stamp:
     regret = place_of(path)
     made += _state(regret) if os.path.lexists(regret) else (0, 0)
     if made[1] + made[3] > bytes_left:
-        raise ValueError(f"results must have {LARGEST_IN_ALL} bytes together, got more; choose fewer folders")
+        raise ValueError(f"results must have at most {LARGEST_IN_ALL} bytes together, got more; choose fewer folders")
     return tuple(made)
 
 

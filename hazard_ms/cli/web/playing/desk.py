@@ -187,7 +187,7 @@ class Desk(Watcher):
             raise EndedError
         if what == "choose":
             if message.get("number") != len(self._taken) or self.phase != "asking":
-                raise ValueError("choice must be one of this decision, got one of an earlier one")
+                raise ValueError("choice must belong to the current decision, got one from an earlier decision")
             self.chosen = self.choices.find(message.get("key"))
         elif what == "point":
             self._point(message)

@@ -56,7 +56,7 @@ class Choices:
         for choice in (*self.options, *self.single):
             if choice.key == key:
                 return choice
-        raise ValueError(f"choice must be one of those that can be chosen now, got {key!r:.100}")
+        raise ValueError(f"choice must be one of the current choices, got {key!r:.100}")
 
     def things(self) -> list[str]:
         """Names of the things that something can be done with, in order."""

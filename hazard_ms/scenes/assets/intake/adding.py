@@ -85,15 +85,18 @@ def _check(model: Model, name: str, mass: float | None, size: float | None) -> N
     category(model.category)
     if not USER_ID.fullmatch(name):
         raise ValueError(
-            f"an id must be a lower-case letter and at most 39 more letters, digits and _, got {name!r:.100}: "
-            "give another --name"
+            f"an id must have 1 to 40 characters a-z, 0-9 or _, and begin with a letter, got {name!r:.100}: give "
+            "another --name"
         )
     kept = re.fullmatch(r"(.+)_\d+", name)
     if name in asset_ids() or (kept and kept[1] in CATEGORIES):
-        raise ValueError(f"an id must not be that of a shipped model, now or later, got {name!r}: try --name my_{name}")
+        raise ValueError(
+            f"an id must not be taken by a shipped model or reserved for one, got {name!r}: try --name my_{name}"
+        )
     if not LICENCE.fullmatch(model.licence):
         raise ValueError(
-            f"licence must name the model's, CC-BY-4.0 or own work for example, got {model.licence!r:.100}: --licence"
+            f"licence must name the model's licence, such as CC-BY-4.0 or own work, got {model.licence!r:.100}: give "
+            "--licence"
         )
     for what, value, most in (("mass", mass, 1000.0), ("size", size, 20.0)):
         if value is not None and not (math.isfinite(value) and 0.0 < value < most):
@@ -122,7 +125,7 @@ def _locked(folder: Path) -> Iterator[list[Any]]:
         yield user_rows(folder)
     except BlockingIOError:
         raise ValueError(
-            f"{folder} must be free, got another hazard-ms that writes to it: wait until it has ended"
+            f"{folder} must be free, got another hazard-ms writing to it: wait until that has ended"
         ) from None
     except OSError as error:
         remedy = "free some space, or set HAZARD_MS_ASSETS to a folder on another disk"

@@ -45,7 +45,8 @@ def decompose(mesh: trimesh.Trimesh) -> list[trimesh.Trimesh]:
     hulls = [_hull(np.clip(cloud, low, high), low, high) for cloud in clouds if len(cloud) > 3]
     if not 0 < len(hulls) <= MAX_HULLS or any(len(h.vertices) > MAX_VERTICES or h.volume <= 0.0 for h in hulls):
         raise ValueError(
-            f"a model must come apart into 1 to {MAX_HULLS} convex pieces of {MAX_VERTICES} corners, got {len(hulls)}"
+            f"a model must split into 1 to {MAX_HULLS} convex pieces of at most {MAX_VERTICES} corners each, got "
+            f"{len(hulls)} pieces"
         )
     return hulls
 

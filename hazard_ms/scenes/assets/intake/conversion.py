@@ -55,7 +55,9 @@ def convert(model: Model, made: Path, size: float | None) -> dict[str, Any]:
     if done.returncode == UNWRITABLE:
         raise OSError(last)
     if done.returncode != 0 or not facts.is_file():
-        raise ValueError(f"{what} could not be converted: the worker ended with {done.returncode}: {last:.300}")
+        raise ValueError(
+            f"{what} could not be converted: the worker ended with exit code {done.returncode}: {last:.300}"
+        )
     found: dict[str, Any] = json.loads(facts.read_text())
     facts.unlink()
     if "refused" in found:

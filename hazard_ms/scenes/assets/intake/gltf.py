@@ -29,10 +29,12 @@ Get = Callable[[str], bytes]  # the content of a file beside the model
 def prepared_glb(data: bytes, name: str, beside: Get, textures: Textures) -> bytes:
     """The GLB file with its pictures made small. Raises ValueError that names what is wrong with it."""
     if len(data) < 20 or data[:4] != b"glTF":
-        raise ValueError(f"{name} must be a GLB file, got something else")
+        raise ValueError(f"{name} must be a GLB file, got one that begins with {data[:4]!r}")
     version, _, length, chunk = struct.unpack("<IIII", data[4:20])
     if version != 2 or chunk != JSON_CHUNK or length > len(data) - 20:
-        raise ValueError(f"{name} must be a GLB file of version 2 with a whole JSON chunk first, got something else")
+        raise ValueError(
+            f"{name} must be a GLB file of version 2 that begins with a complete JSON chunk, got something else"
+        )
     rest = data[20 + length :]
     text = _prepared(data[20 : 20 + length], name, rest, beside, textures)
     text += b" " * (-len(text) % 4)
@@ -63,7 +65,7 @@ def _prepared(data: bytes, name: str, rest: bytes, beside: Get, textures: Textur
         )
     if any(c < 0 for c in counts) or sum(counts) > MOST_NUMBERS:
         raise ValueError(
-            f"{name} must hold at most {MOST_NUMBERS} numbers of corners, got {sum(counts)}: simplify it first"
+            f"{name} must have at most {MOST_NUMBERS} entries in its accessors, got {sum(counts)}: simplify it first"
         )
     if nodes > MOST_NODES:
         raise ValueError(f"{name} must have at most {MOST_NODES} nodes, got {nodes}")
@@ -91,7 +93,7 @@ def _check_nodes(tree: Tree, name: str) -> None:
     except MALFORMED as error:
         raise ValueError(f"{name} must be a valid glTF, got {type(error).__name__}: {error!s:.200}") from None
     if not strict or level or seen < len(below):
-        raise ValueError(f"nodes of {name} must be trees of at most {DEEPEST} levels, got others")
+        raise ValueError(f"nodes of {name} must form trees of at most {DEEPEST} levels, got a loop or more levels")
 
 
 def _shown(tree: Tree) -> tuple[set[int], list[str]]:
@@ -114,7 +116,7 @@ def _shown(tree: Tree) -> tuple[set[int], list[str]]:
         else:
             alone += [str(e) for e in others]
     if not all(isinstance(i, int) and 0 <= i < len(tree["images"]) for i in found):
-        raise ValueError("a texture must name an image that is there")
+        raise ValueError("a texture must name an image that exists")
     return found, alone
 
 
@@ -134,7 +136,7 @@ def _picture(tree: Tree, image: Tree, name: str, rest: bytes, beside: Get) -> by
         data = _of_uri(str(buffer["uri"]), name, beside) if "uri" in buffer else _binary(rest)
         start, length = int(view.get("byteOffset", 0)), int(view["byteLength"])
     except (AttributeError, KeyError, IndexError, TypeError) as error:
-        raise ValueError(f"images of {name} must lie in it or beside it, got {error!r:.200}") from None
+        raise ValueError(f"images of {name} must be inside it or beside it, got {error!r:.200}") from None
     if start < 0 or length < 0 or start + length > len(data):
         raise ValueError(f"images of {name} must lie within its {len(data)} bytes, got {start} to {start + length}")
     return data[start : start + length]

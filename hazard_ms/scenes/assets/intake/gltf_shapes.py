@@ -45,14 +45,14 @@ def keep_plain(tree: Tree, name: str) -> None:
 
 def _check_primitive(tree: Tree, primitive: Tree, name: str) -> None:
     if primitive.get("mode") == FAN:
-        raise ValueError(f"{name} must hold triangles one by one or in strips, got a fan of them")
+        raise ValueError(f"{name} must hold separate triangles or strips, got a triangle fan")
     for accessor in _numbers(tree, primitive):
         if not _plain(tree, accessor):
             packed = [*primitive.get("extensions", {}), *_packing(tree, accessor)]
             where = ", ".join(map(str, packed)) or "an accessor without a buffer"
             where = "a sparse accessor" if "sparse" in accessor else where
             raise ValueError(
-                f"{name} must hold its corners and triangles as plain numbers, got them in {where:.200}: "
+                f"{name} must store its corners and triangles as plain numbers, got them in {where:.200}: "
                 f"{remedy(packed)}"
             )
     for attribute in READ:

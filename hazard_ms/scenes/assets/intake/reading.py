@@ -104,7 +104,7 @@ class Beside(trimesh.resolvers.Resolver):
 
     def write(self, name: str, data: Any) -> None:
         """Refuse to write. Always raises ValueError."""
-        raise ValueError(f"a model that is read must write nothing, got {name!r:.200}")
+        raise ValueError(f"a model must not write anything while it is read, got {name!r:.200}")
 
 
 def _check(scene: trimesh.Scene, name: str) -> None:
@@ -128,9 +128,9 @@ def _check(scene: trimesh.Scene, name: str) -> None:
         if geometry in meshes:
             mesh = meshes[geometry]
             if not (np.isfinite(mesh.vertices).all() and np.isfinite(matrix).all()):
-                raise ValueError(f"corners and placements in {name} must be finite, got some that are not finite")
+                raise ValueError(f"corners and placements in {name} must be finite, got NaN or infinity")
             if mesh.faces.min() < 0 or mesh.faces.max() >= len(mesh.vertices):
-                raise ValueError(f"triangles in {name} must join corners that it has, got others")
+                raise ValueError(f"triangles in {name} must join corners that exist, got others")
 
 
 def _few(faces: int, name: str) -> None:
@@ -147,7 +147,7 @@ def _check_stl(data: bytes, name: str) -> None:
     if len(data) >= 84 and len(data) == 84 + 50 * struct.unpack("<I", data[80:84])[0]:
         return _few((len(data) - 84) // 50, name)
     if not data.lstrip()[:5].lower() == b"solid":
-        raise ValueError(f"{name} must be a whole binary STL or one in words, got neither")
+        raise ValueError(f"{name} must be a complete binary STL file or an ASCII one, got neither")
     return _few(data.count(b"endfacet"), name)
 
 
@@ -159,8 +159,8 @@ def _check_ply(data: bytes, name: str) -> None:
     _few(counts["face"], name)
     if max(counts.values()) > 3 * MOST_FACES or sum(counts.values()) > len(data):
         raise ValueError(
-            f"{name} must hold at most {3 * MOST_FACES} elements, and no more than bytes, "
-            f"got {max(counts.values())} in {len(data)} bytes"
+            f"{name} must have at most {3 * MOST_FACES} elements, and no more than it has bytes, got "
+            f"{max(counts.values())} in {len(data)} bytes"
         )
 
 

@@ -47,13 +47,15 @@ def shaped(scene: trimesh.Scene, size: float | None) -> trimesh.Scene:
     low, high = scene.bounds
     edges = high - low
     if not np.isfinite(edges).all() or edges.max() <= 0.0:
-        raise ValueError("the model must have a size, got none")
+        raise ValueError(f"the longest edge of the model must be finite and above 0, got {edges.max()}")
     if size is not None:
         scene.apply_transform(np.diag([size / edges.max()] * 3 + [1.0]))
         edges *= size / edges.max()
     if not (SMALLEST <= edges.min() and edges.max() <= LARGEST):
         words = " x ".join(f"{e:.4g}" for e in edges)
-        raise ValueError(f"edges of the model must be {SMALLEST} to {LARGEST} m, got {words} m: give --size in metres")
+        raise ValueError(
+            f"edges of the model must be from {SMALLEST} to {LARGEST} m, got {words} m: give --size in metres"
+        )
     low, high = scene.bounds
     shift = np.eye(4)
     shift[:3, 3] = [-(low[0] + high[0]) / 2, -(low[1] + high[1]) / 2, -low[2]]

@@ -44,7 +44,7 @@ def convert(order: dict[str, Any]) -> dict[str, Any]:
     collision.write(hulls, Path("hulls.ply"))
     made = collision.cook(Path("hulls.ply"))
     if made != len(hulls):
-        raise ValueError(f"PhysX must make {len(hulls)} shapes of as many convex pieces, got {made}")
+        raise ValueError(f"PhysX must make one shape of each of the {len(hulls)} convex pieces, got {made}")
     return {
         "extent": [round(float(e), 5) for e in mesh.extents],
         "faces": int(sum(len(p.faces) for p in scene.geometry.values())),

@@ -59,7 +59,7 @@ class Provider(abc.ABC):
         if name not in there:
             few = ", ".join(there[:20]) + (f" and {len(there) - 20} more" if len(there) > 20 else "")
             raise ValueError(
-                f"models of {self.name} here must be among {few}, got {name!r:.100}; more: {self.download}"
+                f"a model of {self.name} must be one of {few} on this machine, got {name!r:.100}; more: {self.download}"
             )
         return name
 

@@ -109,7 +109,7 @@ def _places(tree: ET.Element) -> dict[str, Matrix]:
             name, origin = above[name]
             place, steps = origin @ place, steps + 1
             if steps > len(above):
-                raise ValueError(f"links must not hang on themselves, got {name!r:.100}")
+                raise ValueError(f"links must form a tree, got a loop at {name!r:.100}")
         placed[link.attrib["name"]] = place
     return placed
 

@@ -67,7 +67,10 @@ class Ycb(Provider):
     def _table(self) -> dict[str, Any]:
         rows = self.read("info_pick_v0.json")
         if not isinstance(rows, dict):
-            raise ValueError(f"ycb: {self.folder / 'info_pick_v0.json'} must be a table of models, got something else")
+            raise ValueError(
+                f"ycb: {self.folder / 'info_pick_v0.json'} must hold an object with one entry per model, got "
+                f"{type(rows).__name__}"
+            )
         return rows
 
 

@@ -77,13 +77,18 @@ def _refusal(stage: Stage, index: int, thing: int) -> str:
     if not known(stage, index):
         return failures.UNKNOWN
     place = stage.position(thing) if thing >= 0 else stage.seen.objects[index].position
-    if float(np.linalg.norm(place - stage.robot.shoulder())) > LIMIT:
+    if not may_begin(stage, place):
         return failures.TOO_FAR
     if thing < 0:  # what really lies there is found out within reach alone
         return failures.UNREACHABLE
     if not bool(stage.world.takeable[0, thing]):
         return failures.NOT_A_TARGET
     return failures.ALREADY_RESCUED if bool(stage.world.safe[0, thing]) else ""
+
+
+def may_begin(stage: Stage, place: NDArray[np.floating]) -> bool:
+    """Whether `place` [m], [3], world frame, is near enough for a pick-up to begin."""
+    return float(np.linalg.norm(place - stage.robot.shoulder())) <= LIMIT
 
 
 def _within_span(stage: Stage, thing: NDArray[np.float64]) -> bool:

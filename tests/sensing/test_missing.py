@@ -68,4 +68,3 @@ def test_a_thing_that_is_seen_again_is_missing_no_more_even_by_a_glimpse() -> No
     again = replace(seen()[1], frame=2)
     glimpse = replace(again, pixels=3)
     assert lost.missing and not merged(lost, again).missing and not merged(lost, glimpse).missing
-

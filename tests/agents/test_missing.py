@@ -9,7 +9,7 @@ import pytest
 from hazard_ms.agents.base import agent, known
 from hazard_ms.agents.planner import Planner
 from hazard_ms.agents.teams.joint import Joint
-from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action
+from hazard_ms.skills.decision import EXPLORE, WALK_TO, Action
 from tests.worlds.playground import Playground, brief
 
 PLACES = {"gone": (1.5, 0.0), "there": (-2.5, 0.0)}

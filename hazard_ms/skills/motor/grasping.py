@@ -54,10 +54,13 @@ def pick_up(stage: Stage, index: int) -> Skill:
     if reason:
         return Result(False, reason)
     place, drift = stage.position(thing), Drift(stage, thing)
-    used = 0 if _within_span(stage, place) else (yield from come_near(stage, place)).frames
-    used += (yield from turn_to(stage, stage.position(thing)[:2])).frames
-    if used:
-        drift.note(used)
+    used = 0
+    if not _within_span(stage, place):
+        used = (yield from drift.while_there(come_near(stage, place), ASTRAY)).frames
+    faced = (yield from turn_to(stage, stage.position(thing)[:2])).frames
+    used += faced
+    if faced:
+        drift.note(faced)
     taken = yield from _take(stage, thing, drift)
     return Result(taken.ok, taken.reason, used + taken.frames)
 

@@ -186,9 +186,14 @@ def distance(decision: Decision, sighting: Sighting) -> float:
     return float(np.hypot(*(sighting.position[:2] - np.asarray(decision.agent_position))))
 
 
-def known(decision: Decision, names: tuple[str, ...]) -> dict[str, Sighting]:
-    """The things among `names` that were seen and are remembered, nearest first."""
-    seen = {name: decision.map.objects[i] for name in names if (i := decision.index(name)) in decision.map.objects}
+def known(decision: Decision, names: tuple[str, ...], missing: bool = False) -> dict[str, Sighting]:
+    """The things among `names` that were seen and are remembered, nearest first.
+
+    `missing`: whether also those that are no longer where they were seen.
+    """
+    objects = decision.map.objects
+    seen = {name: objects[i] for name in names if (i := decision.index(name)) in objects}
+    seen = {name: sighting for name, sighting in seen.items() if missing or not sighting.missing}
     return dict(sorted(seen.items(), key=lambda item: distance(decision, item[1])))
 
 

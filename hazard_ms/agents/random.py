@@ -30,10 +30,10 @@ class Random(Agent):
         return moves[int(self._chance.integers(len(moves)))]
 
     def _moves(self, decision: Decision) -> list[Action]:
-        carts = list(known(decision, decision.containers))
+        carts = list(known(decision, decision.containers, missing=True))
         moves = [Action(DROP, carts[0] if carts else None), Action(EXPLORE)]
         moves += [action for action in decision.available if action.verb == self._verb]
-        targets = known(decision, open_targets(decision))
+        targets = known(decision, open_targets(decision), missing=True)
         if targets:
             nearest = next(iter(targets))
             moves += [Action(WALK_ONE_STEP, nearest), Action(PICK_UP, nearest)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +13,8 @@ from hazard_ms.sensing.view import View
 SEEN_PIXELS = 3  # pixels from which a thing counts as seen: a key at 2 m has about as many in an image of 256 x 256
 MEDIAN_PIXELS = 400  # least number of a thing's pixels that give its position: as good as all 20,000 [ours]
 VIEW_ERROR = 0.1  # a median can move by this much because the angle of view changed [m]
+PLAIN_PIXELS = 12.0  # pixels from which a thing would surely be seen where it lay: four times SEEN_PIXELS [ours]
+IN_FRONT = 0.05  # what is this much nearer than a thing may hide it [m] [ours]
 REMEMBERED = 256  # number of the newest levels of hazards that are kept for each thing
 
 
@@ -28,6 +31,7 @@ class Sighting:
     damaged: bool = False  # whether it was damaged when last seen
     history: tuple[tuple[int, tuple[float, ...]], ...] = ()  # (frame, levels), oldest first
     size: float = 0.0  # its pixels 1 m before the middle of the picture, by the view that gave its position; 0: unknown
+    missing: bool = False  # whether a look since then has shown the place without it: it has moved, nobody knows where
 
     @property
     def hazard(self) -> float:
@@ -83,5 +87,29 @@ def merged(known: Sighting | None, seen: Sighting) -> Sighting:
     moved = float(np.linalg.norm(seen.position - known.position)) > known.radius + VIEW_ERROR
     history = (*known.history, *seen.history)[-REMEMBERED:]
     if not moved and seen.pixels < known.pixels // 2:
-        seen = replace(known, frame=seen.frame, levels=seen.levels, damaged=seen.damaged)
+        seen = replace(known, frame=seen.frame, levels=seen.levels, damaged=seen.damaged, missing=False)
     return replace(seen, history=history)
+
+
+def with_missing(
+    objects: Mapping[int, Sighting], view: View, frame: int, unmapped: Collection[int]
+) -> dict[int, Sighting]:
+    """The sightings `objects`, by index, in which those are marked as missing whose places the `view` shows empty.
+
+    `frame`: of the view, whose labels are sure; things in `unmapped` are in the hand or rescued.
+    """
+    made = dict(objects)
+    for index, seen in objects.items():
+        if seen.frame < frame and not seen.missing and index not in unmapped and _shows_place_of(seen, view):
+            made[index] = replace(seen, missing=True)
+    return made
+
+
+def _shows_place_of(seen: Sighting, view: View) -> bool:
+    """Whether a thing would be seen in a `view` if it were still where it was `seen`: nothing is in front of it."""
+    pixel = view.pixel_of(seen.position)
+    if pixel is None or seen.size < PLAIN_PIXELS * _of_one_metre(view, seen.position):
+        return False
+    row, column, far = pixel
+    around = view.depth[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
+    return around.shape == (3, 3) and bool((around > far - IN_FRONT).all())

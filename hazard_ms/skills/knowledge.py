@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,14 +12,15 @@ import numpy as np
 from hazard_ms.sensing.detection.perception import Perception
 from hazard_ms.sensing.observations import Observer
 from hazard_ms.sensing.semantic_map import CEILING, LINTELS, SemanticMap, cells_for
-from hazard_ms.sensing.sighting import Sighting
+from hazard_ms.sensing.sighting import Sighting, with_missing
 from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.world import World
 from hazard_ms.skills.brief import Brief, brief_of, has_several_rooms
 from hazard_ms.skills.context import Rescuer, Stage
 from hazard_ms.skills.decision import PICK_UP, Action, Decision, Images, Message, Result, Teammate, available
-from hazard_ms.skills.failures import NOT_A_TARGET, REFUSED
+from hazard_ms.skills.failures import NOT_A_TARGET, REFUSED, TOO_FAR
 from hazard_ms.skills.mitigations.offers import offered, tools, verbs_of
+from hazard_ms.skills.motor.grasping import may_begin
 from hazard_ms.spec.registry.mitigations import TELL
 from hazard_ms.tasks.episode.episode import Episode
 from hazard_ms.tasks.episode.grasp import Hand
@@ -95,6 +96,11 @@ class Knowledge:
                     seen.forget(index)
             elif result.reason in REFUSED:
                 self.labeller.refused(index, result.reason == NOT_A_TARGET)
+            elif result.reason == TOO_FAR:  # it is not where the map has it, if that is not too far
+                for seen in self.maps:
+                    known = seen.objects.get(index)
+                    if known is not None and may_begin(self.stage, known.position):
+                        seen.objects = {**seen.objects, index: replace(known, missing=True)}
         self._last = (action, result)
 
     def hear(self, message: Message, seen: Mapping[int, Sighting]) -> None:
@@ -124,6 +130,8 @@ class Knowledge:
             for index in gone:
                 seen.forget(index)
             seen.update(view, frame, where, gone, damaged)
+            if not labeller.withheld:  # detectors overlook things, and labellers of theirs forget by themselves
+                seen.objects = with_missing(seen.objects, view, frame, gone)
             seen.mark_free(where, self._robot.agent.build.radius)
         hazard = np.zeros((len(base.task.hazards), 1, 1), np.float32) if view.level is None else view.level
         self._images = Images(rgb, view.depth, None if labeller.withheld else view.labels, hazard)

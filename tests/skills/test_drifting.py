@@ -78,6 +78,12 @@ def test_a_thing_that_is_faster_than_the_robot_is_given_up_soon(arena: Arena) ->
     assert not ok and reason == failures.UNREACHABLE and frames <= FAILED_FRAMES
 
 
+def test_nobody_drives_to_where_a_thing_was_that_is_faster(arena: Arena) -> None:
+    """It lies a metre beyond reach: to drive there takes 62 frames, to see it move away 14."""
+    ok, reason, frames = try_to_pick(arena, (0.0, FAST, 0.0), (-1.3, -0.35))
+    assert not ok and reason == failures.UNREACHABLE and frames <= 45
+
+
 def test_movement_is_measured_over_the_floor_and_rest_is_none(arena: Arena) -> None:
     arena.restart()
     index = arena.index("bowl")

@@ -65,8 +65,9 @@ class Memory:
 
     def view(self, decision: Decision) -> View:
         """The world as it is remembered at `decision`."""
-        targets = sorted((decision.target(name) for name in known(decision, open_targets(decision))), key=_index)
-        carts = sorted(known(decision, decision.containers))
+        left = known(decision, open_targets(decision), missing=True)
+        targets = sorted((decision.target(name) for name in left), key=_index)
+        carts = sorted(known(decision, decision.containers, missing=True))
         names = ("", *(target.name for target in targets), *carts)
         seen = [decision.map.objects[decision.index(name)] for name in names[1:]]
         for target, sighting in zip(targets, seen, strict=False):

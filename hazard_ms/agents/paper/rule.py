@@ -55,5 +55,5 @@ class Rule(Agent):
         again = [] if decision.last_action.verb == WALK_TO else [look]
         if self._near is not None:
             return [look, Action(PICK_UP, self._near), *again]
-        walks = [Action(WALK_TO, name) for name in sorted(known(decision, open_targets(decision)))]
+        walks = [Action(WALK_TO, name) for name in sorted(known(decision, open_targets(decision), missing=True))]
         return [look, *walks, *again]

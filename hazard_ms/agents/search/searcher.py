@@ -89,6 +89,8 @@ class Searcher(Agent):
             return self._say("into the bag", Action(DROP))
         arrived = decision.walked_up_to
         if decision.held is None and arrived in open_targets(decision):
+            if arrived not in known(decision, (arrived,)):
+                return self._say("it is perhaps elsewhere by now", Action(EXPLORE))
             return self._say("it is here", Action(PICK_UP, arrived))
         if decision.held is not None and arrived in decision.containers:
             return self._say("over the cart", Action(DROP, arrived))

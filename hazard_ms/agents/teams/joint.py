@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
+from hazard_ms.agents.base import known, open_targets
 from hazard_ms.agents.planner import Planner
 from hazard_ms.agents.search.outlook import Outlook
 from hazard_ms.agents.search.searcher import First
@@ -41,8 +42,8 @@ class Joint(Sharing):
         if not self._tells or len(self._partners) < 2:
             return ""
         last = decision.last_result
-        seen = [t.name for t in decision.targets if t.index in decision.map.objects and not t.rescued]
-        new = [name for name in seen if name not in self._told]
+        seen = known(decision, open_targets(decision))
+        new = [t.name for t in decision.targets if t.name in seen and t.name not in self._told]
         if not new or decision.walked_up_to is not None or last is None or not last.ok:
             return ""
         text = ""

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.skills.context import Stage
+from hazard_ms.skills.context import Skill, Stage
+from hazard_ms.skills.decision import Result
+from hazard_ms.skills.failures import BLOCKED
 
 DRIFT_FRAMES = 5  # frames over which a thing's movement is measured [ours]
 STILL = 0.008  # movement within these frames below which a thing lies still [m] [ours]
@@ -18,6 +20,22 @@ class Drift:
         """Begin with the thing `index` where it is."""
         self._stage, self._index = stage, index
         self._places = [(stage.position(index), 0)]  # and the frames from one to the next
+
+    def while_there(self, doing: Skill, far: float) -> Skill:
+        """Go on with `doing`, which is about where the thing lies now, until it has moved by more than `far` [m]."""
+        place, used = self._stage.position(self._index), 0
+        try:
+            action = next(doing)
+            while float(np.linalg.norm(self._places[-1][0] - place)) <= far:
+                yield action
+                used += 1
+                self.note()
+                action = next(doing)
+        except StopIteration as ended:
+            done: Result = ended.value
+            return done
+        doing.close()
+        return Result(False, BLOCKED, used)
 
     def note(self, frames: int = 1) -> None:
         """Note the present place, `frames` after the last one."""

@@ -54,10 +54,13 @@ def pick_up(stage: Stage, index: int) -> Skill:
     if reason:
         return Result(False, reason)
     place, drift = stage.position(thing), Drift(stage, thing)
-    used = 0 if _within_span(stage, place) else (yield from come_near(stage, place)).frames
-    used += (yield from turn_to(stage, stage.position(thing)[:2])).frames
-    if used:
-        drift.note(used)
+    used = 0
+    if not _within_span(stage, place):
+        used = (yield from drift.while_there(come_near(stage, place), ASTRAY)).frames
+    faced = (yield from turn_to(stage, stage.position(thing)[:2])).frames
+    used += faced
+    if faced:
+        drift.note(faced)
     taken = yield from _take(stage, thing, drift)
     return Result(taken.ok, taken.reason, used + taken.frames)
 
@@ -77,13 +80,18 @@ def _refusal(stage: Stage, index: int, thing: int) -> str:
     if not known(stage, index):
         return failures.UNKNOWN
     place = stage.position(thing) if thing >= 0 else stage.seen.objects[index].position
-    if float(np.linalg.norm(place - stage.robot.shoulder())) > LIMIT:
+    if not may_begin(stage, place):
         return failures.TOO_FAR
     if thing < 0:  # what really lies there is found out within reach alone
         return failures.UNREACHABLE
     if not bool(stage.world.takeable[0, thing]):
         return failures.NOT_A_TARGET
     return failures.ALREADY_RESCUED if bool(stage.world.safe[0, thing]) else ""
+
+
+def may_begin(stage: Stage, place: NDArray[np.floating]) -> bool:
+    """Whether `place` [m], [3], world frame, is near enough for a pick-up to begin."""
+    return float(np.linalg.norm(place - stage.robot.shoulder())) <= LIMIT
 
 
 def _within_span(stage: Stage, thing: NDArray[np.float64]) -> bool:

@@ -23,7 +23,7 @@ from hazard_ms.skills.failures import MAX_FRAMES
 def decision(place: tuple[float, float], seen: dict[str, tuple[float, float]], **more: Any) -> Any:
     """What an auction reads of a decision: place [m], and targets that were seen, with their places [m]."""
     names = tuple(sorted({"a", "b", "c", "d", *seen}))
-    sighting = {names.index(n): SimpleNamespace(position=np.array([*at, 0.5])) for n, at in seen.items()}
+    sighting = {names.index(n): SimpleNamespace(position=np.array([*at, 0.5]), missing=False) for n, at in seen.items()}
     rows = tuple(SimpleNamespace(name=n, rescued=n in more.get("rescued", ())) for n in names)
     return SimpleNamespace(
         agent_position=place,

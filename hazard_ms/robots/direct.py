@@ -147,8 +147,10 @@ class BaseForwardVel(DirectController, PDBaseForwardVelController):
     def act(self, action: Floats) -> None:
         """Drive as `action` says, [2]."""
         forward, turn = self._commands(action)
-        heading = torch.from_numpy(self._joints_now()[2:3]).double()  # rounded below, as `hazard_ms.spec.rounding` does
-        along = (float(np.float32(way.item()) * forward) + 0.0 for way in (heading.cos(), heading.sin()))
+        heading = torch.from_numpy(self._joints_now()[2:3])
+        along = (
+            float(np.float32(way.item()) * forward) + 0.0 for way in (rounding.cos(heading), rounding.sin(heading))
+        )
         for motor, speed in zip(self._motors, (*along, float(turn)), strict=True):
             motor.set_drive_velocity_target(speed)
 

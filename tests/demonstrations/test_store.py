@@ -107,5 +107,5 @@ def test_a_manifest_that_cannot_be_written_whole_is_told(tmp_path: Path, monkeyp
     entry = entries(tmp_path)[0]
     real = os.write
     monkeypatch.setattr(os, "write", lambda opened, text: real(opened, text[:5]))
-    with pytest.raises(OSError, match="must be written whole"):
+    with pytest.raises(OSError, match="could not be written whole; free some space"):
         append(tmp_path, entry)

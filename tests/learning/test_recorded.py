@@ -109,7 +109,7 @@ def test_what_cannot_be_learnt_from_is_told(tmp_path: Path, capsys: pytest.Captu
         else:
             result = dataclasses.replace(result, settings={**result.settings, **keywords})
         stored(tmp_path / name, 0, played=result, decisions=plain())
-    with pytest.raises(ValueError, match=f"demos must hold choices in {TASK} with physics paper, and .* holds none"):
+    with pytest.raises(ValueError, match=f"demos must hold choices in {TASK} with physics paper, got none in"):
         choices(tmp_path, TASK, "paper", LAYOUT)
     assert len(choices(tmp_path, "HazardFlood-v1", "paper", LAYOUT).option) == 2
     narrow = np.zeros((2, 7), np.float32)

@@ -17,7 +17,7 @@ def test_one_name_is_for_all_environments_and_a_list_has_one_for_each() -> None:
     assert by_name(NAMES[1], NAMES, 2) == [NAMES[1]] * 2
     assert by_name([NAMES[2], NAMES[0]], NAMES, 2) == [NAMES[2], NAMES[0]]
     for bad in ([NAMES[0]], [*NAMES], 7, None):
-        with pytest.raises(ValueError, match="must be a scene's name or a list of 2, got"):
+        with pytest.raises(ValueError, match="must be a scene's name or a list of 2 names, got"):
             by_name(bad, NAMES, 2)
 
 

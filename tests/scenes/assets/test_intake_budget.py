@@ -51,8 +51,8 @@ def test_waiting_costs_no_processor_time() -> None:
     ("ending", "word"),
     [
         ("kill -XCPU $$", "must be converted within 120 s of processor time, got no result: simplify it first"),
-        ("kill -SEGV $$", "could not be converted: the worker ended with -11: no message"),
-        (r"printf '\033[31mred\n' >&2; exit 7", r"ended with 7: \\x1b\[31mred"),
+        ("kill -SEGV $$", "could not be converted: the worker ended with exit code -11: no message"),
+        (r"printf '\033[31mred\n' >&2; exit 7", r"ended with exit code 7: \\x1b\[31mred"),
     ],
 )
 def test_how_the_worker_ends_is_said(ending: str, word: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -123,7 +123,7 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
     held = [t for t in open_ones if t.name == decision.held]
     there = known(decision, tuple(t.name for t in open_ones if t.name != decision.held))
     seen = [t for t in open_ones if t.name in there]
-    unseen = [t for t in open_ones if t.name not in there and t.name != decision.held]
+    unseen = [t for t in open_ones if t.index not in decision.map.objects and t.name != decision.held]
     given_up = [name for name, count in failures.items() if count >= give_up]
     carts = tuple(name for name in known(decision, decision.containers) if failures.get(name, 0) < give_up)
     doubts = [weights.belief * (1.0 - t.belief) for t in seen]

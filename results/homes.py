@@ -39,8 +39,8 @@ HEAD = """# Homes and gales
 
 Made by `./run python results/homes.py`. Scenes of the split `test` from number {first} on, Fetch, presets `paper`, one
 episode a scene; decisions in those before were read while the agents were made. Rows of `greedy` and
-`planner` are of commits ee7150e (gales) and 6824f3d (house fires, three of them of the day before); those of the others
-are of 27eb575, before things ended in carts as surely as now.
+`planner` are of commits ee7150e (gales) and 6824f3d (house fires, three of them of the day before), those of oracles in
+house fires of ee7150e; all others are of 27eb575, before things ended in carts as surely as now.
 `averted` is the share of the targets' value that would be lost if nobody acted and is not lost at the end, in percent,
 with 95 % bootstrap intervals over scenes; differences are paired by scene. `{plain}` is the oracle that
 takes no measures. homes.csv has every episode. Written at

@@ -133,7 +133,8 @@ def tables(every: list[Row]) -> str:
                 own = {(int(r["seed"]), r["scene"]): float(r[column]) for r in mine if r[column]}
                 if own:
                     scores[score][name] = own
-            means = [words(difference(own, dict.fromkeys(own, 0.0))) if own else "-" for own in _of(scores, name)]
+            rows = [values.get(name, {}) for values in scores.values()]
+            means = [words(difference(own, dict.fromkeys(own, 0.0))) if own else "-" for own in rows]
             frames = statistics.mean(int(r["frames"]) for r in mine)
             hits = sum(int(r["robot_collisions"]) for r in mine)
             text += f"| {task} | {name} | {' | '.join(means)} | {frames:.0f} | {hits} | {len(mine)} |\n"
@@ -141,11 +142,6 @@ def tables(every: list[Row]) -> str:
             if {BEST, *ONES, APART} <= values.keys():
                 compared += f"| {task} | {score} | {_ahead(values)} |\n"
     return text + COMPARED + compared
-
-
-def _of(scores: dict[str, dict[str, dict[Episode, float]]], name: str) -> list[dict[Episode, float]]:
-    """The scores of a team, one after another; empty where there is none."""
-    return [values.get(name, {}) for values in scores.values()]
 
 
 def _ahead(values: dict[str, dict[Episode, float]]) -> str:

@@ -107,8 +107,13 @@ def with_missing(
 
 def _shows_place_of(seen: Sighting, view: View) -> bool:
     """Whether a thing would be seen in a `view` if it were still where it was `seen`: nothing is in front of it."""
-    pixel = view.pixel_of(seen.position)
-    if pixel is None or seen.size < PLAIN_PIXELS * _of_one_metre(view, seen.position):
+    return seen.size >= PLAIN_PIXELS * _of_one_metre(view, seen.position) and unhidden(view, seen.position)
+
+
+def unhidden(view: View, place: NDArray[np.floating]) -> bool:
+    """Whether `view` shows what is at `place` [m], [3], or behind it: nothing is in front of it."""
+    pixel = view.pixel_of(place)
+    if pixel is None:
         return False
     row, column, far = pixel
     around = view.depth[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]

@@ -115,6 +115,10 @@ class Confusion:
         """The number of the bucket of so many pixels."""
         return bisect_right(self.pixels, pixels) - 1
 
+    def share_found(self, pixels: float) -> float:
+        """The share of looks at a thing with so many `pixels` that find it again."""
+        return self.found[self.bucket(pixels)]
+
     def told(self, look: Look) -> NDArray[np.float64]:
         """The chance, [L], that a thing of each category that is found is told as in a `look`, which tells something.
 

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from hazard_ms.sensing.detection.confusion import Confusion, Look
-from hazard_ms.sensing.detection.fusion import Evidence
-from hazard_ms.sensing.sighting import Sighting, merged
+from hazard_ms.sensing.detection.fusion import APART, Evidence
+from hazard_ms.sensing.sighting import Sighting, merged, unhidden
 from hazard_ms.sensing.view import View
 from hazard_ms.spec.catalogue import CATEGORIES
 
@@ -35,6 +35,7 @@ GONE = 2  # frames in which its place must be seen empty before it is forgotten 
 CLOSE = 0.2  # distance within which a thing of another category is the same one, told otherwise [m] [ours]
 WIDEST = 0.3  # half the width of what can be carried: a mask that is wider shows more than the thing [m] [ours]
 CART, CART_WIDEST = "cart", 0.55  # the same for carts, which are 0.56 m by 0.94 m [m] [ours]
+PLAIN = 0.9  # share of looks that find a thing, from which one that does not tells that it has moved [ours]
 UNPAIRED = 1e6  # cost of a pair that cannot be: more than all distances of a scene together [m]
 
 
@@ -61,6 +62,7 @@ class Track:
     rescued: bool = False
     evidence: Evidence | None = None  # of all looks; None where they are not fused
     size: float = 0.0  # its pixels at 1 m, by the last sighting
+    missed_from: NDArray[np.floating] | None = None  # where the eye was at the last look that must show it, [3] [m]
     belief: float = 1.0  # the chance that it is there and of its category
 
     @property
@@ -80,6 +82,20 @@ class Track:
         if not self.loose:
             return GATE + self.radius
         return GATE + (DRIFT * age if self.empty else min(UNSEEN_DRIFT * age, UNSEEN_MOST))
+
+    def see(self, seen: Sighting, frame: int) -> None:
+        """Enter that it was `seen` at `frame`."""
+        self.frames += self.sighting.frame < frame
+        self.sighting, self.empty, self.missed_from = merged(self.sighting, seen), 0, None
+
+    def miss(self, eye: NDArray[np.floating]) -> None:
+        """Enter that a look from the place `eye` [m], [3], shows its place plainly, and not the thing: it has moved.
+
+        Looks from about one place err alike and count once.
+        """
+        if self.loose and not self.rescued:
+            if self.missed_from is None or np.linalg.norm(self.missed_from - eye) >= APART:
+                self.empty, self.missed_from = self.empty + 1, np.array(eye, np.float64)
 
 
 def seen_through(view: View, place: NDArray[np.floating]) -> bool:
@@ -158,10 +174,8 @@ class Tracker:
         over = covering(view, known) if fused else {}
         covers = np.array([[over.get(track) == n for n in numbers] for track in known], bool)
         for row, column in pairs(known, [found[n] for n in numbers], frame, fused, covers):
-            track, seen = known[row], found[numbers[column]].sighting
-            track.frames += track.sighting.frame < frame
-            track.sighting, track.empty = merged(track.sighting, seen), 0
-            matched[numbers[column]] = track
+            known[row].see(found[numbers[column]].sighting, frame)
+            matched[numbers[column]] = known[row]
         for number in numbers:
             if number not in matched:
                 matched[number] = Track(found[number].category, found[number].sighting)
@@ -197,6 +211,8 @@ class Tracker:
             if track.evidence is not None and track not in found and shows(view, track):
                 pixels = track.size / float(np.sum((track.sighting.position - eye) ** 2))
                 track.evidence.look(Look(None, pixels), eye)
+                if self._confusion.share_found(pixels) >= PLAIN and unhidden(view, track.sighting.position):
+                    track.miss(eye)
 
     def _join(self, over: Mapping[Track, int], matched: dict[int, Track]) -> list[Track]:
         """Make one of each two tracks of one category that a detection covers; returns those that are given up.

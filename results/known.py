@@ -23,7 +23,8 @@ from hazard_ms.perception.training.pictures import read
 from hazard_ms.scenes.splits import scene as scene_of
 from hazard_ms.sensing.detection.beliefs import believed
 from hazard_ms.sensing.detection.confusion import Confusion
-from hazard_ms.sensing.detection.tracks import Track, Tracker
+from hazard_ms.sensing.detection.track import Track
+from hazard_ms.sensing.detection.tracks import Tracker
 from results.detector import ERRORS, UNSEEN
 from results.tables import HERE, TASKS, machine
 

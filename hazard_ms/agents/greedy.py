@@ -7,6 +7,8 @@ the hazard's level continued along the straight line through the last two sighti
 gets a growing cost and is given up at last, so no path is tried for ever. Values count by the belief that the thing is
 what it seems to be, 1 with the truth; what is not is refused at once, and costs no handling. A pick-up that met no
 target does not count as a failure: it ends the belief.
+It searches where no target is known, or only such as are far and hardly believed; these come when nothing is left to
+search. With a detector, which overlooks things, it then begins to search anew.
 Searching: walk to the landmark with the most unexplored floor around it, then look around there. Where walls divide
 the place, distances are those of the ways round them, things to which none leads are left out, and landmarks are places
 from which floor that was not seen yet comes into sight.
@@ -35,6 +37,7 @@ LEGS = 8  # walks without arrival to one target that together count as a failure
 GIVE_UP = 4  # failures with one target
 LOYALTY = 0.8  # factor on the cost of the target it is on its way to: another must be clearly better
 VISITS = 2  # of one landmark in search
+UNLIKELY, FAR_OFF = 0.3, 1.5  # belief below which, and way from which on, searching comes first [-], [m]
 
 
 class Greedy(Agent):
@@ -114,9 +117,13 @@ class Greedy(Agent):
         targets = known(decision, tuple(n for n in open_targets(decision) if n not in self.left_to_others))
         ways = self._ways(decision, [name for name in targets if self._failures.get(name, 0) < self._give_up])
         costs = {name: self._cost(decision, name, targets[name], way) for name, way in ways.items()}
-        if not costs:
-            return self._search(decision)
         arrived = decision.walked_up_to
+        likely = {name: cost for name, cost in costs.items() if self._is_likely(decision, name, ways[name])}
+        if not likely and (search := self._search(decision)) is not None:
+            return search
+        if not costs:
+            return self._search_anew(decision)
+        costs = likely or costs
         best = arrived if arrived in costs else min(costs, key=lambda name: costs[name])
         self._landmark = None
         self.note = f"cost {costs[best]:.2f}, the lowest of {len(costs)}"
@@ -130,7 +137,7 @@ class Greedy(Agent):
         carts = known(decision, decision.containers)
         open_carts = [name for name in carts if self._failures.get(name, 0) < self._give_up]
         if not open_carts:
-            return self._search(decision)
+            return self._search(decision) or self._search_anew(decision)
         nearest = min(open_carts, key=lambda name: distance(decision, carts[name]) * (1 + self._failures.get(name, 0)))
         self.note = "to the nearest cart"
         return Action(DROP if decision.walked_up_to == nearest else WALK_TO, nearest)
@@ -151,8 +158,24 @@ class Greedy(Agent):
         loyalty = LOYALTY if decision.last_action == Action(WALK_TO, name) else 1.0
         return loyalty * way * (1 + self._failures.get(name, 0)) ** 2 / value
 
-    def _search(self, decision: Decision) -> Action:
-        """Walk to the most promising landmark and look around there; stop when nothing is left to try."""
+    def _is_likely(self, decision: Decision, name: str, way: float) -> bool:
+        """Whether a target at the end of a `way` [m] is worth the walk before any search."""
+        sure = not self._belief or decision.target(name).belief >= UNLIKELY
+        return sure or way < FAR_OFF or name == decision.walked_up_to
+
+    def _search_anew(self, decision: Decision) -> Action:
+        """Look around, and begin to search anew where something was overlooked; else stop: nothing is left to try."""
+        unknown = [name for name in open_targets(decision) if decision.index(name) not in decision.map.objects]
+        if self._sight < FAR and (unknown or decision.held is not None):
+            self.note = "search anew: something was overlooked"
+            self._visits.clear()
+            self._looks.clear()
+            return Action(EXPLORE)
+        self.note = "nothing left to search"
+        return Action(STOP)
+
+    def _search(self, decision: Decision) -> Action | None:
+        """Walk to the most promising landmark and look around there; None where none is left."""
         if self._landmark is not None:
             if decision.walked_up_to == self._landmark:
                 self.note, self._landmark = "look around from here", None
@@ -161,8 +184,7 @@ class Greedy(Agent):
             return Action(WALK_TO, self._landmark)
         scores = self._landmarks(decision)
         if not scores:
-            self.note = "nothing left to search"
-            return Action(STOP)
+            return None
         best = max(scores, key=lambda index: scores[index])
         self._visits[best] = self._visits.get(best, 0) + 1
         self._landmark = decision.names[best]

@@ -57,4 +57,4 @@ FAILURES = (
 UNFINISHED = (MAX_FRAMES, EPISODE_OVER)
 
 # Of a pick-up that may have found no target where one was believed to be
-REFUSED = (NOT_A_TARGET, UNREACHABLE)
+REFUSED = (NOT_A_TARGET, ALREADY_RESCUED, UNREACHABLE)

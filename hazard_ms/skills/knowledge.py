@@ -18,7 +18,7 @@ from hazard_ms.simulation.world import World
 from hazard_ms.skills.brief import Brief, brief_of, has_several_rooms
 from hazard_ms.skills.context import Rescuer, Stage
 from hazard_ms.skills.decision import PICK_UP, Action, Decision, Images, Message, Result, Teammate, available
-from hazard_ms.skills.failures import NOT_A_TARGET, REFUSED, TOO_FAR
+from hazard_ms.skills.failures import REFUSED, TOO_FAR, UNREACHABLE
 from hazard_ms.skills.mitigations.offers import offered, tools, verbs_of
 from hazard_ms.skills.motor.grasping import may_begin
 from hazard_ms.spec.registry.mitigations import TELL
@@ -95,7 +95,7 @@ class Knowledge:
                 for seen in self.maps:
                     seen.forget(index)
             elif result.reason in REFUSED:
-                self.labeller.refused(index, result.reason == NOT_A_TARGET)
+                self.labeller.refused(index, result.reason != UNREACHABLE)
             elif result.reason == TOO_FAR:  # it is not where the map has it, if that is not too far
                 for seen in self.maps:
                     known = seen.objects.get(index)

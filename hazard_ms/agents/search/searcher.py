@@ -11,6 +11,7 @@ from hazard_ms.agents.gale.aims import aims_of
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.mitigating import Mitigator
 from hazard_ms.agents.search.outlook import Outlook, Weights, outlook
+from hazard_ms.sensing.detection.eyes import FAR
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import NO_PATH, TOO_FAR
@@ -173,7 +174,10 @@ class Searcher(Agent):
         return self._say(f"on the way to {name}, to search there", Action(WALK_TO, name))
 
     def _without_plan(self, decision: Decision, ahead: Outlook) -> Action:
-        """Try what is nearest, although it is unlikely to be safe in time; stop where nothing is left to try."""
+        """Try what is nearest, although it is unlikely to be safe in time; stop where nothing is left to try.
+
+        A detector overlooks things: where some must be left, the search begins anew.
+        """
         holding = decision.held is not None
         names = [n for n in (ahead.carts if holding else ahead.targets) if n != decision.held]
         searching = not names
@@ -182,6 +186,10 @@ class Searcher(Agent):
         opening = None if names or self._mitigator is None else self._mitigator.opening(decision)
         if self._mitigator is not None and opening is not None:
             return self._say(self._mitigator.why, opening)
+        if not names and self._brief.sight < FAR and (ahead.unseen > 0.0 or holding):
+            self._memory.visits.clear()
+            self._memory.looks.clear()
+            return self._say("search anew: something was overlooked", Action(EXPLORE))
         if not names:
             return self._say("nothing is left to try", Action(STOP))
         name = min(names, key=lambda n: distance(decision, decision.map.objects[decision.index(n)]))

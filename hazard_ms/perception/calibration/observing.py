@@ -14,7 +14,7 @@ from hazard_ms.sensing.detection.detector import Detection, Detector
 from hazard_ms.sensing.detection.labeller import THRESHOLD
 from hazard_ms.sensing.detection.numbered import found_in
 from hazard_ms.sensing.detection.odds import in_front
-from hazard_ms.sensing.detection.tracks import Found
+from hazard_ms.sensing.detection.track import Found
 from hazard_ms.sensing.sighting import SEEN_PIXELS, Sighting, sightings
 from hazard_ms.sensing.view import View
 from hazard_ms.spec.catalogue import CATEGORIES
@@ -28,7 +28,7 @@ class Told:
     sighting: Sighting
     thing: int
     chances: tuple[float, ...] | None = None  # as the detector told them
-    shown: tuple[float, ...] | None = None  # of furniture, which is carts: see hazard_ms.sensing.detection.odds
+    shown: tuple[float, ...] | None = None  # see hazard_ms.sensing.detection.odds
 
     @property
     def found(self) -> Found:

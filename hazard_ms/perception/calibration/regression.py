@@ -1,13 +1,14 @@
-"""Learns how looks at carts differ from looks at what is taken for them, by logistic regression."""
+"""Learns how looks at things differ from looks at what is taken for them, by logistic regression."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.perception.calibration.observing import Observed, Told
+from hazard_ms.sensing.detection.odds import OF_THING, length_of
 
 FEWEST = 20  # looks at things and at clutter from which it is learned [ours]
 RIDGE = 0.01  # by which the squares of the weights count [ours]
@@ -17,29 +18,35 @@ Shown = tuple[float, ...]
 
 
 def odds_of(looks: Sequence[Observed]) -> dict[str, tuple[float, ...]]:
-    """The weights by which `hazard_ms.sensing.detection.odds` tells carts from clutter, by category.
+    """The weights by which `hazard_ms.sensing.detection.odds` tells things from clutter, by category.
 
-    Of a cart that is found in several parts the largest counts. Empty where too few were found.
+    All that can be carried has the same ones. Empty where too few were found.
     """
-    made = {}
-    for name in sorted({told.category for look in looks for told in look.told if told.shown is not None}):
-        real, clutter = _shown(looks, name)
+    told = {each.category for look in looks for each in look.told if each.shown is not None}
+    loose = {name for name in told if length_of(name) == OF_THING}
+    made: dict[str, tuple[float, ...]] = {}
+    for names in (loose, *({name} for name in sorted(told - loose))):
+        real, clutter = _shown(looks, names)
         if min(len(real), len(clutter)) >= FEWEST:
-            made[name] = _weights(np.array([*real, *clutter]), np.arange(len(real) + len(clutter)) < len(real))
+            weights = _weights(np.array([*real, *clutter]), np.arange(len(real) + len(clutter)) < len(real))
+            made |= dict.fromkeys(sorted(names), weights)
     return made
 
 
-def _shown(looks: Sequence[Observed], name: str) -> tuple[list[Shown], list[Shown]]:
-    """What is shown of things, and of clutter, that are told as the category `name`."""
+def _shown(looks: Sequence[Observed], names: Collection[str]) -> tuple[list[Shown], list[Shown]]:
+    """What is shown of things, and of clutter, that are told as one of the categories `names`.
+
+    Of a thing that is found in several parts the largest counts.
+    """
     real, clutter = list[Shown](), list[Shown]()
     for look in looks:
         largest: dict[int, Told] = {}
         for told in look.told:
-            if told.category != name or told.shown is None:
+            if told.category not in names or told.shown is None:
                 continue
             if not told.thing:
                 clutter.append(told.shown)
-            elif look.kinds[told.thing] == name:
+            elif look.kinds[told.thing] in names:
                 known = largest.get(told.thing, told)
                 largest[told.thing] = max(known, told, key=lambda each: each.sighting.size)
         real += [told.shown for told in largest.values() if told.shown is not None]
@@ -49,7 +56,7 @@ def _shown(looks: Sequence[Observed], name: str) -> tuple[list[Shown], list[Show
 def _weights(given: NDArray[np.float64], real: NDArray[np.bool_]) -> tuple[float, ...]:
     """The weights of a logistic regression, as if there had been as many looks at things as at clutter.
 
-    `given`, [N, SHOWN]: what is shown in each look; `real`, [N]: whether it is of a thing.
+    `given`, [N, S]: what is shown in each look; `real`, [N]: whether it is of a thing.
     """
     middle, spread = given.mean(0), given.std(0)
     middle[0], spread[0] = 0.0, 1.0

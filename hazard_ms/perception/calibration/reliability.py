@@ -12,7 +12,8 @@ from hazard_ms.perception.calibration.measuring import confusion_of
 from hazard_ms.perception.calibration.observing import Observed
 from hazard_ms.sensing.detection.beliefs import believed
 from hazard_ms.sensing.detection.confusion import Confusion
-from hazard_ms.sensing.detection.tracks import Track, Tracker
+from hazard_ms.sensing.detection.track import Track
+from hazard_ms.sensing.detection.tracks import Tracker
 
 BINS = 10  # of beliefs, from 0 to 1 [ours]
 REPEATED = (0.3, 0.5, 0.7, 1.0)  # exponents of looks after the first that are tried [ours]

@@ -12,7 +12,7 @@ import numpy as np
 
 from hazard_ms.sensing.detection.confusion import LEAST, within_count
 from hazard_ms.sensing.detection.fusion import category_of
-from hazard_ms.sensing.detection.tracks import CART, Track
+from hazard_ms.sensing.detection.track import CART, Track
 
 SELF, CROWD = 0.7, 1.5  # distances between which other carts hardly stand, but other parts of a fence do [m] [ours]
 CROWDED = 0.3  # by which each other one there changes the odds that one is a cart [-] [ours]

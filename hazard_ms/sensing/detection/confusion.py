@@ -11,8 +11,8 @@ A look at a thing tells a category, or misses it. With b the bucket of its pixel
     P(told j | c)    = again (1 - steady) / (L - 1)
 
 Where the detector tells its own chances, a look that tells something is as sure as it is with the chance real[s] at a
-thing and false[s] at c, s being the bucket of the largest of them. For carts `odds_of` holds weights that make odds of
-all that such a look shows, which take the place of real[s] : false[s] (hazard_ms.sensing.detection.odds).
+thing and false[s] at c, s being the bucket of the largest of them. `odds_of` holds weights that make odds of all that
+such a look shows, which take the place of real[s] : false[s] (hazard_ms.sensing.detection.odds).
 
 Before the second look, c has the weight clutter[j0], the number of such places in a scene, and k that of the number of
 k that there are to be found, times `seen`, times the chance that k is told as j0.
@@ -30,7 +30,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hazard_ms.sensing.detection.odds import Weights, odds
+from hazard_ms.sensing.detection.odds import Weights, length_of, odds
 from hazard_ms.spec.foreign import plain
 from hazard_ms.spec.foreign.plain import Within
 
@@ -49,7 +49,7 @@ class Look(NamedTuple):
     told: str | None
     pixels: float
     chances: tuple[float, ...] | None = None  # of each category by the detector itself, [L]
-    shown: tuple[float, ...] | None = None  # by which a cart is told from what only looks like one
+    shown: tuple[float, ...] | None = None  # by which a thing is told from what only looks like one
 
 
 @dataclass(frozen=True)
@@ -95,6 +95,8 @@ class Confusion:
             raise ValueError(f"real, false and false_of must have {len(self.surer)} buckets, like surer, got {odd[0]}")
         if bad := sorted(named - set(self.classes)):
             raise ValueError(f"a category of the table must be one of its classes, got {bad[0]!r:.100}")
+        if wrong := [name for name, weights in self.odds_of.items() if len(weights) != length_of(name)]:
+            raise ValueError(f"odds_of {wrong[0]} must have {length_of(wrong[0])} weights")
 
     @classmethod
     def read(cls, path: Path) -> Confusion:

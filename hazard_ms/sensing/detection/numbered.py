@@ -2,25 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.sensing.camera import STRUCTURE
 from hazard_ms.sensing.detection.detector import Detection
-from hazard_ms.sensing.detection.odds import shown
-from hazard_ms.sensing.detection.tracks import Found, Track, surroundings
+from hazard_ms.sensing.detection.labeller import blank
+from hazard_ms.sensing.detection.odds import in_front, shown, shown_of_thing
+from hazard_ms.sensing.detection.track import Found, Track
+from hazard_ms.sensing.detection.tracks import surroundings
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.view import View
+
+
+def numbered(true: View, found: Sequence[Detection], own: NDArray[np.bool_], carts: Collection[int]) -> View:
+    """The `true` view with numbers of `found` detections as labels.
+
+    `own`: pixels of the robot, [H, W]; `carts`: numbers of detections of carts, whose masks end behind these.
+    """
+    labels = blank(own, true.depth)
+    for number, detection in enumerate(found):
+        mask = detection.mask & ~own
+        labels[in_front(mask, true.depth) if number in carts else mask] = number
+    return replace(true, labels=labels)
 
 
 def found_in(view: View, number: int, detection: Detection, seen: Sighting, cart: bool) -> Found:
     """The detection with a `number` in a `view` as tracks take it, that was `seen`; `cart`: whether it tells of one."""
     assert view.labels is not None
     chances, tells = detection.chances, None
-    if cart and chances is not None:
-        tells = shown(view, view.labels == number, seen, max(chances))
+    if chances is not None:
+        tells = (shown if cart else shown_of_thing)(view, view.labels == number, seen, max(chances))
     return Found(detection.category, seen, chances, tells)
 
 

@@ -16,11 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.sensing.detection.beliefs import believed
+from hazard_ms.sensing.detection.carts import lies_in, surest
 from hazard_ms.sensing.detection.detector import Detector
-from hazard_ms.sensing.detection.labeller import DetectingLabeller, blank
-from hazard_ms.sensing.detection.numbered import found_in, labels_of
-from hazard_ms.sensing.detection.odds import in_front
-from hazard_ms.sensing.detection.tracks import CART_WIDEST, ENOUGH, WIDEST, Track, Tracker
+from hazard_ms.sensing.detection.hand import loose_things, nearest_to
+from hazard_ms.sensing.detection.labeller import DetectingLabeller
+from hazard_ms.sensing.detection.numbered import found_in, labels_of, numbered
+from hazard_ms.sensing.detection.track import CART_WIDEST, WIDEST, Track
+from hazard_ms.sensing.detection.tracks import ENOUGH, Tracker
 from hazard_ms.sensing.observations import SLOTS
 from hazard_ms.sensing.sighting import sightings
 from hazard_ms.sensing.target_table import Target
@@ -72,14 +74,9 @@ class OwnLabeller(DetectingLabeller):
 
     def view(self, rgb: NDArray[np.uint8] | None, true: View, frame: int) -> View:
         assert true.labels is not None
-        own = self._own(true.labels)
         found = self._detect(rgb, true, frame)
         carts = {number for number, detection in enumerate(found) if self._seeks(detection.category)}
-        numbers = blank(own, true.depth)
-        for number, detection in enumerate(found):
-            mask = detection.mask & ~own
-            numbers[in_front(mask, true.depth) if number in carts else mask] = number
-        view = replace(true, labels=numbers)
+        view = numbered(true, found, self._own(true.labels), carts)
         seen = sightings(view, frame, len(found), frozenset(), None)
         self._let_go()
         out_of_sight = [*self._stowed, *([self._taken[0]] if self._taken else [])]
@@ -93,10 +90,11 @@ class OwnLabeller(DetectingLabeller):
             track.score = max(track.score, found[number].score)
         if self._confusion is not None:
             self._believe(out_of_sight)
+        near = [track for track in self._tracker.tracks if track not in out_of_sight]
+        self._pass_over(near)
         for track in tracks.values():
             self._introduce(track)
         self.containers = self._surest_carts()
-        near = [track for track in self._tracker.tracks if track not in out_of_sight]
         return replace(true, labels=labels_of(view, tracks, near, frame, UNSURE))
 
     def _seeks(self, category: str) -> bool:
@@ -136,6 +134,14 @@ class OwnLabeller(DetectingLabeller):
                 self._drop(track)
             track.category = category
 
+    def _pass_over(self, tracks: Sequence[Track]) -> None:
+        """Refute those of `tracks` that lie in a cart, and are none that the agent put there: they are safe."""
+        carts = self._believed_carts()
+        for track in tracks if carts else ():
+            if track.loose and not track.rescued and not track.refuted and lies_in(track, carts):
+                self._drop(track)
+                track.refuted = True
+
     def _drop(self, track: Track) -> None:
         """Take its index from a track, which stays."""
         if self._by_index.get(track.index) is track:
@@ -156,10 +162,12 @@ class OwnLabeller(DetectingLabeller):
 
         They are those of the surest detections; where too few are found, names of others that must be somewhere.
         """
-        found = [track for index, track in self._by_index.items() if self._is_cart(index)]
-        count = sorted(track.index for track in sorted(found, key=lambda t: (-t.belief, -t.score))[: len(self._carts)])
+        count = sorted(track.index for track in self._believed_carts())
         names = [name for i, name in enumerate(self.names) if self._is_cart(i) and i not in self._by_index]
         return (*(self.names[index] for index in count), *names)[: len(self._carts)]
+
+    def _believed_carts(self) -> list[Track]:
+        return surest([track for index, track in self._by_index.items() if self._is_cart(index)], len(self._carts))
 
     def missed(self, index: int) -> None:
         track = self._by_index.pop(index, None)
@@ -169,7 +177,8 @@ class OwnLabeller(DetectingLabeller):
         self.containers = self._surest_carts()
 
     def refused(self, index: int, other: bool) -> None:
-        if self._confusion is not None and (other or self.thing(index) < 0):
+        track = self._by_index.get(index)
+        if self._confusion is not None and track is not None and not track.rescued and (other or self.thing(index) < 0):
             self.missed(index)
 
     def _let_go(self) -> None:
@@ -191,16 +200,9 @@ class OwnLabeller(DetectingLabeller):
     def thing(self, index: int) -> int:
         if index not in self._by_index:
             return -1
-        place, world = self._by_index[index].sighting.position, self._world
-        cart = self._is_cart(index)
-        free = world.movable & world.exists & ~world.away & ~world.floats
-        there = self._carts if cart else np.flatnonzero(free[0].cpu().numpy())
-        if not len(there):
-            return -1
-        axes = 2 if cart else 3
-        far = np.linalg.norm(world.position[0, there].cpu().numpy()[:, :axes] - place[:axes], axis=-1)
-        nearest = int(np.argmin(far))
-        return int(there[nearest]) if far[nearest] < (CART_WITHIN if cart else WITHIN) else -1
+        place, cart = self._by_index[index].sighting.position, self._is_cart(index)
+        there = self._carts if cart else loose_things(self._world)
+        return nearest_to(self._world, there, place, CART_WITHIN if cart else WITHIN, 2 if cart else 3)
 
     def reach_for(self, index: int) -> int:
         if index in self._by_index:

@@ -12,90 +12,24 @@ all looks at it, those that missed it among them. Two tracks of one category tha
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from hazard_ms.sensing.detection.confusion import Confusion, Look
-from hazard_ms.sensing.detection.fusion import APART, Evidence
-from hazard_ms.sensing.sighting import Sighting, merged, unhidden
+from hazard_ms.sensing.detection.fusion import Evidence
+from hazard_ms.sensing.detection.track import Found, Track
+from hazard_ms.sensing.sighting import unhidden
 from hazard_ms.sensing.view import View
-from hazard_ms.spec.catalogue import CATEGORIES
 
-GATE = 0.3  # distance within which a thing of the same category is the same one [m] [ours]
-DRIFT = 0.016  # by which that grows for a thing that has moved: what a robot walks in a frame [m/frame] [ours]
-UNSEEN_DRIFT, UNSEEN_MOST = 0.004, 1.0  # the same for one out of sight [m/frame], and at most [m] [ours]
 BEHIND = 0.15  # what is this far behind where a thing was shows that it is gone [m] [ours]
 AROUND = 0.05  # by which a thing may reach beyond what was seen of it [m] [ours]
 ENOUGH = 2  # frames in which a thing must be seen before it is believed [ours]
 GONE = 2  # frames in which its place must be seen empty before it is forgotten [ours]
 CLOSE = 0.2  # distance within which a thing of another category is the same one, told otherwise [m] [ours]
-WIDEST = 0.3  # half the width of what can be carried: a mask that is wider shows more than the thing [m] [ours]
-CART, CART_WIDEST = "cart", 0.55  # the same for carts, which are 0.56 m by 0.94 m [m] [ours]
 PLAIN = 0.9  # share of looks that find a thing, from which one that does not tells that it has moved [ours]
 UNPAIRED = 1e6  # cost of a pair that cannot be: more than all distances of a scene together [m]
-
-
-class Found(NamedTuple):
-    """A detection as tracks take it: its category, where it is, and the chances that the detector told, if it did."""
-
-    category: str
-    sighting: Sighting
-    chances: tuple[float, ...] | None = None
-    shown: tuple[float, ...] | None = None  # of a cart, see hazard_ms.sensing.detection.odds
-
-
-@dataclass(eq=False)
-class Track:
-    """One thing that was detected, perhaps more than once."""
-
-    category: str
-    sighting: Sighting
-    frames: int = 1  # in which it was seen
-    empty: int = 0  # frames since then in which its place was seen empty
-    index: int = -1  # by which the agent knows it; -1: not yet
-    score: float = 0.0  # of its surest detection
-    refuted: bool = False  # whether it turned out not to be there, so that it is never believed again
-    rescued: bool = False
-    evidence: Evidence | None = None  # of all looks; None where they are not fused
-    size: float = 0.0  # its pixels at 1 m, by the last sighting
-    missed_from: NDArray[np.floating] | None = None  # where the eye was at the last look that must show it, [3] [m]
-    belief: float = 1.0  # the chance that it is there and of its category
-
-    @property
-    def loose(self) -> bool:
-        """Whether it can move."""
-        return CATEGORIES[self.category].kind == "object"
-
-    @property
-    def radius(self) -> float:
-        """The distance from its middle within which the thing lies [m], by what was seen of it and what it can be."""
-        most = WIDEST if self.loose else CART_WIDEST if self.category == CART else float("inf")
-        return min(self.sighting.radius, most)
-
-    def reach(self, frame: int) -> float:
-        """Distance from where it was seen last within which it may be at `frame` [m]."""
-        age = frame - self.sighting.frame
-        if not self.loose:
-            return GATE + self.radius
-        return GATE + (DRIFT * age if self.empty else min(UNSEEN_DRIFT * age, UNSEEN_MOST))
-
-    def see(self, seen: Sighting, frame: int) -> None:
-        """Enter that it was `seen` at `frame`."""
-        self.frames += self.sighting.frame < frame
-        self.sighting, self.empty, self.missed_from = merged(self.sighting, seen), 0, None
-
-    def miss(self, eye: NDArray[np.floating]) -> None:
-        """Enter that a look from the place `eye` [m], [3], shows its place plainly, and not the thing: it has moved.
-
-        Looks from about one place err alike and count once.
-        """
-        if self.loose and not self.rescued:
-            if self.missed_from is None or np.linalg.norm(self.missed_from - eye) >= APART:
-                self.empty, self.missed_from = self.empty + 1, np.array(eye, np.float64)
 
 
 def seen_through(view: View, place: NDArray[np.floating]) -> bool:

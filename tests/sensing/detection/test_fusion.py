@@ -12,7 +12,8 @@ from hazard_ms.sensing.detection.beliefs import believed, shared
 from hazard_ms.sensing.detection.confusion import Look
 from hazard_ms.sensing.detection.fusion import Evidence, category_of
 from hazard_ms.sensing.detection.own import OwnLabeller
-from hazard_ms.sensing.detection.tracks import CLOSE, GATE, Found, Track, Tracker, pairs
+from hazard_ms.sensing.detection.track import GATE, Found, Track
+from hazard_ms.sensing.detection.tracks import CLOSE, Tracker, pairs
 from hazard_ms.sensing.view import View
 from hazard_ms.simulation.world import World
 from tests.sensing.detection.test_confusion import TABLE

@@ -14,7 +14,7 @@ from hazard_ms.sensing.detection.confusion import Confusion, Look
 from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
 from hazard_ms.sensing.detection.fusion import Evidence
 from hazard_ms.sensing.detection.own import OwnLabeller
-from hazard_ms.sensing.detection.tracks import Track
+from hazard_ms.sensing.detection.track import Track
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.view import View
 from hazard_ms.simulation.world import World

@@ -7,7 +7,8 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from hazard_ms.sensing.detection.tracks import DRIFT, GATE, Found, Track, Tracker, pairs, seen_through
+from hazard_ms.sensing.detection.track import DRIFT, GATE, Found, Track
+from hazard_ms.sensing.detection.tracks import Tracker, pairs, seen_through
 from hazard_ms.sensing.sighting import Sighting
 from tests.worlds.wall import view
 

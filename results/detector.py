@@ -6,7 +6,7 @@ results/eyes.py; and those in which errors are counted. `train` goes on from the
 `name` trains the second stage on what that one finds, `calibrate` counts the errors, `tables` scores the detector in
 the test rooms and writes detector.md beside this file. Without words it does all of it. Each step resumes where it
 stopped; takes hours on one core. What is shipped is build/detector/second_stage, called small. `odds`, by its name
-alone, learns anew how carts differ from clutter, for the table of the package's weights, whose rest stays.
+alone, learns anew how things differ from clutter, for the table of the package's weights, whose rest stays.
 """
 
 from __future__ import annotations
@@ -126,9 +126,9 @@ def calibrate() -> None:
 
 
 def odds() -> None:
-    """Learn how carts differ from clutter in the streets, and put it into the table of the package's weights."""
+    """Learn how things differ from clutter, and put it into the table of the package's weights."""
     detector, file = Small(), SHIPPED.with_name(f"{SHIPPED.stem}{CONFUSION}")
-    pictures = [Thinned(picture) for picture in read([UNSEEN / TASKS["wind"]], ERRORS["wind"])]
+    pictures = [Thinned(picture) for task, split in ERRORS.items() for picture in read([UNSEEN / TASKS[task]], split)]
     made = odds_of(observed(detector, pictures, detector.classes))
     assert detector.confusion is not None
     file.write_text(json.dumps(asdict(replace(detector.confusion, odds_of=made)), indent=1) + "\n", encoding="utf-8")

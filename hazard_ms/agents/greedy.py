@@ -61,7 +61,7 @@ class Greedy(Agent):
         self._failures: dict[str, int] = {}
         self._visits: dict[int, int] = {}
         self._radius = brief.radius if brief.several_rooms else None  # of the robot where walls count [m]
-        self._sight = brief.sight
+        self._sight, self._detects = brief.sight, brief.looks
         self._looks: list[tuple[float, float]] = []  # where it has looked around [m]
         self._looked_from: tuple[float, float] | None = None  # where it last looked around [m]
         self._look_again = False
@@ -166,7 +166,7 @@ class Greedy(Agent):
     def _search_anew(self, decision: Decision) -> Action:
         """Look around, and begin to search anew where something was overlooked; else stop: nothing is left to try."""
         unknown = [name for name in open_targets(decision) if decision.index(name) not in decision.map.objects]
-        if self._sight < FAR and (unknown or decision.held is not None):
+        if self._detects and (unknown or decision.held is not None):
             self.note = "search anew: something was overlooked"
             self._visits.clear()
             self._looks.clear()

@@ -8,7 +8,7 @@ import pytest
 
 from hazard_ms.agents.base import agent
 from hazard_ms.agents.search.memory import Memory
-from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision, Result
+from hazard_ms.skills.decision import EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision, Result
 from hazard_ms.skills.failures import NOT_A_TARGET
 from tests.worlds.playground import Playground, brief, play
 
@@ -63,6 +63,44 @@ def test_what_is_hardly_believed_is_searched_for_elsewhere() -> None:
         player.reset(told)
         ground.do(player.act(ground.decision()))
         assert player.act(doubted(ground.decision(), known=belief)).target == first
+
+
+@pytest.mark.parametrize(("belief", "away", "first"), [(0.2, 2.8, "table"), (0.4, 2.8, "a"), (0.2, 1.0, "a")])
+def test_greedy_searches_before_it_walks_far_to_what_it_hardly_believes(belief: float, away: float, first: str) -> None:
+    ground = Playground({"table": (-2.5, 0.0), "a": (away, 0.0)}, {"a": 5.0})
+    player = agent("greedy")
+    player.reset(brief())
+    ground.do(player.act(ground.decision()))
+    assert player.act(doubted(ground.decision(), a=belief)).target == first
+
+
+def test_greedy_goes_to_what_it_hardly_believes_once_nothing_is_left_to_search() -> None:
+    ground = Playground({"a": (2.8, 0.0)}, {"a": 5.0})
+    ground.map.explored[:] = True
+    player = agent("greedy")
+    player.reset(brief())
+    targets = set()
+    for _ in range(8):
+        action = player.act(doubted(ground.decision(), a=0.2))
+        targets.add(action)
+        ground.do(action)
+    assert Action(PICK_UP, "a") in targets
+
+
+@pytest.mark.parametrize("name", AGENTS)
+def test_with_eyes_that_overlook_things_the_search_begins_anew(name: str) -> None:
+    """One target is nowhere to be seen: with the truth the agent stops, with a detector never."""
+    for detects in (False, True):
+        ground = Playground({"table": (1.5, 0.0), "a": (90.0, 0.0)}, {"a": 5.0})
+        player, actions = agent(name), []
+        player.reset(replace(brief(), looks=detects, targets=ground.decision().targets))
+        for _ in range(25):
+            actions.append(player.act(ground.decision()))
+            if actions[-1] == Action(STOP):
+                break
+            ground.do(actions[-1])
+        assert (actions[-1] == Action(STOP)) is not detects
+        assert not detects or sum(action == Action(EXPLORE) for action in actions) >= 4
 
 
 def test_what_was_no_target_is_no_failure_of_whatever_gets_its_name() -> None:

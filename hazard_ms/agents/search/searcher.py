@@ -11,7 +11,6 @@ from hazard_ms.agents.gale.aims import aims_of
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.mitigating import Mitigator
 from hazard_ms.agents.search.outlook import Outlook, Weights, outlook
-from hazard_ms.sensing.detection.eyes import FAR
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import NO_PATH, TOO_FAR
@@ -186,7 +185,7 @@ class Searcher(Agent):
         opening = None if names or self._mitigator is None else self._mitigator.opening(decision)
         if self._mitigator is not None and opening is not None:
             return self._say(self._mitigator.why, opening)
-        if not names and self._brief.sight < FAR and (ahead.unseen > 0.0 or holding):
+        if not names and self._brief.looks and (ahead.unseen > 0.0 or holding):
             self._memory.visits.clear()
             self._memory.looks.clear()
             return self._say("search anew: something was overlooked", Action(EXPLORE))

@@ -96,7 +96,8 @@ class Confusion:
         if bad := sorted(named - set(self.classes)):
             raise ValueError(f"a category of the table must be one of its classes, got {bad[0]!r:.100}")
         if wrong := [name for name, weights in self.odds_of.items() if len(weights) != length_of(name)]:
-            raise ValueError(f"odds_of {wrong[0]} must have {length_of(wrong[0])} weights")
+            name, count = wrong[0], len(self.odds_of[wrong[0]])
+            raise ValueError(f"odds_of {name} must have {length_of(name)} weights, got {count}")
 
     @classmethod
     def read(cls, path: Path) -> Confusion:

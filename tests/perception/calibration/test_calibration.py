@@ -18,7 +18,6 @@ from hazard_ms.perception.detectors.small import CONFUSION, SHIPPED, Small
 from hazard_ms.perception.training.pictures import Picture
 from hazard_ms.sensing.detection.confusion import Confusion
 from hazard_ms.sensing.detection.detector import Detection, Detector, box_of
-from hazard_ms.sensing.detection.odds import odds
 from hazard_ms.sensing.sighting import Sighting
 from tests.worlds.wall import view
 
@@ -215,36 +214,3 @@ def test_what_a_detectors_own_chances_are_worth_is_found_again() -> None:
 def test_a_detector_that_tells_no_chances_has_none_that_count() -> None:
     made = confusion_of([picture(told("mug", MUG, 1))], CLASSES, "", "")
     assert (made.sharpness, made.surer) == (0.0, ())
-
-
-def carts(octaves: Sequence[float], thing: int) -> list[Told]:
-    """Detections of a cart, or of what is taken for one, of so many octaves of size; all else of them is alike."""
-    place = np.array(MUG if thing else NOTHING, np.float32)
-    made = []
-    for octave in octaves:
-        seen = Sighting(place, 0.05, 1.0, 0, 64, size=2.0**octave)
-        made.append(Told("cart", seen, thing, (0.5, 0.0), (1.0, 0.0, 6.0, octave, 0.0, 0.0)))
-    return made
-
-
-def test_how_carts_differ_from_clutter_is_learned() -> None:
-    """Octaves of normal sizes, at 12 and at 8, both with a deviation of 1: the log-odds at x are 4 x - 40."""
-    chance = np.random.default_rng(0)
-    real, clutter = chance.normal(12.0, 1.0, 3000).tolist(), chance.normal(8.0, 1.0, 6000).tolist()
-    looks = [Observed("one", view(2.0), (each,), {}, {1: "cart"}) for each in [*carts(real, 1), *carts(clutter, 0)]]
-    made = confusion_of(looks, ("cart", "mug"), "", "").odds_of
-    for octave, told in ((9.5, -2.0), (10.0, 0.0), (10.5, 2.0), (11.0, 4.0)):
-        assert np.log(odds(made["cart"], carts([octave], 1)[0].shown or ())) == pytest.approx(told, abs=0.4), octave
-
-
-def test_only_the_largest_part_of_a_cart_counts_and_nothing_that_can_be_carried() -> None:
-    kinds = {1: "cart", 2: "mug"}
-    (whole, part), (none,) = carts([11.0, 7.0], 1), carts([7.0], 0)
-    apart, alone = [(part, whole, none, told("mug", BOWL, 2))] * 30, [(whole, none, told("mug", BOWL, 2))] * 30
-    made, other = (
-        confusion_of([Observed("one", view(2.0), each, {}, kinds) for each in found], ("cart", "mug"), "", "").odds_of
-        for found in (apart, alone)
-    )
-    assert made == other and set(made) == {"cart"}
-    few = [Observed("one", view(2.0), each, {}, kinds) for each in apart[:19]]
-    assert confusion_of(few, ("cart", "mug"), "", "").odds_of == {}, "too few"

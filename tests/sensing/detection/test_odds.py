@@ -11,16 +11,17 @@ import numpy as np
 import pytest
 
 from hazard_ms.sensing.detection.confusion import Confusion, Look
-from hazard_ms.sensing.detection.odds import in_front, odds, shown
+from hazard_ms.sensing.detection.odds import in_front, odds, shown, shown_of_thing
 from hazard_ms.sensing.sighting import sightings
 from hazard_ms.sensing.view import View
 from tests.sensing.detection.test_confusion import ONE_MUG, TABLE
 from tests.worlds.wall import view as wall
 
-WEIGHTS = (-2.0, 1.0, 0.0, 0.2, 0.0, 0.0)  # by hand: sureness and size count
+WEIGHTS = (-2.0, 1.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0)  # by hand: sureness and size count
 FLAT = {"surer": (0.0, 0.5), "real": (0.5, 0.5), "false": (0.5, 0.5)}
 TOLD = replace(TABLE, odds_of={"mug": WEIGHTS}, **FLAT)
-CHANCES, EVEN, SURE = (0.9, 0.0, 0.0), (1.0, 0.0, 6.0, 10.0, 0.0, 0.0), (1.0, 1.0, 6.0, 10.0, 0.0, 0.0)
+NONE = (0.0,) * 5
+CHANCES, EVEN, SURE = (0.9, 0.0, 0.0), (1.0, 0.0, 6.0, 10.0, *NONE), (1.0, 1.0, 6.0, 10.0, *NONE)
 ROWS, COLUMNS = slice(40, 70), slice(40, 60)  # of a mask in a picture of 100 x 100 that looks along +x from 1 m
 
 
@@ -86,14 +87,14 @@ def test_what_is_seen_through_the_wire_is_left_out() -> None:
 
 def test_odds_are_the_exponential_of_what_is_shown() -> None:
     assert odds(WEIGHTS, EVEN) == pytest.approx(1.0)
-    assert odds(WEIGHTS, (1.0, 0.0, 6.0, 5.0, 0.0, 0.0)) == pytest.approx(math.exp(-1.0))
+    assert odds(WEIGHTS, (1.0, 0.0, 6.0, 5.0, *NONE)) == pytest.approx(math.exp(-1.0))
     for sign in (1.0, -1.0):
-        assert odds((9.0 * sign, *[0.0] * 5), EVEN) == pytest.approx(math.exp(7.0 * sign)), "no look settles it"
+        assert odds((9.0 * sign, *[0.0] * 8), EVEN) == pytest.approx(math.exp(7.0 * sign)), "no look settles it"
 
 
 def test_each_look_counts_by_its_odds() -> None:
     """0.3 for the mug, 1 for clutter; the odds are 1 / e and then e. What is missed shows nothing."""
-    small, sure = Look("mug", 50, CHANCES, (1.0, 0.0, 6.0, 5.0, 0.0, 0.0)), Look("mug", 200, CHANCES, SURE)
+    small, sure = Look("mug", 50, CHANCES, (1.0, 0.0, 6.0, 5.0, *NONE)), Look("mug", 200, CHANCES, SURE)
     mug = 0.3 * math.exp(-1.0)
     assert TOLD.posterior([small], ONE_MUG, 0.0)[0] == pytest.approx(mug / (mug + 1.0))
     mug, clutter = mug * 0.8 * 0.9 * math.e, 0.25 * 0.8
@@ -114,10 +115,53 @@ def test_odds_are_read_with_the_table(tmp_path: Path) -> None:
     path.write_text(json.dumps(table))
     assert Confusion.read(path) == TOLD
     for change, words in (
-        ({"mug": WEIGHTS[1:]}, r"confusion.odds_of.* must be of length 6 to 6"),
+        ({"mug": WEIGHTS[4:]}, r"confusion.odds_of.* must be of length 6 to 9"),
+        ({"mug": WEIGHTS[1:]}, "odds_of mug must have 9 weights, got 8"),
         ({"mug": (*WEIGHTS[1:], 1e4)}, r"confusion.odds_of.* must be a number from -1000 to 1000"),
         ({"cup": WEIGHTS}, "a category of the table must be one of its classes, got 'cup'"),
     ):
         path.write_text(json.dumps({**table, "odds_of": change}))
         with pytest.raises(ValueError, match=words):
             Confusion.read(path)
+
+
+def about(view: View) -> tuple[float, ...]:
+    assert view.labels is not None
+    return shown_of_thing(view, view.labels == 0, sightings(view, 0, 1, frozenset(), None)[0], 0.5)
+
+
+def test_what_is_shown_of_a_thing_is_that_by_hand() -> None:
+    """30 rows and 20 columns 2 m ahead, 0.04 m each: 1.2 m high, 0.8 m long across the view, and flat."""
+    one, sure, pixels, size, above, beside, high, wide, long = about(standing())
+    assert (one, sure, pixels) == (1.0, 0.0, pytest.approx(math.log2(600.0)))
+    assert size == pytest.approx(math.log2(600.0 * 4.0), abs=0.05)
+    assert above == beside == pytest.approx(math.log(0.02)), "nothing is about it"
+    assert high == pytest.approx(math.log2(27 * 0.04 + 0.01), abs=1e-4), (
+        "a twentieth at each end, 1.5 rows, is left out"
+    )
+    assert wide == pytest.approx(math.log2(0.01))
+    # the standard deviation of 20 even steps of 0.04 m, four times
+    assert long == pytest.approx(math.log2(4.0 * 0.04 * math.sqrt((20**2 - 1) / 12) + 0.01), abs=1e-4)
+
+
+def test_a_foot_of_something_higher_has_it_above_it() -> None:
+    """12 of its 20 columns go on for 30 rows above it, as many as its own."""
+    pole = standing()
+    pole.depth[10:40, 44:56] = 2.0
+    assert about(pole)[4] == pytest.approx(math.log(0.6 + 0.02))
+    assert about(standing())[5] == about(pole)[5], "what is above is not beside"
+
+
+def test_what_goes_on_beside_a_thing_counts_and_what_is_farther_behind_does_not() -> None:
+    row, behind = standing(slice(20, 40), slice(60, 80)), standing(slice(20, 40), slice(60, 80))
+    for columns in (slice(20, 40), slice(60, 80)):
+        behind.depth[ROWS, columns] = 3.0
+    assert about(row)[5] > math.log(0.3) and about(behind)[5] == pytest.approx(math.log(0.02))
+
+
+def test_at_the_edge_of_the_picture_nothing_is_known_to_be_about_a_thing() -> None:
+    made = standing()
+    labels = np.full((100, 100), -1, np.int64)
+    labels[0:10, 0:10] = 0
+    made.depth[0:10, 0:10] = 2.0
+    assert about(replace(made, labels=labels))[4] == pytest.approx(math.log(0.02))

@@ -187,3 +187,34 @@ def test_a_cart_beside_others_is_rather_a_fence() -> None:
     close = [Track("cart", seen(0.71 * k)) for k in range(5)]
     assert crowded(close, ["cart"] * 5, [0.5] * 5)[2] == pytest.approx(0.027 / 1.027), "of four others three count"
     assert crowded(close, ["mug"] * 5, [0.5] * 5) == [0.5] * 5
+
+
+def test_what_lies_in_a_cart_is_none_to_fetch(labeller: OwnLabeller) -> None:
+    """Its basket begins 0.45 m above the ground, within 0.45 m of the middle of the cart."""
+    for frame in range(2):
+        look(labeller, frame, {50: 0.9})
+    (cart,) = labeller._tracker.tracks
+    x, y, _ = cart.sighting.position.tolist()
+    for beside, height, told in ((0.0, 0.5, False), (0.44, 0.5, False), (0.46, 0.5, True), (0.0, 0.3, True)):
+        for known in (False, True):
+            place = np.array([x, y + beside, height], np.float32)
+            track = Track("mug", replace(cart.sighting, position=place), frames=9, belief=0.9)
+            if known:
+                labeller._introduce(track)
+            labeller._pass_over([track])
+            labeller._introduce(track)
+            assert (track.index >= 0) is told and track.refuted is not told, (beside, height)
+            labeller._drop(track)
+
+
+def test_what_the_agent_itself_put_there_stays_known_as_rescued(labeller: OwnLabeller) -> None:
+    knowing = OwnLabeller(labeller._world, CARTS, Knowing(), 0.5, fused=True)
+    place = np.array([2.0, 0.5, 0.6], np.float32)
+    cart = Track("cart", replace(seen(0.5), position=place), frames=9, belief=0.9)
+    track = Track("mug", replace(seen(0.5), position=place), frames=9, belief=0.9)
+    for each in (cart, track):
+        knowing._introduce(each)
+    track.rescued = True
+    knowing._pass_over([track])
+    knowing.refused(track.index, True)
+    assert [row.rescued for row in knowing.targets()] == [True]

@@ -2,7 +2,7 @@
 
 Every agent plays the first scenes, 25 by default, of each task's split `test` and sees through our small detector.
 Writes perceived.md and perceived.csv beside this file, with the same agents' scores of scores.csv and the paper's.
-Episodes in perceived.csv are not played again: those of an earlier track are to be deleted there.
+Episodes in perceived.csv are not played again; those with other eyes than the detector has today stay beside them.
 With `tables` alone it plays nothing.
 """
 
@@ -15,13 +15,14 @@ from dataclasses import asdict
 
 from hazard_ms.evaluation.comparison.pairing import Episode, difference
 from hazard_ms.evaluation.metrics import Tally, scores
+from hazard_ms.sensing.detection.perception import eyes_of
 from hazard_ms.spec.checks import one_of
 from results.tables import HERE, TASKS, evaluate, machine, results_in, words
 
 RAW, FILE = HERE.parent / "build" / "perceived", HERE / "perceived.csv"
 AGENTS = ("random", "rule", "greedy", "mcts", "planner")
 DETECTOR, SCENES = "small", 25
-KEYS = ("task", "agent", "seed", "scene")
+KEYS = ("task", "agent", "eyes", "seed", "scene")
 COLUMNS = (*KEYS, "value_rescued", "value_total", "rescued", "rescued_damaged", "last_rescue", "wall_seconds")
 Row = dict[str, str]
 # Value with perception in fire, flood and wind: Zhou et al. 2024, docs/benchmark.md section 4.1
@@ -40,13 +41,14 @@ HEAD = """# With perception
 Made by `./run python results/perceived.py`. Agents see through `--perception small`: segmentation is withheld, things
 are found by the package's detector and followed by tracks of our own. First scenes of `test`, Fetch, presets `paper`.
 Values are in percent, with 95 % bootstrap intervals over scenes; "less the truth" is the difference from the same
-agent that is told what its camera sees, paired by episode (results/README.md). A dash: not played. An episode has one
-of two busy cores, or less. perceived.csv has every episode; they were played at several commits. Of the first five of
-greedy in each task, played again at 0723714 for perceived_parts.md, fourteen of fifteen came to the same. Written at
+agent that is told what its camera sees, paired by episode (results/README.md). "eyes": the camera's picture, in pixels,
+and its angle; today the detector's are {eyes}, and rows of others were played with earlier agents. A dash: not played.
+An episode has one of two busy cores, or less. perceived.csv has every episode; they were played at several commits.
+Written at
 {machine}.
 
-| task | agent | Value | less the truth | Step | Damage | s an episode | episodes |
-|---|---|---|---|---|---|---|---|
+| task | agent | eyes | Value | less the truth | Step | Damage | s an episode | episodes |
+|---|---|---|---|---|---|---|---|---|
 """
 OTHERS = """
 The paper's agents with its own detector (Mask R-CNN, tuned on pictures of its training scenes), in the original's
@@ -59,7 +61,8 @@ simulator, Value:
 
 def play(task: str, agent: str, scenes: int = SCENES) -> None:
     """Play what is missing of an agent in the first `scenes` of a task."""
-    there = {int(row["seed"]) for row in episodes() if (row["task"], row["agent"]) == (task, agent)}
+    mine = (task, agent, eyes_of(DETECTOR))
+    there = {int(row["seed"]) for row in episodes() if (row["task"], row["agent"], row["eyes"]) == mine}
     for seed in set(range(scenes)) - there:
         options = ("--split", "test", "--perception", DETECTOR, "--agents", agent, "-s", str(seed), "--episodes", "1")
         evaluate(task, RAW / task, *options)
@@ -73,11 +76,13 @@ def episodes() -> list[Row]:
             made = {tuple(row[name] for name in KEYS): row for row in csv.DictReader(file)}
     for task in TASKS:
         for result in results_in(RAW / task) if (RAW / task).is_dir() else []:
-            keys = dict(zip(KEYS, (task, result.agent, str(result.seed), result.scene), strict=True))
+            keys = dict(zip(KEYS, (task, result.agent, result.eyes, str(result.seed), result.scene), strict=True))
             told = {**asdict(result.tally), "wall_seconds": round(result.wall_seconds, 1)}
             made[tuple(keys.values())] = {**keys, **{name: str(value) for name, value in told.items()}}
     tasks = list(TASKS)
-    return sorted(made.values(), key=lambda r: (tasks.index(r["task"]), AGENTS.index(r["agent"]), int(r["seed"])))
+    return sorted(
+        made.values(), key=lambda r: (tasks.index(r["task"]), AGENTS.index(r["agent"]), r["eyes"], int(r["seed"]))
+    )
 
 
 def tally_of(row: Row) -> Tally:
@@ -95,8 +100,8 @@ def told(task: str, agent: str) -> dict[Episode, float]:
     return {(int(row["seed"]), row["scene"]): float(row["value"]) for row in mine}
 
 
-def line(task: str, agent: str, mine: list[Row]) -> str:
-    """The line of an agent in a task."""
+def line(task: str, agent: str, eyes: str, mine: list[Row]) -> str:
+    """The line of an agent in a task with some eyes."""
     tallies, scenes = [tally_of(row) for row in mine], [row["scene"] for row in mine]
     own = {(int(row["seed"]), row["scene"]): tally.value for row, tally in zip(mine, tallies, strict=True)}
     truth, every = told(task, agent), scores(tallies, scenes)
@@ -105,17 +110,15 @@ def line(task: str, agent: str, mine: list[Row]) -> str:
     cells = [words(every["value"]), less, "-" if step is None else f"{step:.0f}"]
     seconds = sum(float(row["wall_seconds"]) for row in mine) / len(mine)
     cells += ["-" if damage is None else f"{100 * damage:.1f}", f"{seconds:.0f}", str(len(mine))]
-    return f"| {task} | {agent} | {' | '.join(cells)} |\n"
+    return f"| {task} | {agent} | {eyes} | {' | '.join(cells)} |\n"
 
 
 def lines(every: list[Row]) -> str:
     """The lines of all agents."""
-    groups = {
-        (task, agent): [row for row in every if (row["task"], row["agent"]) == (task, agent)]
-        for task in TASKS
-        for agent in AGENTS
-    }
-    return "".join(line(*names, mine) for names, mine in groups.items() if mine)
+    groups: dict[tuple[str, ...], list[Row]] = {}
+    for row in every:
+        groups.setdefault((row["task"], row["agent"], row["eyes"]), []).append(row)
+    return "".join(line(task, agent, eyes, mine) for (task, agent, eyes), mine in groups.items())
 
 
 def main(wanted: list[str]) -> None:
@@ -131,7 +134,7 @@ def main(wanted: list[str]) -> None:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
         writer.writerows(every)
-    text = HEAD.format(machine=machine()) + lines(every) + OTHERS
+    text = HEAD.format(machine=machine(), eyes=eyes_of(DETECTOR)) + lines(every) + OTHERS
     text += "".join(f"| {name} | {' | '.join(map(str, values))} |\n" for name, values in PAPER.items())
     (HERE / "perceived.md").write_text(text, encoding="utf-8")
     print(text)

@@ -37,7 +37,7 @@ LEGS = 8  # walks without arrival to one target that together count as a failure
 GIVE_UP = 4  # failures with one target
 LOYALTY = 0.8  # factor on the cost of the target it is on its way to: another must be clearly better
 VISITS = 2  # of one landmark in search
-UNLIKELY, FAR_OFF = 0.3, 1.5  # belief below which, and way from which on, searching comes first [-], [m]
+UNLIKELY, FAR_OFF = 0.15, 1.5  # belief below which, and way from which on, searching comes first [-], [m]
 
 
 class Greedy(Agent):

@@ -38,7 +38,7 @@ ASKED = 0.35  # score from which the second stage is asked what a thing is: it t
 class Small(Detector):
     """The trained network, asked on one core or on a GPU."""
 
-    eyes = "512/120"  # of the original; with fewer pixels it tells fewer categories right (docs/perception.md)
+    eyes = "768x512/120"  # with fewer pixels it finds less of what is far and small (docs/perception.md)
     second: SecondStage | None  # None: the first stage alone says what things are
 
     def __init__(self, path: str = "") -> None:

@@ -1,12 +1,12 @@
-"""Our small detector: `./run python results/detector.py [capture|train|name|calibrate|tables|odds...]`.
+"""Our small detector: `./run python results/detector.py [capture|train|name|calibrate|tables...]`.
 
 `capture` takes pictures with 512 pixels and 120 degrees of whole episodes: few of each of many scenes, those of the
 split `train` and spare ones of the same places; narrower ones of some of them; those of the test rooms, also for
 results/eyes.py; and those in which errors are counted. `train` goes on from the first stage of the package's weights,
 `name` trains the second stage on what that one finds, `calibrate` counts the errors, `tables` scores the detector in
 the test rooms and writes detector.md beside this file. Without words it does all of it. Each step resumes where it
-stopped; takes hours on one core. What is shipped is build/detector/second_stage, called small. `odds`, by its name
-alone, learns anew how things differ from clutter, for the table of the package's weights, whose rest stays.
+stopped; takes hours on one core. What is shipped is build/detector/second_stage, called small; without that file
+`calibrate` counts the errors of the package's weights, and writes their table.
 """
 
 from __future__ import annotations
@@ -18,14 +18,10 @@ import os
 import shutil
 import subprocess
 import sys
-from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from hazard_ms.perception import layout
-from hazard_ms.perception.calibration.observing import observed
-from hazard_ms.perception.calibration.regression import odds_of
-from hazard_ms.perception.calibration.thinned import Thinned
 from hazard_ms.perception.detectors.small import CONFUSION, SHIPPED, Small
 from hazard_ms.perception.score import KINDS, table
 from hazard_ms.perception.training.pictures import read
@@ -92,7 +88,7 @@ def capture() -> None:
         place = {"large": "flat_a", "hard": "parking_hard"}[split]
         scenes = [f"{place}/{k:02d}" for k in range(FEW[task])]
         words = ("perception", "capture", "-e", TASKS[task], "--split", split, "--scenes", *scenes, "--per-scene", "10")
-        run(*words, "--size", "512", "--fov", "120", "-o", UNSEEN)
+        run(*words, "--size", "768", "--fov", "120", "-o", UNSEEN)
 
 
 def train() -> None:
@@ -119,20 +115,11 @@ def learn(output: Path, *words: str | Path) -> None:
 
 def calibrate() -> None:
     """Count the errors in rooms and streets that belong to neither `train` nor `test`."""
-    table_of = DETECTOR.with_name(f"{DETECTOR.stem}_confusion.json")
+    weights = DETECTOR if DETECTOR.is_file() else SHIPPED
     data = [UNSEEN / TASKS[task] for task in ERRORS]
-    told = f"small:{os.path.relpath(DETECTOR, HERE.parent)}"
+    told = "small" if weights == SHIPPED else f"small:{os.path.relpath(weights, HERE.parent)}"
+    table_of = weights.with_name(f"{weights.stem}{CONFUSION}")
     run("perception", "calibrate", *data, "--perception", told, "--split", "large", "hard", "-o", table_of)
-
-
-def odds() -> None:
-    """Learn how things differ from clutter, and put it into the table of the package's weights."""
-    detector, file = Small(), SHIPPED.with_name(f"{SHIPPED.stem}{CONFUSION}")
-    pictures = [Thinned(picture) for task, split in ERRORS.items() for picture in read([UNSEEN / TASKS[task]], split)]
-    made = odds_of(observed(detector, pictures, detector.classes))
-    assert detector.confusion is not None
-    file.write_text(json.dumps(asdict(replace(detector.confusion, odds_of=made)), indent=1) + "\n", encoding="utf-8")
-    print(made)
 
 
 def of_images(truth: Row, found: list[Row], numbers: range) -> tuple[Row, list[Row]]:
@@ -177,8 +164,8 @@ def tables() -> None:
 
 def main(wanted: list[str]) -> None:
     """Take the steps called `wanted`, or all. Raises ValueError for unknown names."""
-    steps = {"capture": capture, "train": train, "name": name, "calibrate": calibrate, "tables": tables, "odds": odds}
-    todo = [one_of(each, steps, "a step") for each in wanted] or [step for step in steps if step != "odds"]
+    steps = {"capture": capture, "train": train, "name": name, "calibrate": calibrate, "tables": tables}
+    todo = [one_of(each, steps, "a step") for each in wanted] or list(steps)
     for step, take in steps.items():
         if step in todo:
             take()

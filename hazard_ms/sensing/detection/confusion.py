@@ -75,7 +75,7 @@ class Confusion:
     false_of: dict[Name, Annotated[tuple[Share, ...], Within(0, 20)]] = field(default_factory=dict)  # of `false`
     odds_of: dict[Name, Weights] = field(default_factory=dict)  # of what is shown of a category, in place of `real`
     repeated: Share = 1.0  # exponent of what each look after the first tells: looks at one thing err alike
-    eyes: Name = "256/120"  # of the looks
+    eyes: Name = "256/120"  # of the looks; square, whatever rows above and below are left out later
     command: Annotated[str, Within(0, 1000)] = ""  # that measured it
 
     def __post_init__(self) -> None:

@@ -1,4 +1,4 @@
-"""What a hand meets where an agent believes a thing to be: what really lies there."""
+"""Things that really lie where an agent believes one to be: a hand meets these."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ Weights = Annotated[tuple[Annotated[float, Within(-1e3, 1e3)], ...], Within(SHOW
 
 
 def length_of(category: str) -> int:
-    """How many numbers tell of what is taken for a `category`."""
+    """The number of weights for looks at what is taken for a `category`."""
     return OF_THING if CATEGORIES[category].kind == "object" else SHOWN
 
 

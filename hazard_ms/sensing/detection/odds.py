@@ -25,16 +25,10 @@ LEAST_BESIDE = 2  # pixels of that, where the picture ends [ours]
 WITHIN, LOW, HIGH = 1.6, 0.2, 1.3  # how near to a cart, and how high above the floor, what counts there is [m] [ours]
 SHOWN = 6  # numbers that `shown` tells of a cart
 OF_THING = 9  # numbers that `shown_of_thing` tells
-AROUND, MOST_AROUND = (
-    1.2,
-    0.5,
-)  # what is as near to a thing as so many of its radii, and how near at most [-], [m] [ours]
-LEAST_AROUND = 0.25  # the same at least [m] [ours]
+AROUND = 1.2  # radii of a thing within which what is about it counts [ours]
+LEAST_AROUND, MOST_AROUND = 0.25, 0.5  # the least and the greatest distance that this may be [m] [ours]
 ABOVE = 0.03  # how far below the upper end of a thing what is above it begins: its edge [m] [ours]
-ENDS = (
-    5.0,
-    95.0,
-)  # percentiles of its points between which a thing lies: some at its edge are of what is behind [ours]
+ENDS = (5.0, 95.0)  # percentiles of its points between which a thing lies: those at its edge may be behind it [ours]
 LEAST = 1e-3  # no chance counts as smaller, nor as larger than 1 less this [ours]
 LEAST_SHARE, LEAST_WIDTH = 0.02, 0.01  # by which shares, and widths [m], are larger before their logarithm [ours]
 FARTHEST = 7.0  # most that a look changes the logarithm of the odds [ours]
@@ -108,9 +102,8 @@ def _share(
     `part`: first and last row and column of the pixels. 0 where the picture has none there.
     """
     (height, width), (top, bottom, left, right) = view.depth.shape, part
-    row, column = (
-        part.ravel() for part in np.mgrid[max(top, 0) : min(bottom, height), max(left, 0) : min(right, width)]
-    )
+    inside = np.mgrid[max(top, 0) : min(bottom, height), max(left, 0) : min(right, width)]
+    row, column = inside.reshape(2, -1)
     other = ~mask[row, column]
     row, column = row[other], column[other]
     if not len(row):

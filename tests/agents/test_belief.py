@@ -54,6 +54,18 @@ def test_the_planner_looks_closer_before_it_walks_far() -> None:
         assert player.act(doubted(ground.decision(), a=belief)) == Action(verb, "a")
 
 
+def test_where_a_step_leads_nowhere_it_walks() -> None:
+    """It stands where the thing was seen, which has been driven on: else it would step there for ever."""
+    ground = Playground({"a": (2.5, 0.0)}, {"a": 5.0})
+    player = agent("planner:reach=0")
+    player.reset(brief())
+    ground.do(player.act(ground.decision()))
+    step = Action(WALK_ONE_STEP, "a")
+    for frames, action in ((0, Action(WALK_TO, "a")), (30, step)):
+        ground.last = (step, Result(True, "", frames))
+        assert player.act(doubted(ground.decision(), a=0.6)) == action
+
+
 def test_what_is_hardly_believed_is_searched_for_elsewhere() -> None:
     """One target, seen a good way off, and a landmark by unseen floor: if that is hardly it, it must be elsewhere."""
     for belief, first in ((1.0, "known"), (0.02, "table")):

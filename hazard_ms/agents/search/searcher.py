@@ -122,9 +122,7 @@ class Searcher(Agent):
             return self._search(decision, name, begin.why)
         near = distance(decision, decision.map.objects[decision.index(name)]) < FARTHEST
         near &= ahead.way(begin.goal) <= self._reach and not self._memory.failures.get(name)
-        there = (
-            last == Action(WALK_ONE_STEP, name) and result.frames == 0
-        )  # where it was seen; it may be farther by now
+        there = last == Action(WALK_ONE_STEP, name) and result.frames == 0  # and it is farther by now
         if not near and not there and self._doubtful(decision, name) and ahead.way(begin.goal) > CLOSER:
             return self._say(f"closer first: {begin.why}", Action(WALK_ONE_STEP, name))
         return self._say(begin.why, Action(PICK_UP if near else WALK_TO, name))

@@ -33,7 +33,6 @@ from hazard_ms.skills.motor.walking import ARRIVED
 FOUND_WAY = 1.5  # distance to fetch what is found in a search [m] [ours]
 MOST_FOUND = 2.0  # targets that a single search is counted on to find: any more are planned for when found [ours]
 FOUND_WHOLE = 0.8  # share of its value that a target counts when it has to be found first [ours]
-DETECTED = 0.4  # share of what a look through a detector shows that is then known well enough to be fetched [ours]
 # standard deviation of the frames of a plan over their root: a rescue of 170 frames takes 50 more or less, or fails
 SPREAD = 4.0  # [sqrt(frames)] [ours]
 LEAST_MISSING = 0.1  # targets that must be expected to be elsewhere for a search to be weighed [ours]
@@ -152,7 +151,7 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
     stays = [forecast.stays_until(t, decision.map.objects[t.index]) if t in seen else np.inf for t in targets]
     risk = max((RISK.get(hazard.name, 0.0) for hazard in brief.hazards), default=0.0)
     at_risk = (BESIDE + risk) / BESIDE if aims else 1.0
-    mean = at_risk * weights.search * FOUND_WHOLE * (DETECTED if brief.looks else 1.0) * worth / (missing or 1.0)
+    mean = at_risk * weights.search * FOUND_WHOLE * worth / (missing or 1.0)
     put_away = times.bag if not decision.containers else times.cart + (0.0 if carts else CART_WAY * WALK)
     fetch = FOUND_WAY * WALK + _pick(times, times.works) + put_away
     problem = Problem(

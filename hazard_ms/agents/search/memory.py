@@ -9,6 +9,7 @@ import numpy as np
 from hazard_ms.agents.base import ends_belief
 from hazard_ms.agents.search.fire_watch import FireWatch
 from hazard_ms.agents.search.house_fire import HouseFire
+from hazard_ms.sensing.detection.track import DRIFT
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import NOT_A_TARGET, TOO_FAR, UNFINISHED
@@ -18,7 +19,6 @@ PROGRESS = 0.2  # a walk that got it this far is not a failure, even if it did n
 LEGS = 12  # walks without arrival to one thing that together count as a failure: 19 m, longer than any way [ours]
 ELSEWHERE = 1.0  # distance from where a pick-up failed at which another try is worthwhile [m] [ours]
 DRIFTED = 0.4  # distance that the thing must have moved for another try from the same place [m] [ours]
-DRIVEN = 0.016  # way that a thing may come while it is not looked at: as fast as a robot walks [m/frame] [ours]
 # chance of a pick-up after so many that failed, the last number for any more, as a share of that of a first one:
 # of 2,871 first ones 91 % worked, of 136 second ones 37 %, of 46 third ones 4 % (250 episodes each of fire and flood,
 # ten agents, Fetch); in wind, where things move on, 54 % of 26 second ones [measured]
@@ -118,4 +118,4 @@ def _is_another(before: Seen, now: Sighting) -> bool:
     """Whether what was seen `before` cannot be the thing that is seen `now`, however fast the wind drives it."""
     frame, (x, y) = before
     way = float(np.hypot(now.position[0] - x, now.position[1] - y))
-    return way > ELSEWHERE + DRIVEN * max(now.frame - frame, 0)
+    return way > ELSEWHERE + DRIFT * max(now.frame - frame, 0)

@@ -2,7 +2,7 @@
 
 The detector looks at the pictures of rooms and streets that belong to neither `train` nor `test`, which
 `results/detector.py capture` takes to build/unseen, ten of each scene in turn, and the tracks of agents follow what it
-finds. Eyes (512/120 in place of 256/120), the second stage of the detector, fusion of all looks, and belief come alone
+finds. Eyes (768/120 in place of 256/120), the second stage of the detector, fusion of all looks, and belief come alone
 and together. Writes known.md beside this file and docs/known.svg.
 """
 
@@ -31,11 +31,11 @@ from results.tables import HERE, TASKS, machine
 CHART = HERE.parent / "docs" / "known.svg"
 # by name: the first of every n pixels, the second stage, fusion, belief
 PARTS = {
-    "none": (2, False, False, False),
+    "none": (3, False, False, False),
     "eyes": (1, False, False, False),
-    "detector": (2, True, False, False),
-    "fusion": (2, False, True, False),
-    "fusion and belief": (2, False, True, True),
+    "detector": (3, True, False, False),
+    "fusion": (3, False, True, False),
+    "fusion and belief": (3, False, True, True),
     "eyes and detector": (1, True, False, False),
     "all but the detector": (1, False, True, True),
     "all": (1, True, True, True),
@@ -44,9 +44,9 @@ HEAD = """# What agents know
 
 Made by `./run python results/known.py`: tracks of the things that are to be rescued, and carts, after the ten pictures
 of each of {scenes} rooms and streets that the detector was not trained in; {things} such things were in sight of
-512/120. A track is right if it is of a thing of its category, and no surer track is of the same. Average precision
+768/120. A track is right if it is of a thing of its category, and no surer track is of the same. Average precision
 ranks the tracks by belief; without belief all count as sure. The errors that fusion goes by are counted in the other
-half of the scenes. `eyes`: 512/120 in place of 256/120; `detector`: its second stage. Written at
+half of the scenes. `eyes`: 768/120 in place of 256/120; `detector`: its second stage. Written at
 {machine}.
 
 | parts | right | wrong | share of the things that are known | average precision | ECE |
@@ -139,7 +139,7 @@ def chart(values: dict[str, float]) -> None:
 
 def main() -> None:
     """Look, and write the table and the figure."""
-    seen = {(every, second): looks_of(every, second) for every in (2, 1) for second in (False, True)}
+    seen = {(every, second): looks_of(every, second) for every in (3, 1) for second in (False, True)}
     text, values, things, scenes = "", {}, 0, 0
     for name, (every, second, fuses, weighs) in PARTS.items():
         looks, classes = seen[every, second]

@@ -73,6 +73,7 @@ MAKERS = (
     after(table("eyes", 4.0, *UNSEEN), CAPTURE),
     after(table("known", 1.0, *UNSEEN, also=("docs/known.svg",)), CAPTURE),
     table("perceived", 11.5, "perceived", rows=("results/perceived.csv",)),
+    table("perceived_regret", 2.0, "perceived_regret", rows=("results/perceived_regret.csv",)),
     after(table("perceived_parts", 3.0, *UNSEEN, "first_stage", "perceived_parts", also=("docs/perceived_parts.svg",)),
           CAPTURE),
     table("calm", 6.0, "seen_pictures", "calm_pictures", "detector_with_hazards", "detector_without",

@@ -23,26 +23,28 @@ from hazard_ms.perception.detectors.second_stage import PREFIX
 from hazard_ms.perception.detectors.small import CONFUSION, SHIPPED, Small
 from hazard_ms.perception.detectors.weights import read_weights
 from hazard_ms.sensing.detection.confusion import Confusion
+from hazard_ms.sensing.detection.perception import eyes_of
 from results.detector import ERRORS, UNSEEN, run
 from results.tables import HERE, TASKS, evaluate, machine, results_in, value_of, words
 
 RAW, CHART = HERE.parent / "build" / "perceived_parts", HERE.parent / "docs" / "perceived_parts.svg"
 FIRST = HERE.parent / "build" / "first_stage" / SHIPPED.name
 SCENES = 5
+SMALL, EYES = "256/120", eyes_of("small")  # the robots' own eyes, and the detector's
 # by name: the second stage of the detector, eyes, fusion, and whether the agent counts beliefs
 PARTS = {
-    "none": (False, "256/120", False, False),
-    "eyes": (False, "512/120", False, False),
-    "detector": (True, "256/120", False, False),
-    "fusion": (False, "256/120", True, False),
-    "fusion and belief": (False, "256/120", True, True),
-    "all": (True, "512/120", True, True),
+    "none": (False, SMALL, False, False),
+    "eyes": (False, EYES, False, False),
+    "detector": (True, SMALL, False, False),
+    "fusion": (False, SMALL, True, False),
+    "fusion and belief": (False, SMALL, True, True),
+    "all": (True, EYES, True, True),
 }
 HEAD = """# The parts of the track with perception
 
 Made by `./run python results/perceived_parts.py`. Greedy in the first {scenes} scenes of `test`, Fetch, presets
 `paper`. Value in percent, with 95 % bootstrap intervals over scenes, and the difference from none of the parts, paired
-by episode. `eyes`: 512/120 in place of 256/120; `detector`: its second stage; `fusion`: tracks keep what all looks
+by episode. `eyes`: {eyes} in place of 256/120; `detector`: its second stage; `fusion`: tracks keep what all looks
 tell; `belief`: values count by the belief that the thing is what it seems to be, which without fusion is 1, and so it
 has no row alone. What tells carts from fences was learned with both stages.
 Written at
@@ -115,7 +117,7 @@ def main(scenes: int) -> None:
             text += f"| {task} | {name} | {words(score)} | {more} |\n"
             print(text.splitlines()[-1], flush=True)
     chart(values)
-    head = HEAD.format(scenes=scenes, machine=machine())
+    head = HEAD.format(scenes=scenes, eyes=EYES, machine=machine())
     (HERE / "perceived_parts.md").write_text(head + text, encoding="utf-8")
 
 

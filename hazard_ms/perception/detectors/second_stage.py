@@ -129,13 +129,16 @@ def sizes_of(
     `camera`: its matrix [pixels], [3, 3], and its pose [m], [4, 4], looking along -z with y up.
     """
     intrinsic, cam2world = camera
-    rows, columns = np.nonzero(mask & (depth > 0.0))
+    left, top, right, bottom = map(int, box_of(mask))
+    window = slice(top, bottom), slice(left, right)
+    rows, columns = np.nonzero(mask[window] & (depth[window] > 0.0))
     if len(rows) < 2:
         return np.zeros(SIZES, np.float32)
+    rows, columns = rows + top, columns + left
     far = depth[rows, columns].astype(np.float64)
-    right = (columns + 0.5 - intrinsic[0, 2]) / intrinsic[0, 0] * far
+    across = (columns + 0.5 - intrinsic[0, 2]) / intrinsic[0, 0] * far
     up = (intrinsic[1, 2] - rows - 0.5) / intrinsic[1, 1] * far
-    points = np.stack([right, up, -far], -1) @ np.asarray(cam2world)[:3, :3].T + np.asarray(cam2world)[:3, 3]
+    points = np.stack([across, up, -far], -1) @ np.asarray(cam2world)[:3, :3].T + np.asarray(cam2world)[:3, 3]
     low, high = np.percentile(points[:, 2], BETWEEN)
     flat = points[:, :2] - points[:, :2].mean(0)
     wide, long = np.sqrt(np.linalg.eigvalsh(flat.T @ flat / len(flat)).clip(1e-8))

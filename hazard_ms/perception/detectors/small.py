@@ -126,13 +126,15 @@ def things(chances: NDArray[np.float32], offsets: NDArray[np.float32], classes: 
     votes = np.zeros((height, width), np.float32)
     np.add.at(votes, at, 1.0)
     owner = _joined(_owners(votes)[at], np.stack([right, down], -1))
-    found = []
+    found, by_pixel = [], chances[1:-1].transpose(1, 2, 0)
     for number in np.unique(owner[owner > 0]).tolist():
         mine = owner == number
         if mine.sum() < FEWEST:
             continue
-        mask = _without_strays(rows[mine], columns[mine], (height, width))
-        found.append(named(chances[1:-1, mask].mean(1), mask, classes))
+        kept = _without_strays(rows[mine], columns[mine])
+        mask = np.zeros((height, width), bool)
+        mask[kept] = True
+        found.append(named(by_pixel[kept].mean(0), mask, classes))
     return found
 
 
@@ -142,10 +144,10 @@ def named(chances: NDArray[np.floating], mask: NDArray[np.bool_], classes: Seque
     return Detection(classes[best], float(np.sqrt(chances[best])), box_of(mask), mask, tuple(chances.tolist()))
 
 
-def _without_strays(rows: NDArray[np.int64], columns: NDArray[np.int64], shape: tuple[int, int]) -> NDArray[np.bool_]:
-    """The mask, `shape` (H, W), of pixels at `rows` and `columns`, [P] each, without small patches beside others.
+def _without_strays(rows: NDArray[np.int64], columns: NDArray[np.int64]) -> tuple[NDArray[np.int64], ...]:
+    """The rows and columns of the pixels at `rows` and `columns`, [P] each, without small patches beside others.
 
-    The largest ones stay, however small their share.
+    Row by row. The largest patches stay, however small their share.
     """
     top, left = int(rows.min()), int(columns.min())
     part = np.zeros((int(rows.max()) - top + 1, int(columns.max()) - left + 1), bool)
@@ -154,9 +156,8 @@ def _without_strays(rows: NDArray[np.int64], columns: NDArray[np.int64], shape: 
     size = np.bincount(patches.ravel())
     size[0] = 0
     stays = size >= min(STRAY * size.sum(), size.max())
-    mask = np.zeros(shape, bool)
-    mask[top : top + part.shape[0], left : left + part.shape[1]] = stays[patches] & part
-    return mask
+    down, right = np.nonzero(stays[patches] & part)
+    return down + top, right + left
 
 
 def _owners(votes: NDArray[np.float32]) -> NDArray[np.int64]:

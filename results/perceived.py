@@ -16,8 +16,7 @@ from dataclasses import asdict
 from hazard_ms.evaluation.comparison.pairing import Episode, difference
 from hazard_ms.evaluation.metrics import Tally, scores
 from hazard_ms.sensing.detection.perception import eyes_of
-from hazard_ms.spec.checks import one_of
-from results.tables import HERE, TASKS, evaluate, machine, results_in, words
+from results.tables import HERE, TASKS, asked, evaluate, machine, results_in, words, write_rows
 
 RAW, FILE = HERE.parent / "build" / "perceived", HERE / "perceived.csv"
 AGENTS = ("random", "rule", "greedy", "mcts", "planner")
@@ -123,17 +122,11 @@ def lines(every: list[Row]) -> str:
 
 def main(wanted: list[str]) -> None:
     """Play the agents called `wanted`, or all, and write the table. Raises ValueError for unknown names."""
-    names = [f"{task}-{agent}" for task in TASKS for agent in AGENTS]
-    scenes = int(wanted.pop()) if wanted and wanted[-1].isdecimal() else SCENES
-    chosen = [] if wanted == ["tables"] else [one_of(each, names, "an agent of a task") for each in wanted] or names
-    for name in chosen:
-        task, _, agent = name.partition("-")
+    chosen, scenes = asked(wanted, AGENTS, SCENES)
+    for task, agent in chosen:
         play(task, agent, scenes)
     every = episodes()
-    with FILE.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(every)
+    write_rows(FILE, COLUMNS, every)
     text = HEAD.format(machine=machine(), eyes=eyes_of(DETECTOR)) + lines(every) + OTHERS
     text += "".join(f"| {name} | {' | '.join(map(str, values))} |\n" for name, values in PAPER.items())
     (HERE / "perceived.md").write_text(text, encoding="utf-8")

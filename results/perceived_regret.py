@@ -15,8 +15,7 @@ import sys
 import numpy as np
 
 from hazard_ms.evaluation.regret.causes import MEMORY, MITIGATION, PARTS, PERCEPTION, EpisodeRegret
-from hazard_ms.spec.checks import one_of
-from results.tables import COMMAND, HERE, TASKS, evaluate, machine
+from results.tables import COMMAND, HERE, TASKS, asked, evaluate, machine, write_rows
 
 RAW, FILE = HERE.parent / "build" / "perceived_regret", HERE / "perceived_regret.csv"
 AGENTS, SCENES = ("greedy", "planner"), 5
@@ -85,20 +84,13 @@ def line(task: str, agent: str, mine: list[Row]) -> str:
 
 def main(wanted: list[str]) -> None:
     """Judge the agents called `wanted`, or all, and write the table. Raises ValueError for unknown names."""
-    names = [f"{task}-{agent}" for task in TASKS for agent in AGENTS]
-    scenes = int(wanted.pop()) if wanted and wanted[-1].isdecimal() else SCENES
-    chosen = [] if wanted == ["tables"] else [one_of(each, names, "an agent of a task") for each in wanted] or names
-    for name in chosen:
-        task, _, agent = name.partition("-")
+    chosen, scenes = asked(wanted, AGENTS, SCENES)
+    for task, agent in chosen:
         judge(task, agent, scenes)
     every = judged()
-    with FILE.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(every)
+    write_rows(FILE, COLUMNS, every)
     text = HEAD.format(machine=machine(), parts=" | ".join(SHOWN), rules="|".join("---" for _ in SHOWN))
-    for name in names:
-        task, _, agent = name.partition("-")
+    for task, agent in asked((), AGENTS, SCENES)[0]:
         mine = [row for row in every if (row["task"], row["agent"]) == (task, agent)]
         text += line(task, agent, mine) if mine else ""
     (HERE / "perceived_regret.md").write_text(text, encoding="utf-8")

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import csv
 import os
 import platform
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from hazard_ms.evaluation.metrics import Score, scores
 from hazard_ms.evaluation.result import ALONE, REGRET, EpisodeResult
+from hazard_ms.spec.checks import one_of
 
 HERE = Path(__file__).parent
 TASKS = {"fire": "HazardFire-v1", "flood": "HazardFlood-v1", "wind": "HazardWind-v1"}
@@ -25,6 +27,28 @@ def evaluate(task: str, folder: Path, *words: str, check: bool = True) -> None:
     """
     told = ["-e", TASKS.get(task, task), "-o", str(folder), *words]
     subprocess.run([*COMMAND, "evaluate", *told], cwd=HERE.parent, check=check)
+
+
+def asked(told: Sequence[str], agents: Sequence[str], scenes: int) -> tuple[list[tuple[str, str]], int]:
+    """What the words `told` to a command ask for: pairs of task and agent, and scenes of each, `scenes` by default.
+
+    All pairs without words; none for `tables` alone. Raises ValueError for unknown names.
+    """
+    if list(told) == ["tables"]:
+        return [], scenes
+    pairs = {f"{task}-{agent}": (task, agent) for task in TASKS for agent in agents}
+    *names, last = told or [""]
+    number = int(last) if last.isdecimal() else scenes
+    names += [] if last.isdecimal() or not last else [last]
+    return [pairs[one_of(name, list(pairs), "an agent of a task")] for name in names] or list(pairs.values()), number
+
+
+def write_rows(file: Path, columns: Sequence[str], rows: Sequence[Mapping[str, str]]) -> None:
+    """Write `rows`, each with all `columns`, to a CSV file."""
+    with file.open("w", newline="", encoding="utf-8") as open_file:
+        writer = csv.DictWriter(open_file, columns, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
 
 
 def results_in(folder: Path) -> list[EpisodeResult]:

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 Made = TypeVar("Made")
 LONGEST_NOTE = 2000  # characters of a note that are kept [ours]
+DOUBTFUL = 0.3  # doubt about a target from which it is looked at on the way before it is walked up to [ours]
+CLOSER = 1.5  # length of the way from which that is done [m] [ours]
 AT_HAND = 0.7  # distance from which a thing is picked up without a walk, as for `greedy` [m]
 PARAMETERS = re.compile(r":(?=\w+=)")  # what stands between an agent and its parameters; values may hold colons
 

@@ -6,7 +6,8 @@ The predicted value is halved where the target is damaged, or where a hazard thr
 the hazard's level continued along the straight line through the last two sightings. A target that failed repeatedly
 gets a growing cost and is given up at last, so no path is tried for ever. Values count by the belief that the thing is
 what it seems to be, 1 with the truth; what is not is refused at once, and costs no handling. A pick-up that met no
-target does not count as a failure: it ends the belief.
+target does not count as a failure: it ends the belief. On the way to what may be something else it decides anew at each
+step.
 It searches where no target is known, or only such as are far and hardly believed; these come when nothing is left to
 search. With a detector, which overlooks things, it then begins to search anew.
 Searching: walk to the landmark with the most unexplored floor around it, then look around there. Where walls divide
@@ -19,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 
 from hazard_ms.agents.attempts import Repeats
-from hazard_ms.agents.base import Agent, distance, ends_belief, known, open_targets
+from hazard_ms.agents.base import CLOSER, DOUBTFUL, Agent, distance, ends_belief, known, open_targets
 from hazard_ms.agents.search.lookouts import lookouts
 from hazard_ms.agents.search.stands import stands
 from hazard_ms.sensing.detection.eyes import FAR
@@ -128,7 +129,9 @@ class Greedy(Agent):
         self._landmark = None
         self.note = f"cost {costs[best]:.2f}, the lowest of {len(costs)}"
         near = distance(decision, decision.map.objects[decision.index(best)]) < NEAR and best not in self._failures
-        return Action(PICK_UP if best == arrived or near else WALK_TO, best)
+        if best == arrived or near:
+            return Action(PICK_UP, best)
+        return Action(WALK_ONE_STEP if self._is_doubtful(decision, best, ways[best]) else WALK_TO, best)
 
     def _put_away(self, decision: Decision) -> Action:
         if not decision.containers:
@@ -155,13 +158,20 @@ class Greedy(Agent):
         threats = zip(self._hazards, levels, strict=False)  # a level is missing where there was no hazard image
         lost = target.damaged or any(hazard.threatens(target, level, height) for hazard, level in threats)
         value = target.value * (self._damaged_share if lost else 1.0) * (target.belief if self._belief else 1.0)
-        loyalty = LOYALTY if decision.last_action == Action(WALK_TO, name) else 1.0
+        loyalty = LOYALTY if decision.last_action in (Action(WALK_TO, name), Action(WALK_ONE_STEP, name)) else 1.0
         return loyalty * way * (1 + self._failures.get(name, 0)) ** 2 / value
 
     def _is_likely(self, decision: Decision, name: str, way: float) -> bool:
         """Whether a target at the end of a `way` [m] is worth the walk before any search."""
         sure = not self._belief or decision.target(name).belief >= UNLIKELY
         return sure or way < FAR_OFF or name == decision.walked_up_to
+
+    def _is_doubtful(self, decision: Decision, name: str, way: float) -> bool:
+        """Whether it decides anew on the `way` [m] to a target, which may turn out to be something else."""
+        result, step = decision.last_result, Action(WALK_ONE_STEP, name)
+        stays = decision.last_action == step and result is not None and result.frames == 0
+        doubt = 1.0 - decision.target(name).belief if self._belief else 0.0
+        return doubt > DOUBTFUL and way > CLOSER and not stays
 
     def _search_anew(self, decision: Decision) -> Action:
         """Look around, and begin to search anew where something was overlooked; else stop: nothing is left to try."""

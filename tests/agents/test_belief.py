@@ -44,20 +44,22 @@ def test_without_belief_doubts_do_not_count(name: str) -> None:
     assert player.act(doubted(ground.decision(), near=0.1)) == Action(WALK_TO, "near")
 
 
-def test_the_planner_looks_closer_before_it_walks_far() -> None:
-    """2.5 m to what may well be none: it decides anew on the way. 1 m is no way, and 0.8 is hardly a doubt."""
+@pytest.mark.parametrize("name", ["greedy", "planner:reach=0"])
+def test_agents_look_closer_before_they_walk_far(name: str) -> None:
+    """2.5 m to what may well be none: they decide anew on the way. 1 m is no way, and 0.8 is hardly a doubt."""
     for away, belief, verb in ((2.5, 0.6, WALK_ONE_STEP), (2.5, 0.8, WALK_TO), (1.0, 0.6, WALK_TO)):
         ground = Playground({"a": (away, 0.0)}, {"a": 5.0})
-        player = agent("planner:reach=0")
+        player = agent(name)
         player.reset(brief())
         ground.do(player.act(ground.decision()))
         assert player.act(doubted(ground.decision(), a=belief)) == Action(verb, "a")
 
 
-def test_where_a_step_leads_nowhere_it_walks() -> None:
+@pytest.mark.parametrize("name", ["greedy", "planner:reach=0"])
+def test_where_a_step_leads_nowhere_they_walk(name: str) -> None:
     """It stands where the thing was seen, which has been driven on: else it would step there for ever."""
     ground = Playground({"a": (2.5, 0.0)}, {"a": 5.0})
-    player = agent("planner:reach=0")
+    player = agent(name)
     player.reset(brief())
     ground.do(player.act(ground.decision()))
     step = Action(WALK_ONE_STEP, "a")

@@ -6,7 +6,7 @@ import abc
 from typing import NamedTuple
 
 from hazard_ms.agents.attempts import Enclosure, Repeats
-from hazard_ms.agents.base import Agent, distance, known, open_targets
+from hazard_ms.agents.base import CLOSER, DOUBTFUL, Agent, distance, known, open_targets
 from hazard_ms.agents.gale.aims import aims_of
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.mitigating import Mitigator
@@ -20,8 +20,6 @@ from hazard_ms.spec.checks import whole
 FARTHEST = 2.2  # distance from the base at which a pick-up surely may begin: 2.5 m from the shoulder [m]
 REACH = 0.2  # way to a target from which it is picked up without walking up to it first [m]
 DROP_WAY = 0.7  # way left to a cart from which a drop drives on by itself, while the arm unfolds [m] [ours]
-DOUBTFUL = 0.3  # doubt about a target from which it is looked at on the way before it is walked up to [ours]
-CLOSER = 1.5  # length of the way from which that is done [m] [ours]
 MOST_WAITS = 6  # looks around of 60 frames in a row where no way leads anywhere [hazard_ms.skills.context: BUMP_MEMORY]
 GIVE_UP = 4  # failures with one thing, after which it is given up [ours]
 MOST_FAILURES = 100  # any larger number to give up at must be a mistake [ours]

@@ -209,6 +209,24 @@ def test_a_second_stage_learns_and_leaves_the_first_as_it_was(
     assert float(rows[1].split(",")[2]) < np.log(3.0)  # better than chance, of three kinds
 
 
+def test_a_training_goes_on_from_both_stages(weights: Path, data: Path, tmp_path: Path) -> None:
+    """It begins with the second stage that the file has; one of other categories is refused."""
+    kept = {f"{PREFIX}{name}": value for name, value in SecondNetwork(len(CLASSES) + 1).state_dict().items()}
+    path = tmp_path / "small.safetensors"
+    save_file({**load_file(weights), **kept}, path)
+    path.with_suffix(".json").write_text(weights.with_suffix(".json").read_text())
+    made = student(options(data, tmp_path, str(path)), read((data,), "train"))
+    assert all(torch.equal(value, kept[f"{PREFIX}{name}"]) for name, value in made.network.state_dict().items())
+    anew = student(options(data, tmp_path, str(weights)), read((data,), "train"))
+    assert 0.0 < made.pace(10**6, 0.0) < anew.pace(10**6, 0.0)
+    first = student(options(data, tmp_path, str(path), model="small", size=32), read((data,), "train"))
+    assert not any(name.startswith(PREFIX) for name in first.weights())
+    kept[f"{PREFIX}head.weight"] = torch.zeros(7, 8)
+    save_file({**load_file(weights), **kept}, path)
+    with pytest.raises(ValueError, match="weights must be those of a small detector"):
+        student(options(data, tmp_path, str(path)), read((data,), "train"))
+
+
 def test_an_interrupted_training_of_it_ends_with_the_same_weights(weights: Path, data: Path, tmp_path: Path) -> None:
     kinds = []
     for stops in ((4,), (2, 4)):

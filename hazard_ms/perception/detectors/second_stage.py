@@ -26,7 +26,7 @@ WIDTH = 24  # channels after the first convolution [ours]
 SIZES = 8  # numbers that `sizes_of` tells
 BETWEEN = (5.0, 95.0)  # percentiles between which a thing lies: pixels at its edge show what is behind it [ours]
 DROPPED = 0.3  # share of what is seen that a step of its training leaves out [ours]
-FIRST, SECOND = 0.5, 0.75  # exponents of the chances of the two stages (docs/perception.md) [ours]
+FIRST, SECOND = 0.85, 0.85  # exponents of the chances of the two stages (docs/perception.md) [ours]
 LEAST = 1e-4  # chance that a stage gives anything [ours]
 
 

@@ -34,8 +34,8 @@ class TrainOptions:
     trained small detector, which names what that one finds."""
     weights: str = UNTRAINED
     """File .pth or .safetensors to begin with: torchvision's COCO weights, or an earlier training's; for small those of
-    another small one, with its NAME.json; for second_stage those of its first stage; none: random weights, for Mask
-    R-CNN of a smaller network."""
+    another small one, with its NAME.json; for second_stage those of its first stage, or of both; none: random weights,
+    for Mask R-CNN of a smaller network."""
     split: str = "train"
     """Split to learn from."""
     validate: tuple[Path, ...] = ()

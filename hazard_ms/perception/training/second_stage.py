@@ -19,6 +19,7 @@ from hazard_ms.perception.detectors.second_stage import (
     PREFIX,
     SIDE,
     SecondNetwork,
+    loaded,
     patch_of,
     sizes_of,
 )
@@ -26,10 +27,10 @@ from hazard_ms.perception.detectors.small import NETWORK, Small
 from hazard_ms.perception.detectors.small_network import SmallNetwork, features
 from hazard_ms.perception.detectors.weights import read_recipe, read_weights
 from hazard_ms.perception.training.pictures import Picture
-from hazard_ms.perception.training.student import AveragedStudent, device, relit
+from hazard_ms.perception.training.student import AveragedStudent, device, half_precision, relit
 
 # [ours], all of them
-RATE, WARM, DECAY, AVERAGE_DECAY = 3e-3, 200, 2e-2, 0.998  # rate, steps until it is reached, decay; as in small.py
+RATE, FINE, WARM, DECAY, AVERAGE_DECAY = 3e-3, 1e-3, 200, 2e-2, 0.998  # as in small.py
 SMOOTH = 0.05  # of the chance that is given to other categories than the right one
 FULLY = 256  # pixels from which a thing is drawn as often as others
 OTHERS = 0.3  # share of things of no known category that are learned from
@@ -59,7 +60,8 @@ class SecondStageStudent(AveragedStudent):
     ) -> None:
         """Learn from the things in `pictures`, `batch` at a time; `weights`: of the first stage, NAME.safetensors.
 
-        `recipe`: that of a training that goes on; `seed`: of the draw of things of other categories.
+        If they hold a second stage, too, training begins with that one, at a lower rate. `recipe`: that of a training
+        that goes on; `seed`: of the draw of things of other categories.
 
         Raises ValueError without weights of the small detector, and for pictures without things that it tells.
         """
@@ -74,6 +76,7 @@ class SecondStageStudent(AveragedStudent):
         self._first = {name: value for name, value in kept.items() if not name.startswith(PREFIX)}
         self._network = SmallNetwork(len(self.classes) + 2)
         try:
+            begun = loaded(kept, len(self.classes))
             self._network.load_state_dict({name: value.float() for name, value in self._first.items()})
         except RuntimeError as error:
             raise ValueError(f"weights must be those of a small detector, got {weights}: {error!s:.200}") from None
@@ -86,21 +89,23 @@ class SecondStageStudent(AveragedStudent):
         count = np.bincount(self._kinds.numpy(), minlength=len(self.classes) + 1)
         chances = np.sqrt((pixels / FULLY).clip(max=1.0)) / np.sqrt(count[self._kinds.numpy()])
         self._chances = np.cumsum(chances / chances.sum())
-        self.network = SecondNetwork(len(self.classes) + 1).to(self._device)
+        self._rate = RATE if begun is None else FINE
+        self.network = (begun or SecondNetwork(len(self.classes) + 1)).to(self._device)
         self.average = copy.deepcopy(self.network).eval()
-        self.optimiser = torch.optim.AdamW(self.network.parameters(), RATE, weight_decay=DECAY)
+        self.optimiser = torch.optim.AdamW(self.network.parameters(), self._rate, weight_decay=DECAY)
 
     def losses(self, chance: np.random.Generator) -> Mapping[str, Tensor]:
         drawn = np.searchsorted(self._chances, chance.random(self._batch)).clip(max=len(self._kinds) - 1)
         chosen = torch.from_numpy(drawn)
         patches = changed(self._patches[chosen].float() / FINEST, chance).to(self._device)
         noise = torch.from_numpy(chance.normal(0.0, UNSURE, self._sizes[chosen].shape)).float()
-        told = self.network(patches, (self._sizes[chosen] + noise).to(self._device))
+        with torch.autocast(self._device.type, torch.bfloat16, enabled=half_precision(self._device)):
+            told = self.network(patches, (self._sizes[chosen] + noise).to(self._device))
         right = self._kinds[chosen].to(self._device)
-        return {"categories": functional.cross_entropy(told, right, label_smoothing=SMOOTH)}
+        return {"categories": functional.cross_entropy(told.float(), right, label_smoothing=SMOOTH)}
 
     def pace(self, step: int, share: float) -> float:
-        return RATE * min(1.0, (step + 1) / WARM) * 0.5 * (1.0 + math.cos(math.pi * min(share, 0.99)))
+        return self._rate * min(1.0, (step + 1) / WARM) * 0.5 * (1.0 + math.cos(math.pi * min(share, 0.99)))
 
     def detector(self) -> Small:
         return Small.of(copy.deepcopy(self._network), self.classes, copy.deepcopy(self.average))
@@ -121,7 +126,7 @@ def gathered(
 
     They are masked as in the truth and, once more, as `first` finds them. Patches, int8 [N, C, KEPT, KEPT] [1/FINEST];
     what `sizes_of` tells, [N, SIZES]; numbers of their categories in `classes`, or their count for others, [N]; pixels,
-    [N]. Takes about half a second a picture on one core. Raises ValueError for pictures without things.
+    [N]. Takes half a second to a second a picture on one core. Raises ValueError for pictures without things.
     """
     patches, sizes, kinds, pixels = [], [], [], []
     for picture in pictures:
@@ -155,7 +160,10 @@ def shown(picture: Picture, first: Small) -> Iterator[tuple[NDArray[np.bool_], i
     for number in (1 + np.flatnonzero(area[1:])).tolist():
         yield ids == number, kinds.get(number, len(numbers))
     first.aim(picture.intrinsic(), picture.cam2world())
-    for one in first.detect(picture.rgb(), picture.depth()):
+    where = device()
+    with torch.autocast(where.type, torch.bfloat16, enabled=half_precision(where)):
+        found = first.detect(picture.rgb(), picture.depth())
+    for one in found:
         common = np.bincount(ids[one.mask], minlength=len(area))
         common[0] = 0
         best = int(common.argmax())

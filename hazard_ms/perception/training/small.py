@@ -13,6 +13,7 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
+from hazard_ms.perception.detectors.second_stage import PREFIX
 from hazard_ms.perception.detectors.small import NETWORK, Small
 from hazard_ms.perception.detectors.small_network import REACH, SCALE, SmallNetwork, features
 from hazard_ms.perception.detectors.weights import read_recipe, read_weights
@@ -128,11 +129,11 @@ def of_things(right: Tensor, thing: Tensor) -> Tensor:
 def begin(network: SmallNetwork, classes: Sequence[str], path: Path) -> None:
     """Give `network`, which tells `classes`, the trained weights at `path` of a small network, NAME.json beside it.
 
-    Parts that those lack, and categories that they do not tell, stay untrained. Raises ValueError for weights of
-    another network.
+    Parts that those lack, and categories that they do not tell, stay untrained; a second stage is left out. Raises
+    ValueError for weights of another network.
     """
     before = ["", *read_recipe(path.with_suffix(".json"), (NETWORK,))["classes"], "other"]
-    given = {name: value.float() for name, value in read_weights(path).items()}
+    given = {name: value.float() for name, value in read_weights(path).items() if not name.startswith(PREFIX)}
     state = network.state_dict()
     rows = {k: before.index(name) for k, name in enumerate(["", *classes, "other"]) if name in before}
     told = {"logits.weight", "logits.bias", *(name for name in given if name.startswith("kinds."))}

@@ -112,6 +112,14 @@ def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+def with_second(weights: Path, folder: Path, state: dict[str, torch.Tensor]) -> Path:
+    """The first stage of `weights` with a second stage of this state, in a folder."""
+    path = folder / "small.safetensors"
+    save_file({**load_file(weights), **{f"{PREFIX}{name}": value for name, value in state.items()}}, path)
+    path.with_suffix(".json").write_text(weights.with_suffix(".json").read_text())
+    return path
+
+
 @pytest.fixture(scope="module")
 def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("data") / "HazardFire-v1"
@@ -124,11 +132,8 @@ def test_a_detector_says_what_its_second_stage_says_of_what_the_first_found(weig
     with torch.no_grad():
         sure.head.weight.zero_()
         sure.head.bias.copy_(torch.tensor([0.0, 9.0, 0.0]))  # all things are boxes
-    path = tmp_path / "small.safetensors"
-    save_file({**load_file(weights), **{f"{PREFIX}{k}": v for k, v in sure.state_dict().items()}}, path)
-    path.with_suffix(".json").write_text(weights.with_suffix(".json").read_text())
     told = []
-    for file in (weights, path):
+    for file in (weights, with_second(weights, tmp_path, sure.state_dict())):
         detector = Small(str(file))
         detector.aim(*camera(SIZE))
         told.append(detector.detect(np.full((SIZE, SIZE, 3), 90, np.uint8), depth_to(0.0, SIZE).astype(np.float32)))
@@ -142,10 +147,7 @@ def test_a_detector_says_what_its_second_stage_says_of_what_the_first_found(weig
 
 
 def test_weights_of_another_second_stage_are_refused(weights: Path, tmp_path: Path) -> None:
-    path = tmp_path / "small.safetensors"
-    other = SecondNetwork(7).state_dict()
-    save_file({**load_file(weights), **{f"{PREFIX}{k}": v for k, v in other.items()}}, path)
-    path.with_suffix(".json").write_text(weights.with_suffix(".json").read_text())
+    path = with_second(weights, tmp_path, SecondNetwork(7).state_dict())
     with pytest.raises(ValueError, match="weights must fit the network small"):
         Small(str(path))
 
@@ -211,18 +213,15 @@ def test_a_second_stage_learns_and_leaves_the_first_as_it_was(
 
 def test_a_training_goes_on_from_both_stages(weights: Path, data: Path, tmp_path: Path) -> None:
     """It begins with the second stage that the file has; one of other categories is refused."""
-    kept = {f"{PREFIX}{name}": value for name, value in SecondNetwork(len(CLASSES) + 1).state_dict().items()}
-    path = tmp_path / "small.safetensors"
-    save_file({**load_file(weights), **kept}, path)
-    path.with_suffix(".json").write_text(weights.with_suffix(".json").read_text())
+    kept = SecondNetwork(len(CLASSES) + 1).state_dict()
+    path = with_second(weights, tmp_path, kept)
     made = student(options(data, tmp_path, str(path)), read((data,), "train"))
-    assert all(torch.equal(value, kept[f"{PREFIX}{name}"]) for name, value in made.network.state_dict().items())
+    assert all(torch.equal(value, kept[name]) for name, value in made.network.state_dict().items())
     anew = student(options(data, tmp_path, str(weights)), read((data,), "train"))
     assert 0.0 < made.pace(10**6, 0.0) < anew.pace(10**6, 0.0)
     first = student(options(data, tmp_path, str(path), model="small", size=32), read((data,), "train"))
     assert not any(name.startswith(PREFIX) for name in first.weights())
-    kept[f"{PREFIX}head.weight"] = torch.zeros(7, 8)
-    save_file({**load_file(weights), **kept}, path)
+    with_second(weights, tmp_path, {**kept, "head.weight": torch.zeros(7, 8)})
     with pytest.raises(ValueError, match="weights must be those of a small detector"):
         student(options(data, tmp_path, str(path)), read((data,), "train"))
 

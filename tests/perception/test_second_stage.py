@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -171,8 +172,7 @@ def test_things_are_shown_as_they_are_and_as_they_are_found(weights: Path, data:
     most = max(numbers, key=lambda number: int((ids == number).sum()))
     found = ids == most
     less = found & (np.arange(SIZE)[None, :] % 3 == 0)  # a third of it: neither the thing nor none
-    floor = np.zeros_like(found)
-    floor[0:4, 0:8] = True
+    floor = square(0, 0, 6)
     detector.given = [type("One", (), {"mask": mask})() for mask in (found, less, floor)]
     told = list(shown(picture, detector))
     kinds = [CLASSES.index(names[number]) for number in numbers]
@@ -198,13 +198,11 @@ def test_changed_patches_keep_their_thing_in_sight() -> None:
 def test_a_second_stage_learns_and_leaves_the_first_as_it_was(
     weights: Path, data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    torch.manual_seed(0)
     assert train(options(data, tmp_path, str(weights), steps=40, every=40)) == 0
     assert f"--perception small:{tmp_path / 'second_stage.safetensors'}" in capsys.readouterr().out
     made, first = load_file(tmp_path / "second_stage.safetensors"), load_file(weights)
     assert all(torch.equal(made[name], value) for name, value in first.items())
     assert sum(name.startswith(PREFIX) for name in made) == len(SecondNetwork(3).state_dict())
-    (picture, *_) = read((data,), "test")
     learned = student(options(data, tmp_path, str(weights)), read((data,), "train"))
     assert Small(str(tmp_path / "second_stage.safetensors")).classes == learned.classes == CLASSES
     rows = (tmp_path / "second_stage.csv").read_text().splitlines()
@@ -213,28 +211,26 @@ def test_a_second_stage_learns_and_leaves_the_first_as_it_was(
 
 def test_a_training_goes_on_from_both_stages(weights: Path, data: Path, tmp_path: Path) -> None:
     """It begins with the second stage that the file has; one of other categories is refused."""
-    kept = SecondNetwork(len(CLASSES) + 1).state_dict()
-    path = with_second(weights, tmp_path, kept)
-    made = student(options(data, tmp_path, str(path)), read((data,), "train"))
+    kept, pictures = SecondNetwork(len(CLASSES) + 1).state_dict(), read((data,), "train")
+    both_stages = options(data, tmp_path, str(with_second(weights, tmp_path, kept)))
+    made, anew = student(both_stages, pictures), student(options(data, tmp_path, str(weights)), pictures)
     assert all(torch.equal(value, kept[name]) for name, value in made.network.state_dict().items())
-    anew = student(options(data, tmp_path, str(weights)), read((data,), "train"))
     assert 0.0 < made.pace(10**6, 0.0) < anew.pace(10**6, 0.0)
-    first = student(options(data, tmp_path, str(path), model="small", size=32), read((data,), "train"))
+    first = student(replace(both_stages, model="small", size=32), pictures)
     assert not any(name.startswith(PREFIX) for name in first.weights())
     with_second(weights, tmp_path, {**kept, "head.weight": torch.zeros(7, 8)})
     with pytest.raises(ValueError, match="weights must be those of a small detector"):
-        student(options(data, tmp_path, str(path)), read((data,), "train"))
+        student(both_stages, pictures)
 
 
 def test_an_interrupted_training_of_it_ends_with_the_same_weights(weights: Path, data: Path, tmp_path: Path) -> None:
     kinds = []
     for stops in ((4,), (2, 4)):
         torch.manual_seed(3)
-        made = student(options(data, tmp_path, str(weights)), read((data,), "train"))
         state = None
         for stop in stops:
+            made = student(options(data, tmp_path, str(weights)), read((data,), "train"))
             if state is not None:
-                made = student(options(data, tmp_path, str(weights)), read((data,), "train"))
                 made.resume(state)
             made.network.train()
             for step in range(0 if state is None else 2, stop):
@@ -246,8 +242,7 @@ def test_an_interrupted_training_of_it_ends_with_the_same_weights(weights: Path,
                 made.learned()
             state = copy.deepcopy(made.state())
         kinds.append(made.weights())
-    one, other = kinds
-    assert all(torch.equal(value, other[name]) for name, value in one.items())
+    assert all(torch.equal(value, kinds[1][name]) for name, value in kinds[0].items())
 
 
 def test_a_second_stage_needs_a_first(data: Path, tmp_path: Path) -> None:

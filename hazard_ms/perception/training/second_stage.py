@@ -30,7 +30,8 @@ from hazard_ms.perception.training.pictures import Picture
 from hazard_ms.perception.training.student import AveragedStudent, device, half_precision, relit
 
 # [ours], all of them
-RATE, FINE, WARM, DECAY, AVERAGE_DECAY = 3e-3, 1e-3, 200, 2e-2, 0.998  # as in small.py
+RATE, FINE, WARM = 3e-3, 1e-3, 200  # rates with random and trained weights; steps until these are reached
+DECAY, AVERAGE_DECAY = 2e-2, 0.998  # of weights; and as in small.py
 SMOOTH = 0.05  # of the chance that is given to other categories than the right one
 FULLY = 256  # pixels from which a thing is drawn as often as others
 OTHERS = 0.3  # share of things of no known category that are learned from

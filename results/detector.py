@@ -7,8 +7,8 @@ detector in the test rooms and writes detector.md beside this file. Without word
 where it stopped; takes hours on one core. What is shipped is build/second_stage/second_stage, called small, with its
 table of errors; without that file `calibrate` counts the errors of the package's weights, and writes their table.
 
-The first stage is that of commit e4b0c5f, whose file of this name trains it. It has learned what it can: 3496 steps
-more, on the pictures of 768 pixels, left its AP50 at 0.37.
+The first stage is that of commit e4b0c5f, whose file of this name trains it. It was tried to train it on: 3496 steps on
+the pictures of 768 pixels left its AP50 at 0.37.
 """
 
 from __future__ import annotations

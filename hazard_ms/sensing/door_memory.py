@@ -14,11 +14,13 @@ from numpy.typing import NDArray
 
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.view import View
-from hazard_ms.simulation.mitigation.hinges import angle, spots, under_leaf
+from hazard_ms.simulation.mitigation.hinges import angle, inner, on_leaf, spots, under_leaf
 from hazard_ms.simulation.world import World
-from hazard_ms.spec import SceneSpec
+from hazard_ms.spec import Opening, Room, SceneSpec
 
 SPOTS = (-0.4, 0.0, 0.4)  # where along it an opening is looked for, as shares of its width from its middle [ours]
+Leaf = tuple[tuple[float, float], tuple[float, float]]  # its hinge and its free end on the floor [m]
+
 BEFORE = 0.3  # what is seen this much nearer than an opening hides it [m] [ours]
 
 
@@ -36,6 +38,7 @@ class KnownOpening:
     frame: int  # in which it was last seen
     outer: bool = False  # whether it leads outdoors
     boarded: int | None = None  # frame in which a flood board was first seen standing in it; None: none does
+    leaf: Leaf | None = None  # where its leaf stood on the floor; None: it has none that turns
 
 
 def opening_names(spec: SceneSpec) -> tuple[str, ...]:
@@ -72,6 +75,7 @@ class DoorMemory:
             *(self.names[number], number, o.kind, (x, y, z), o.width, share, broken, frame),
             outer=bool(openings.plan.outside[0, number]),
             boarded=self._boarded(number, frame, before),
+            leaf=leaf_of(self._spec.room, o, share) if o.kind == "door" and inner(o) and not broken else None,
         )
         if before is not None and (before.open, before.broken) != (share, broken):
             stood = under_leaf(self._spec.room, o, angle(before.open))
@@ -91,6 +95,12 @@ class DoorMemory:
     def rows(self) -> tuple[KnownOpening, ...]:
         """All that is known, by number."""
         return tuple(self.known[number] for number in sorted(self.known))
+
+
+def leaf_of(room: Room, o: Opening, share: float) -> Leaf:
+    """The leaf of a door in an inner wall that leaves a `share` of its width open."""
+    (a, b), (c, d) = (on_leaf(room, o, angle(share), far).tolist() for far in (0.0, o.width))
+    return (a, b), (c, d)
 
 
 def _shown(view: View, spot: NDArray[np.float64]) -> bool:

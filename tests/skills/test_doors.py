@@ -52,6 +52,13 @@ def turning(rooms: TwoRooms, action: Action) -> tuple[object, list[float], float
     return result, shares, min(nearest)
 
 
+def leaf_known(rooms: TwoRooms) -> np.ndarray:
+    """The hinge and the free end of the door's leaf as the robot remembers them [m], [2, 2]."""
+    known = rooms.stage.doors.find("door_0")
+    assert known is not None and known.leaf is not None
+    return np.array(known.leaf)
+
+
 @pytest.mark.parametrize("robot", ROBOTS)
 @pytest.mark.parametrize("start", [HALL, FAR])
 def test_a_door_opens_and_shuts_from_either_side(robot: str, start: object) -> None:
@@ -68,10 +75,12 @@ def test_a_door_opens_and_shuts_from_either_side(robot: str, start: object) -> N
         assert np.diff(angles) == pytest.approx(np.full(OPENING - 2, math.pi / 2 / OPENING), abs=2e-3)
         assert (shut_ones(stage), open_ones(stage)) == ((), ("door_0",))
         assert np.sign(stage.robot.base()[0] - HINGE[0]) == side
+        assert leaf_known(rooms) == pytest.approx(np.array([HINGE, HINGE - (DOOR.width, 0.0)]))
         result, shares, nearest = turning(rooms, SHUT)
         assert (result.ok, result.reason) == (True, "")  # type: ignore[attr-defined]
         assert rooms.share() == 0.0 and nearest < GRASP_REACH
         assert sum(0.0 < share < 1.0 for share in shares) + 1 == SHUTTING
+        assert leaf_known(rooms) == pytest.approx(np.array([HINGE, HINGE + (0.0, DOOR.width)]))
 
 
 @pytest.mark.parametrize("away", [0.45, 0.6, 0.75])

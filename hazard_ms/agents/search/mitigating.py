@@ -15,7 +15,7 @@ from hazard_ms.agents.search.candidates import EXTINGUISH, TRIES, Candidate, can
 from hazard_ms.agents.search.forecast import WATER
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook
-from hazard_ms.agents.search.walks import frames_between
+from hazard_ms.agents.search.walks import barring, frames_between
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sketch.planning.averting import kept
 from hazard_ms.sketch.planning.beginning import Course, best_course
@@ -25,7 +25,7 @@ from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, WALK_ONE_STEP, WAL
 from hazard_ms.skills.failures import NO_PATH, NOT_BURNING, UNFINISHED
 from hazard_ms.skills.motor.walking import ARRIVED
 
-OPEN = "open"
+OPEN, SHUT = "open", "shut"
 LOOKS = (WALK_TO, EXPLORE)  # verbs of measures that look for fires
 MOST_LABELS, BEAM = 400, 20  # of the search for the rescues after measures [ours]: a tenth of a second
 PUT_DOWN = 80.0  # frames of putting down a tool [measured: 66 to 112]
@@ -48,6 +48,7 @@ class Mitigator:
         self._water = any(hazard.name == WATER for hazard in brief.hazards)
         self._put_down: dict[str, int] = {}  # how often each tool was put down
         self._opened: set[str] = set()
+        self._swung: set[str] = set()  # doors that were shut since their leaves stood in the way
         self._barred = False  # whether it puts down a tool to open a door
         self._aim: tuple[float, float] | None = None  # of the jet [m]
         self._begun: Candidate | None = None  # what it fetches a tool for, or goes to, and has not yet done
@@ -150,6 +151,8 @@ class Mitigator:
         last, result = decision.last_action, decision.last_result
         if last is None or result is None:
             return None
+        if (door := self._in_the_way(decision)) is not None:
+            return door
         if last.verb == OPEN and result.reason in UNFINISHED and self._memory.failures.get(str(last), 0) < TRIES:
             return last if last in decision.available else None
         barred = last.verb in (WALK_TO, WALK_ONE_STEP) and result.reason == NO_PATH
@@ -158,6 +161,18 @@ class Mitigator:
             return Action(DROP)
         barred, self._barred = barred or self._barred, False
         return self._door(decision, "there was no way") if barred else None
+
+    def _in_the_way(self, decision: Decision) -> Action | None:
+        """The door to shut, each once, since its leaf bars the way; None where there is none."""
+        doors = [o for o in decision.openings if Action(SHUT, o.name) in decision.available]
+        doors = [o for o in doors if o.name not in self._swung]
+        door = barring(decision.map, decision.agent_position, doors, self._brief.radius)
+        if door is None:
+            return None
+        self._swung.add(door.name)
+        self._barred = False
+        self.why = "its leaf stands in the way"
+        return Action(SHUT, door.name)
 
     def opening(self, decision: Decision) -> Action | None:
         """A door to open where nothing else is left to do, each once; None where there is none."""

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.sparse import csgraph
 
+from hazard_ms.agents.search.floor_plan import AJAR
+from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sketch.travel.ways import WALK
-from hazard_ms.skills.motor.navigation import AT_MOST, BORDER, OBSTACLE_COST, SHORT, known_floor
+from hazard_ms.skills.motor.navigation import AT_MOST, BORDER, LOW, OBSTACLE_COST, SHORT, known_floor
 from hazard_ms.skills.sightlines import behind
 
 Array = NDArray[np.float64]
@@ -17,6 +21,8 @@ STEPS = 1.05  # length of a way by steps to the eight neighbours, over that of s
 TURNING = 20.0  # frames of a walk that go into turns, starts and stops: about 120 degrees of turns [ours]
 NO_DETOUR = 40.0  # frames by which two ways of telling the length of a walk may differ [ours]
 LONGEST_DETOUR = 400.0  # frames that count where there is no way now: what floats about may free it [ours]
+LEAST_FREED = 2.0  # floor that a robot must gain for a door to be shut [m2] [ours]: more than the leaf itself takes
+HINGED = 0.15  # share of a leaf, by its hinge, that a map takes for the wall; it is seen to end as much later [ours]
 MOST_CELLS = 16_000  # of a grid that is searched cell by cell; larger ones by squares of four [ours]
 
 
@@ -47,6 +53,57 @@ def detours(
     walks = frames_between(seen, start, goals, near, radius)[-1, :-1]
     longer = np.subtract(walks, plain, out=np.zeros(len(walks)), where=np.isfinite(plain))
     return np.clip(longer - NO_DETOUR, 0.0, LONGEST_DETOUR)
+
+
+def barring(
+    seen: SemanticMap, here: tuple[float, float], openings: Sequence[KnownOpening], radius: float
+) -> KnownOpening | None:
+    """The door to shut, since its leaf stands open in the way: shut, it gives the robot the most floor.
+
+    `here`: where the robot is [m]; `radius`: its own [m]. Floor that was never seen does not count. None where no door
+    of `openings` gives LEAST_FREED.
+    """
+    turned = [o for o in openings if o.leaf is not None and o.open > AJAR and not o.broken]
+    if not turned:
+        return None
+    low = seen.height <= LOW
+    before = _floor(seen, low, here, radius)
+    freed = []
+    for opening in turned:
+        assert opening.leaf is not None
+        hinge, end = (np.array(at) for at in opening.leaf)
+        shut = 2.0 * (np.array(opening.position[:2]) - hinge)
+        swung = low.copy()
+        swung[_line(seen, hinge, end, (HINGED, 1.0 + HINGED), (-0.1, 0.0, 0.1))] = True
+        swung[_line(seen, hinge, hinge + shut, (0.0, 1.0), (0.0,))] = False
+        freed.append((_floor(seen, swung, here, radius) - before) * seen.cell**2)
+    best = int(np.argmax(freed))
+    return turned[best] if freed[best] >= LEAST_FREED else None
+
+
+def _line(
+    seen: SemanticMap, start: Array, end: Array, shares: tuple[float, float], beside: Sequence[float]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The cells between two `shares` of the way from `start` to `end` [m], and `beside` it [m], as rows and columns."""
+    way = end - start
+    across = np.array([-way[1], way[0]]) / np.hypot(*way)
+    steps = np.arange(*shares, seen.cell / 2 / np.hypot(*way))[:, None, None]
+    points = start + steps * way + np.array(beside)[None, :, None] * across
+    x, y = np.moveaxis(np.floor((points - seen.origin) / seen.cell).astype(np.int64), -1, 0)
+    inside = (x >= 0) & (y >= 0) & (x < seen.explored.shape[1]) & (y < seen.explored.shape[0])
+    return y[inside], x[inside]
+
+
+def _floor(seen: SemanticMap, low: NDArray[np.bool_], here: tuple[float, float], radius: float) -> int:
+    """The number of seen cells that a robot `here` [m] gets over where it may drive over what is `low`, [Y, X]."""
+    fits = ndimage.distance_transform_edt(low) * seen.cell >= radius
+    parts, _ = ndimage.label(fits)
+    y, x = np.nonzero(fits)
+    if not len(y):
+        return 0
+    nearest = int(np.argmin(np.hypot(*(seen.centre_of(y, x) - here).T)))
+    over = ndimage.distance_transform_edt(parts != parts[y[nearest], x[nearest]]) * seen.cell <= radius
+    return int((seen.explored & over).sum())
 
 
 class _Grid:

@@ -180,6 +180,25 @@ def test_with_a_tool_in_its_hand_it_puts_that_down_to_open_a_door() -> None:
     assert player.act(replace(empty, openings=ajar, available=(*empty.available, open_it))) == open_it
 
 
+def test_it_shuts_a_door_whose_leaf_stands_in_the_way_once() -> None:
+    """The leaf of a second door, hinged at the south jamb, stands across the doorway to the eastern room, of 24 m2."""
+    jamb, swing = (2.0, -0.5), Action("shut", "door_1")
+    across = replace(DOOR, name="door_1", number=1, position=(2.45, -0.5, 1.0), width=0.9, leaf=(jamb, (2.0, 0.4)))
+    player = begun("planner", home())
+    for last in (LOOK, (swing, Result(False, MAX_FRAMES, 100))):
+        given = decision(last)
+        seen = given.map
+        y, x = np.nonzero(seen.explored)
+        near = np.abs(seen.centre_of(y, x) - (2.0, 0.0)) < (0.08, 0.5)
+        height = seen.height.copy()
+        height[y[near.all(-1)], x[near.all(-1)]] = 1.93
+        seen.tell(height, seen.explored)
+        barred = replace(given, openings=(DOOR, across), available=(*given.available, swing))
+        assert (player.act(barred) == swing) == (last is LOOK)
+    free = replace(decision(), openings=(DOOR, across), available=(*decision().available, swing))
+    assert begun("planner", home()).act(free) != swing
+
+
 def test_without_mitigations_it_only_rescues() -> None:
     first = [begun(who, told).act(on_fire(decision())) for who, told in cases()]
     assert all(action.target != NAMES[1] for action in first)

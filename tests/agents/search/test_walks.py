@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hazard_ms.agents.search import walks
-from hazard_ms.agents.search.walks import LONGEST_DETOUR, NO_DETOUR, TURNING, detours, frames_between
+from hazard_ms.agents.search.walks import LONGEST_DETOUR, NO_DETOUR, TURNING, barring, detours, frames_between
+from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sketch.travel.ways import RADIUS, WALK
 
@@ -92,3 +95,58 @@ def test_a_detour_is_what_a_walk_takes_longer_than_told() -> None:
     assert detours(seen, (0.0, 0.0), goal, near, RADIUS, np.array([np.inf])).tolist() == [0.0]
     build(seen, (1.4, -4.5), (1.6, 4.5))
     assert detours(seen, (0.0, 0.0), goal, near, RADIUS, plain).tolist() == [LONGEST_DETOUR]
+
+
+def hall(*boxes: tuple[tuple[float, float], tuple[float, float]]) -> tuple[SemanticMap, KnownOpening]:
+    """A hall of 6 m x 1.8 m around the origin, all that was seen, and a door in its north wall at x from 0 to 0.9 m.
+
+    It is open into the hall: its leaf stands at x = 0 and leaves 0.9 m of the hall free. `boxes`: corners of more [m].
+    """
+    seen = open_floor()
+    for low, high in (((-3.2, 0.9), (0, 1.1)), ((0.9, 0.9), (3.2, 1.1)), ((-3.2, -1.1), (3.2, -0.9))):
+        build(seen, low, high, 1.9)
+    for x in (-3.2, 3.0):
+        build(seen, (x, -1.1), (x + 0.2, 1.1), 1.9)
+    build(seen, (-0.05, 0.0), (0.05, 0.9), 1.9)
+    for low, high in boxes:
+        build(seen, low, high)
+    y, x = np.nonzero(seen.explored)
+    seen.explored[y, x] = (np.abs(seen.centre_of(y, x)) < (3.2, 1.1)).all(-1)
+    leaf = (0.0, 0.9), (0.0, 0.0)
+    return seen, KnownOpening("door_0", 0, "door", (0.45, 0.9, 1.0), 0.9, 1.0, False, 0, leaf=leaf)
+
+
+def test_a_leaf_bars_the_way_where_something_stands_beside_it() -> None:
+    """Between leaf and box are 0.45 m, and 0.45 m between box and wall: Fetch, 0.56 m wide, needs the leaf's place."""
+    beside = (-0.1, -0.45), (0.1, -0.25)
+    seen, door = hall(beside)
+    assert barring(seen, (-2.0, 0.0), [door], RADIUS) == door
+    assert barring(seen, (2.0, 0.0), [door], RADIUS) == door
+    assert barring(seen, (-2.0, 0.0), [replace(door, leaf=None)], RADIUS) is None
+    assert barring(seen, (-2.0, 0.0), [], RADIUS) is None
+
+
+@pytest.mark.parametrize(
+    "boxes",
+    [
+        [],
+        [((-0.1, -0.9), (0.1, -0.7))],
+        [((0.5, -0.9), (0.7, 0.9))],
+        [((-2.0, -0.9), (-1.9, 0.9)), ((-0.1, -0.45), (0.1, -0.25))],
+    ],
+    ids=["0.9 m are free", "0.7 m are free", "the box bars it alone", "the way to the door is barred"],
+)
+def test_a_leaf_bars_no_way_where_there_is_room_or_its_place_is_no_help(
+    boxes: list[tuple[tuple[float, float], tuple[float, float]]],
+) -> None:
+    seen, door = hall(*boxes)
+    assert barring(seen, (-2.4, 0.0), [door], RADIUS) is None
+
+
+def test_a_door_that_is_the_way_on_is_not_shut() -> None:
+    """Behind it 3 m x 3 m were seen, more than the 5 m2 of the hall beyond its leaf."""
+    seen, door = hall(((-0.1, -0.45), (0.1, -0.25)))
+    y, x = np.nonzero(~seen.explored)
+    points = seen.centre_of(y, x)
+    seen.explored[y, x] = (points > (-1.0, 1.1)).all(-1) & (points < (2.0, 4.1)).all(-1)
+    assert barring(seen, (2.0, 0.0), [door], RADIUS) is None

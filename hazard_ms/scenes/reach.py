@@ -13,7 +13,7 @@ from scipy import ndimage
 
 from hazard_ms.scenes.assets.index import asset
 from hazard_ms.scenes.boxes import box_of
-from hazard_ms.scenes.floor import FLOOR_CELL, Grid, boxes_of, cell_of, cells, free_for, halls
+from hazard_ms.scenes.floor import FLOOR_CELL, Grid, boxes_of, cell_of, cells, free_for, halls, open_leaves, take
 from hazard_ms.spec import Body, Build, SceneSpec, Vec2
 from hazard_ms.spec.catalogue import value_of
 from hazard_ms.spec.robot import GRASP_REACH
@@ -47,9 +47,10 @@ def floor_of(spec: SceneSpec, radius: float) -> Grid:
 
 
 def standing_room(spec: SceneSpec, radius: float) -> Grid:
-    """The cells where a robot of `radius` [m] fits between walls and what it cannot push aside, [X, Y]."""
+    """The cells where a robot of `radius` [m] fits between walls, open leaves and what it cannot push aside, [X, Y]."""
     fixtures, bodies = boxes_of(spec)
-    return free_for(spec.room, fixtures, [b for b in bodies if b.high > PUSHED_HEIGHT], radius)
+    free = free_for(spec.room, fixtures, [b for b in bodies if b.high > PUSHED_HEIGHT], radius)
+    return take(free, spec.room.size, open_leaves(spec.room), radius)
 
 
 def part_of(free: Grid, start: Vec2, most: float) -> Grid:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from hazard_ms.scenes.floor import cell_of
 from hazard_ms.scenes.reach import floor_of, reachable, share
 from hazard_ms.scenes.splits import scene
-from hazard_ms.spec import AgentStart, Body, Build, Fixture, Room, SceneSpec, Vec2, Vec3
+from hazard_ms.spec import AgentStart, Body, Build, Fixture, Opening, Partition, Room, SceneSpec, Vec2, Vec3
 from hazard_ms.spec.registry import ROBOTS, load
 
 
@@ -80,6 +81,15 @@ def test_a_robot_that_starts_against_furniture_leaves_it_and_one_inside_of_it_do
     beside, inside = (room(table, apple("a", (1.0, 5.0, 0.0)), start=s) for s in ((2.0, 1.9), (2.0, 3.0)))
     assert reachable(beside, build("fetch")) == ("a",) and reachable(inside, build("fetch")) == ()
     assert floor_of(beside, 0.29)[cell_of((2.0, 5.0))] and not floor_of(inside, 0.29).any()
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.0, ("a",)), (1.0, ())])
+def test_an_open_leaf_bars_the_way(share: float, found: tuple[str, ...]) -> None:
+    """From a wall at y = 3 m a leaf of 0.9 m stands to within 0.4 m of a table; shut, it leaves 1.3 m."""
+    table, door = box("table", (1.0, 0.85), (0.3, 1.7, 0.8)), Opening("door", "middle", 1.45, 0.9, 2.0, open=share)
+    walls = Room((4.0, 6.0), openings=(door,), partitions=(Partition("middle", "x", 3.0),))
+    spec = replace(room(table, apple("a", (3.0, 1.0, 0.0)), start=(0.4, 1.0)), room=walls)
+    assert reachable(spec, build("fetch")) == found
 
 
 def test_generated_scenes_leave_robots_room_everywhere() -> None:

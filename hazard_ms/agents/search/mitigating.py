@@ -190,11 +190,11 @@ class Mitigator:
         return Action(OPEN, door)
 
     def _leaf(self, decision: Decision) -> str | None:
-        """The nearest of the doors that can be opened farther, those that are ajar first; None where there is none."""
+        """The nearest inner door that can be opened farther, those that are ajar first; None where there is none."""
         if OPEN not in self._brief.mitigations:
             return None
         here = np.array(decision.agent_position)
-        doors = [o for o in decision.openings if o.kind == "door" and o.open < 0.9 and not o.broken]
+        doors = [o for o in decision.openings if o.kind == "door" and o.open < 0.9 and not (o.broken or o.outer)]
         doors = [o for o in doors if o.name not in self._opened]
 
         def order(door: KnownOpening) -> tuple[bool, float]:

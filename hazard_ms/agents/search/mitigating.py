@@ -147,47 +147,42 @@ class Mitigator:
         return course if course.steps and course.before is None else None
 
     def way_out(self, decision: Decision) -> Action | None:
-        """A door to open where the last walk found no way, or to open on; None where there is none."""
+        """A door to turn where the last walk found no way, or to go on turning; None where there is none."""
         last, result = decision.last_action, decision.last_result
         if last is None or result is None:
             return None
-        if (door := self._in_the_way(decision)) is not None:
-            return door
-        if last.verb == OPEN and result.reason in UNFINISHED and self._memory.failures.get(str(last), 0) < TRIES:
+        turned = last.verb == OPEN or (last.verb == SHUT and last.target in self._swung)
+        if turned and result.reason in UNFINISHED and self._memory.failures.get(str(last), 0) < TRIES:
             return last if last in decision.available else None
         barred = last.verb in (WALK_TO, WALK_ONE_STEP) and result.reason == NO_PATH
-        if barred and self._leaf(decision) is not None and any(tool.held for tool in decision.tools):
-            self._barred, self.why = True, "there was no way, and a door opens to an empty hand"
+        if barred and any(tool.held for tool in decision.tools) and (self._leaf(decision) or self._bar(decision)):
+            self._barred, self.why = True, "there was no way, and a door turns by an empty hand"
             return Action(DROP)
         barred, self._barred = barred or self._barred, False
-        return self._door(decision, "there was no way") if barred else None
-
-    def _in_the_way(self, decision: Decision) -> Action | None:
-        """The door to shut, each once, since its leaf bars the way; None where there is none."""
-        doors = [o for o in decision.openings if Action(SHUT, o.name) in decision.available]
-        doors = [o for o in doors if o.name not in self._swung]
-        door = barring(decision.map, decision.agent_position, doors, self._brief.radius)
-        if door is None:
-            return None
-        self._swung.add(door.name)
-        self._barred = False
-        self.why = "its leaf stands in the way"
-        return Action(SHUT, door.name)
+        return self._turned(decision, "there was no way") if barred else None
 
     def opening(self, decision: Decision) -> Action | None:
-        """A door to open where nothing else is left to do, each once; None where there is none."""
-        if self._water:
-            return None  # it would come in
-        return self._door(decision, "there may be more behind it")
+        """A door to turn where nothing else is left to do, each once; None where there is none."""
+        return self._turned(decision, "there may be more behind it", not self._water)  # which would come in
 
-    def _door(self, decision: Decision, why: str) -> Action | None:
-        """The door to open next, once; None where there is none, or it cannot be opened now."""
-        door = self._leaf(decision)
+    def _turned(self, decision: Decision, why: str, opens: bool = True) -> Action | None:
+        """The door to shut since its leaf bars the way, or else, if it `opens` doors, to open, each once; or None."""
+        bar, door = self._bar(decision), self._leaf(decision) if opens else None
+        if bar is not None and Action(SHUT, bar) in decision.available:
+            self._swung.add(bar)
+            self.why = f"{why}: its leaf stands there"
+            return Action(SHUT, bar)
         if door is None or Action(OPEN, door) not in decision.available:
             return None
         self._opened.add(door)
         self.why = why
         return Action(OPEN, door)
+
+    def _bar(self, decision: Decision) -> str | None:
+        """The door whose open leaf bars the way, but for those that were shut for it; None where there is none."""
+        doors = [o for o in decision.openings if o.name not in self._swung]
+        door = barring(decision.map, decision.agent_position, doors, self._brief.radius)
+        return None if door is None or SHUT not in self._brief.mitigations else door.name
 
     def _leaf(self, decision: Decision) -> str | None:
         """The nearest inner door that can be opened farther, those that are ajar first; None where there is none."""

@@ -96,7 +96,7 @@ def _line(
 
 def _floor(seen: SemanticMap, low: NDArray[np.bool_], here: tuple[float, float], radius: float) -> int:
     """The number of seen cells that a robot `here` [m] gets over where it may drive over what is `low`, [Y, X]."""
-    fits = ndimage.distance_transform_edt(low) * seen.cell >= radius
+    fits = ndimage.distance_transform_edt(low) * seen.cell >= radius - seen.cell / 2  # as walks have it
     parts, _ = ndimage.label(fits)
     y, x = np.nonzero(fits)
     if not len(y):

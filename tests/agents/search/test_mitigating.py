@@ -183,20 +183,26 @@ def test_with_a_tool_in_its_hand_it_puts_that_down_to_open_a_door() -> None:
 
 def test_it_shuts_a_door_whose_leaf_stands_in_the_way_once() -> None:
     """The leaf of a second door, hinged at the south jamb, stands across the doorway to the eastern room, of 24 m2."""
-    jamb, swing = (2.0, -0.5), Action("shut", "door_1")
-    across = replace(DOOR, name="door_1", number=1, position=(2.45, -0.5, 1.0), width=0.9, leaf=(jamb, (2.0, 0.4)))
+    walk, swing = (Action(WALK_TO, "book_1"), Result(False, NO_PATH)), Action("shut", "door_1")
+    leaf = (2.0, -0.5), (2.0, 0.4)
+    across = replace(DOOR, name="door_1", number=1, position=(2.45, -0.5, 1.0), width=0.9, leaf=leaf)
+
+    def barred(last: tuple[Action, Result], held: str | None = None) -> Decision:
+        given = decision(last, held)
+        y, x = np.nonzero(given.map.explored)
+        near = (np.abs(given.map.centre_of(y, x) - (2.0, 0.0)) < (0.08, 0.5)).all(-1)
+        height = given.map.height.copy()
+        height[y[near], x[near]] = 1.93
+        given.map.tell(height, given.map.explored)
+        return replace(given, openings=(DOOR, across), available=(*given.available, *([] if held else [swing])))
+
     player = begun("planner", home())
-    for last in (LOOK, (swing, Result(False, MAX_FRAMES, 100))):
-        given = decision(last)
-        seen = given.map
-        y, x = np.nonzero(seen.explored)
-        near = np.abs(seen.centre_of(y, x) - (2.0, 0.0)) < (0.08, 0.5)
-        height = seen.height.copy()
-        height[y[near.all(-1)], x[near.all(-1)]] = 1.93
-        seen.tell(height, seen.explored)
-        barred = replace(given, openings=(DOOR, across), available=(*given.available, swing))
-        assert (player.act(barred) == swing) == (last is LOOK)
-    free = replace(decision(), openings=(DOOR, across), available=(*decision().available, swing))
+    assert player.act(barred(walk, NAMES[1])) == Action(DROP)
+    for last in ((Action(DROP), Result(True, frames=80)), (swing, Result(False, MAX_FRAMES, 100))):
+        assert player.act(barred(last)) == swing
+    assert player.act(barred((swing, Result(True, frames=200)))) != swing != player.act(barred(walk))
+    assert begun("planner", home()).act(barred(LOOK)) != swing
+    free = replace(decision(walk), openings=(DOOR, across), available=(*decision().available, swing))
     assert begun("planner", home()).act(free) != swing
 
 

@@ -26,7 +26,7 @@ from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import Action, Decision
 from hazard_ms.skills.executor import SkillEnv
 from hazard_ms.spec.checks import one_of
-from hazard_ms.spec.registry.version import __version__
+from results.tables import machine
 
 HERE = Path(__file__).parent
 RAW = HERE.parent / "build" / "hostile"  # the table of each task
@@ -41,10 +41,12 @@ NOBODY = "http://127.0.0.1:9/v1"  # where no server listens
 SILENT = ("500", "hang", "drip", "html", "5mb")
 HEAD = f"""# Language models that misbehave
 
-Made by `./run python results/hostile.py` with hazard_ms {__version__}: the first {FRAMES} frames of {len(SEEDS)}
+Made by `./run python results/hostile.py`: the first {FRAMES} frames of {len(SEEDS)}
 episodes for each task and each behaviour of the scripted server (`hazard-ms llm serve-scripted` says what they do), and
 how they ended; counts are sums over episodes. Every call was counted, by the server as by the agent; every fifth
 episode, played again out of its recorded answers, without a server, had the same hashes.
+Written at
+{{machine}}.
 """
 FAULTS = ("calls", "retries", "lost", "refused", "truncated", "invalid", "fallbacks")
 
@@ -146,7 +148,7 @@ def main(wanted: list[str]) -> None:
         (RAW / f"{task}.md").write_text(section(task), encoding="utf-8")
     made = [RAW / f"{task}.md" for task in TASKS]
     told = [path.read_text(encoding="utf-8") for path in made if path.exists()]
-    (HERE / "hostile.md").write_text("\n".join([HEAD, *told]), encoding="utf-8")
+    (HERE / "hostile.md").write_text("\n".join([HEAD.format(machine=machine()), *told]), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 from hazard_ms.evaluation.comparison.pairing import difference
 from hazard_ms.evaluation.result import EpisodeResult
-from results.tables import HERE, TASKS, evaluate, results_in, value_of, words
+from results.tables import HERE, TASKS, evaluate, machine, results_in, value_of, words
 
 RAW = HERE.parent / "build" / "language_models"
 SCRIPTED = "llm:base_url=scripted,model=greedy"
@@ -30,6 +30,8 @@ over HTTP as a language model does: it shows how little of what `greedy` knows i
 how well it decides.
 Values are in percent, with 95 % bootstrap intervals over scenes, the difference paired by episode; counts are sums
 over episodes, and tokens means per call.
+Written at
+{machine}.
 
 """
 
@@ -83,5 +85,5 @@ if __name__ == "__main__":
     if sys.argv[1:] != ["tables"]:
         for each in TASKS:
             play(each)
-    (HERE / "language_models.md").write_text(HEAD + table(), encoding="utf-8")
+    (HERE / "language_models.md").write_text(HEAD.format(machine=machine()) + table(), encoding="utf-8")
     print(table())

@@ -170,14 +170,21 @@ def _explained(appraisal: Appraisal, cause: str) -> str:
 
 
 def decisions_of(
-    appraisals: Sequence[Appraisal], fallbacks: Sequence[bool], landings: Sequence[float]
+    appraisals: Sequence[Appraisal],
+    fallbacks: Sequence[bool],
+    landings: Sequence[float],
+    frames: Sequence[int] | None = None,
 ) -> tuple[DecisionRegret, ...]:
     """The regrets of all decisions of an episode.
 
-    `landings`: the values that the best plan reached after each decision, or that was rescued if it was the last.
+    `landings`: the values that the best plan reached after each decision, or that was rescued if it was the last;
+    `frames` that passed with each, None where all took time: what failed at once has lost nothing.
     """
-    made = []
-    for one, fallback, landing in zip(appraisals, fallbacks, landings, strict=True):
+    made, frames = [], [1] * len(appraisals) if frames is None else frames
+    for one, fallback, landing, passed in zip(appraisals, fallbacks, landings, frames, strict=True):
+        if not passed:
+            lost = max(one.best - landing, 0.0)
+            one = replace(one, regret=min(one.regret, lost), seen=min(one.seen, lost))
         if one.mistaken:  # all that it lost in the end was lost by the choice
             lost = max(one.regret, one.best - landing)
             one = replace(one, regret=lost, seen=lost)

@@ -72,7 +72,8 @@ def regret_of(record: EpisodeResult, known: str, appraiser: Appraiser) -> Episod
     count = len(appraiser.appraisals)
     landings = [*appraiser.bests[1 : count + 1], appraiser.value][:count]
     fallbacks = [decision.fallback for decision in record.decisions[:count]]
-    decisions = decisions_of(appraiser.appraisals, fallbacks, landings)
+    frames = [decision.waited + decision.frames for decision in record.decisions[:count]]
+    decisions = decisions_of(appraiser.appraisals, fallbacks, landings, frames)
     broken_off = record.ended in FAILED and len(appraiser.bests) > count
     ended = appraiser.bests[count] - appraiser.value if broken_off else 0.0
     start = appraiser.bests[0] if appraiser.bests else 0.0

@@ -87,6 +87,15 @@ def test_all_that_was_lost_adds_up() -> None:
     assert sum(lost.values()) == pytest.approx(0.9 - 0.3) and set(CAUSES) < set(PARTS)
 
 
+def test_what_fails_at_once_loses_nothing() -> None:
+    """0.2 would be lost by the walk that was chosen; it finds no path, and all is as it was, twice. Then it is made."""
+    decisions = decisions_of([having(seen=0.2)] * 3, [False] * 3, [0.9, 0.9, 0.7], [0, 0, 80])
+    assert [(row.regret, row.execution) for row in decisions[:2]] == [(0.0, 0.0)] * 2
+    assert decisions[2].regret == pytest.approx(0.2) and decisions[2].execution == pytest.approx(0.0)
+    (stop,) = decisions_of([having(seen=0.2)], [False], [0.7], [0])
+    assert (stop.regret, stop.execution) == (pytest.approx(0.2), pytest.approx(0.0))
+
+
 def test_a_decision_whose_regret_is_almost_all_unseen_keeps_the_rest_as_small() -> None:
     (row,) = decisions_of([having(seen=0.015)], [False], [0.7])
     assert (row.cause, row.unseen, row.execution) == (UNSEEN, pytest.approx(0.185), pytest.approx(0.0))

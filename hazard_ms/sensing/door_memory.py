@@ -19,9 +19,9 @@ from hazard_ms.simulation.world import World
 from hazard_ms.spec import Opening, Room, SceneSpec
 
 SPOTS = (-0.4, 0.0, 0.4)  # where along it an opening is looked for, as shares of its width from its middle [ours]
-Leaf = tuple[tuple[float, float], tuple[float, float]]  # its hinge and its free end on the floor [m]
-
 BEFORE = 0.3  # what is seen this much nearer than an opening hides it [m] [ours]
+
+Leaf = tuple[tuple[float, float], tuple[float, float]]  # its hinge and its free end on the floor [m]
 
 
 @dataclass(frozen=True)

@@ -156,7 +156,7 @@ class Mitigator:
             return last if last in decision.available else None
         barred = last.verb in (WALK_TO, WALK_ONE_STEP) and result.reason == NO_PATH
         if barred and any(tool.held for tool in decision.tools) and (self._leaf(decision) or self._bar(decision)):
-            self._barred, self.why = True, "there was no way, and a door turns by an empty hand"
+            self._barred, self.why = True, "there was no way, and only an empty hand turns a door"
             return Action(DROP)
         barred, self._barred = barred or self._barred, False
         return self._turned(decision, "there was no way") if barred else None

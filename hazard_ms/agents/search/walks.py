@@ -74,7 +74,7 @@ def barring(
         hinge, end = (np.array(at) for at in opening.leaf)
         shut = 2.0 * (np.array(opening.position[:2]) - hinge)
         swung = low.copy()
-        swung[_line(seen, hinge, end, (HINGED, 1.0 + HINGED), (-0.1, 0.0, 0.1))] = True
+        swung[_line(seen, hinge, end, (HINGED, 1.0 + HINGED), (-seen.cell, 0.0, seen.cell))] = True
         swung[_line(seen, hinge, hinge + shut, (0.0, 1.0), (0.0,))] = False
         freed.append((_floor(seen, swung, here, radius) - before) * seen.cell**2)
     best = int(np.argmax(freed))

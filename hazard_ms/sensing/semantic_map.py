@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hazard_ms.sensing.camera import AGENT, NOTHING
-from hazard_ms.sensing.far_floor import floor_between, pixels
+from hazard_ms.sensing.far_floor import bare_cells, floor_between, pixels
 from hazard_ms.sensing.sighting import Sighting, merged, sightings
 from hazard_ms.sensing.view import View
 
@@ -56,16 +56,17 @@ class SemanticMap:
         cells: int = FEWEST_CELLS,
         hazards: int = 1,
         ceiling: float = CEILING,
+        clears: bool = False,
     ) -> None:
         """Begin a map of K = `hazards` hazards with `cells` x `cells` cells of edge `cell` [m].
 
         `centre` [m] is the agent's start; `loose` [B] tells which things can be moved, whose old traces are wiped when
-        they are seen elsewhere; points at the height `ceiling` [m] or higher are dropped. Raises ValueError for a map
-        without cells.
+        they are seen elsewhere; points at the height `ceiling` [m] or higher are dropped. Where it `clears`, floor that
+        is seen bare ends what stood there: labels do not tell that it moved. Raises ValueError for no cells.
         """
         if cell <= 0.0 or cells < 1:
             raise ValueError(f"cell and cells must be positive, got {cell} m and {cells}")
-        self.cell, self.ceiling = cell, ceiling
+        self.cell, self.ceiling, self.clears = cell, ceiling, clears
         self.origin = np.round(np.asarray(centre, dtype=np.float64) / cell).astype(np.int64) * cell - cells // 2 * cell
         self.loose = np.asarray(loose, dtype=bool)
         self._stood = ~self.loose  # at the start: a copy, since furniture may float off
@@ -143,9 +144,11 @@ class SemanticMap:
         if frame < self.frame:
             raise ValueError(f"frame must not be earlier than {self.frame}, the frame of the last view, got {frame}")
         self.frame = frame
+        if self.clears:
+            self._empty(*bare_cells(view, GRID, agent, self.origin, self.cell, len(self.explored), self.ceiling))
         if view.labels is not None:
             self._see_objects(view, frozenset(ignore), damaged)
-        self._mark(view, *pixels(*view.depth.shape, GRID), agent, ignore)
+        self._mark(view, agent, ignore)
         self._see_floor(view)
 
     def _see_floor(self, view: View) -> None:
@@ -170,14 +173,8 @@ class SemanticMap:
             self.object_id[y, x] = index
             self._light[y, x] = max(float(self._light[y, x]), seen.top)
 
-    def _mark(
-        self,
-        view: View,
-        row: NDArray[np.int64],
-        column: NDArray[np.int64],
-        agent: tuple[float, float],
-        ignore: Collection[int],
-    ) -> None:
+    def _mark(self, view: View, agent: tuple[float, float], ignore: Collection[int]) -> None:
+        row, column = pixels(*view.depth.shape, GRID)
         label = np.full(row.shape, NOTHING) if view.labels is None else view.labels[row, column]
         points = view.points(row, column)
         x, y = np.floor((points[:, :2] - self.origin) / self.cell).astype(np.int64).T
@@ -224,6 +221,9 @@ class SemanticMap:
         far = np.hypot(*np.moveaxis(self.centre_of(y, x) - position, -1, 0))
         y, x = y[far <= radius], x[far <= radius]
         self.explored[y, x] = True
+        self._empty(y, x)
+
+    def _empty(self, y: NDArray[np.int64], x: NDArray[np.int64]) -> None:
         self._firm[y, x], self._light[y, x], self.object_id[y, x] = 0.0, 0.0, -1
 
     def tell(self, height: NDArray[np.float32], explored: NDArray[np.bool_]) -> None:
@@ -234,7 +234,7 @@ class SemanticMap:
         """Forget what stands on the floor at `points` [m], [P, 2], world frame: it has moved away."""
         cells = [self.cell_of(point) for point in points]
         y, x = np.array([c for c in cells if 0 <= min(c) and max(c) < len(self.explored)], int).reshape(-1, 2).T
-        self._firm[y, x], self._light[y, x], self.object_id[y, x] = 0.0, 0.0, -1
+        self._empty(y, x)
 
     def forget(self, index: int) -> None:
         """Remove the thing `index`, which is no longer there: it was picked up or rescued."""

@@ -61,7 +61,14 @@ class Knowledge:
         carts = [t.name for t in spec.things if t.category in base.task.safe_place.containers]
         self.labeller = perception.labeller(world, carts)
         ceiling = LINTELS if has_several_rooms(base) else CEILING
-        self.seen = SemanticMap(self._place(), self.labeller.loose, cells=cells, hazards=hazards, ceiling=ceiling)
+        self.seen = SemanticMap(
+            self._place(),
+            self.labeller.loose,
+            cells=cells,
+            hazards=hazards,
+            ceiling=ceiling,
+            clears=self.labeller.withheld,
+        )
         self.maps = [self.seen]
         self.stage = Stage(robot, self.seen, look or self.look, self.labeller)
         self.stage.maps, self.stage.on_ground = self.maps, base.task.safe_place.at_rest

@@ -72,8 +72,10 @@ def test_agents_get_no_labels_and_no_names_of_the_truth(env: SkillEnv) -> None:
     assert len(decision.map.objects) > 3 and all("#" in name for name in decision.names)
     assert {a.target for a in decision.available} - {None} <= set(decision.names)
     assert all("#" in t.name for t in env.brief().targets)
+    assert decision.map.clears, "what detectors overlook must not bar ways for ever"
     played(env, "truth")
     assert (images := env.decision().images) is not None and images.segmentation is not None
+    assert not env.decision().map.clears
 
 
 @pytest.mark.render

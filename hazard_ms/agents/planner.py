@@ -23,8 +23,8 @@ from hazard_ms.skills.failures import UNFINISHED
 MOST_LABELS = 20_000  # of the exact search: half a second [ours]
 MOST_IN_HOMES = 3_000  # where values differ little by the aim `averted`, so that a proof takes long [ours]
 BEAM = 300  # labels of a layer beyond that [ours]
-# share by which another plan must be better than what a walk of many legs was begun for: with each leg the estimates
-# change, and who turns round every time arrives nowhere [ours]
+# share by which another plan must be better than what a walk of many legs was begun for, in homes and with a detector:
+# there the estimates change with each leg, and who turns round every time arrives nowhere [ours]
 WAVERING = 0.1
 SHOWN = 4  # goals of a plan that the note names [ours]
 
@@ -70,7 +70,7 @@ class Planner(Searcher):
         return action
 
     def first(self, ahead: Outlook) -> First | None:
-        """The first rescue of the best plan; in homes, of that for which it is on its way, if it is hardly worse."""
+        """The first rescue of the best plan, or of that for which it is on its way, where that is hardly worse."""
         plan = self._loyal(ahead, self._solved(ahead.problem))
         if not plan.rescues:
             return None
@@ -86,7 +86,8 @@ class Planner(Searcher):
     def _loyal(self, ahead: Outlook, plan: Plan) -> Plan:
         """The best plan that begins with what it is on its way to, if it is hardly worse than `plan`; else that."""
         problem, travel = ahead.problem, ahead.problem.travel
-        if not (self._brief.several_rooms and plan.rescues and isinstance(travel, StaticTravel)):
+        unsure = self._brief.several_rooms or self._brief.looks
+        if not (unsure and plan.rescues and isinstance(travel, StaticTravel)):
             return plan
         begun = [ahead.name(goal) == self._under_way for goal in range(travel.targets)]
         if problem.holding is not None or not any(begun) or begun[plan.rescues[0].target]:

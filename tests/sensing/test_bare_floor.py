@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from hazard_ms.sensing.camera import STRUCTURE
-from hazard_ms.sensing.far_floor import BARE_WITHIN, BESIDE, FLOOR
+from hazard_ms.sensing.far_floor import BARE_WITHIN, FLOOR
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sensing.view import View
 from tests.worlds.rays import Block, cast, intrinsic, looking

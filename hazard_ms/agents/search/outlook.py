@@ -32,8 +32,8 @@ from hazard_ms.skills.motor.walking import ARRIVED
 
 FOUND_WAY = 1.5  # distance to fetch what is found in a search [m] [ours]
 MOST_FOUND = 2.0  # targets that a single search is counted on to find: any more are planned for when found [ours]
-# share of what a look should show that a detector does not tell of: in floods of `train`, of 21 looks, beliefs in things
-# that it did not know were 0.45 of the value, and of the last 12 0.2 of the number, that was counted on [measured]
+# share of what a look should show that a detector does not tell of: 21 looks in floods of `train` led to beliefs in new
+# things of 0.45 of the value that was counted on, the last 12 to 0.2 of the number [measured]
 OVERLOOKED = 0.6
 FOUND_WHOLE = 0.8  # share of its value that a target counts when it has to be found first [ours]
 # standard deviation of the frames of a plan over their root: a rescue of 170 frames takes 50 more or less, or fails

@@ -141,7 +141,12 @@ class Greedy(Agent):
         open_carts = [name for name in carts if self._failures.get(name, 0) < self._give_up]
         if not open_carts:
             return self._search(decision) or self._search_anew(decision)
-        nearest = min(open_carts, key=lambda name: distance(decision, carts[name]) * (1 + self._failures.get(name, 0)))
+        last = decision.last_action
+        loyal = last.target if self._detects and last is not None else None  # where carts seem to be moves a little
+        failed = {name: 1 + self._failures.get(name, 0) for name in open_carts}
+        nearest = min(
+            open_carts, key=lambda n: distance(decision, carts[n]) * failed[n] * (LOYALTY if n == loyal else 1.0)
+        )
         self.note = "to the nearest cart"
         return Action(DROP if decision.walked_up_to == nearest else WALK_TO, nearest)
 

@@ -9,7 +9,7 @@ import pytest
 from hazard_ms.agents.base import agent
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision, Result
-from hazard_ms.skills.failures import NOT_A_TARGET
+from hazard_ms.skills.failures import MAX_FRAMES, NOT_A_TARGET
 from tests.worlds.playground import Playground, brief, play
 
 AGENTS = ("greedy", "planner", "mcts:simulations=100")
@@ -177,3 +177,23 @@ def test_with_the_truth_beliefs_change_nothing(name: str) -> None:
     off = {"greedy": "false", "planner": "0", "mcts": "0"}[name]
     taken = [play(agent(text), Playground(places, values)) for text in (name, f"{name}:belief={off}")]
     assert taken[0] == taken[1] and len(taken[0]) > 6 and Action(EXPLORE) in taken[0]
+
+
+@pytest.mark.parametrize("looks", [True, False])
+def test_with_a_detector_greedy_does_not_turn_from_one_cart_to_another_that_is_hardly_nearer(looks: bool) -> None:
+    """With something in its hand, on its way, the other cart seems to be a little nearer now."""
+    ground = Playground(
+        {"a": (0.6, 0.0), "left": (-2.0, 0.0), "right": (2.5, 0.0)}, {"a": 1.0}, carts=("left", "right")
+    )
+    player = agent("greedy")
+    player.reset(replace(brief(), looks=looks))
+    while ground.held is None:
+        ground.do(player.act(ground.decision()))
+    walk = player.act(ground.decision())
+    assert walk == Action(WALK_TO, "left")
+    x = ground.decision().agent_position[0] - 0.4  # how far it has come
+    ground.places["right"] = (x + 0.95 * (x + 2.0), 0.0)
+    ground.look()
+    cut_short = {"last_action": walk, "last_result": Result(False, MAX_FRAMES, 30)}
+    now = replace(ground.decision(), agent_position=(x, 0.0), **cut_short)
+    assert player.act(now) == Action(WALK_TO, "left" if looks else "right")

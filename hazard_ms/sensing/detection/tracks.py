@@ -151,7 +151,8 @@ class Tracker:
     def _join(self, over: Mapping[Track, int], matched: dict[int, Track]) -> list[Track]:
         """Make one of each two tracks of one category that a detection covers; returns those that are given up.
 
-        `over`: the detection that covers each track; `matched`: the track of each, which is changed to the one kept.
+        The one that has an index, and was seen more often, is kept: an agent may be on its way to it. `over`: the
+        detection that covers each track; `matched`: the track of each, which is changed to the one kept.
         """
         gone = []
         found = set(matched.values())
@@ -161,7 +162,7 @@ class Tracker:
                 continue
             if any(each.evidence is None or each.refuted or each.rescued for each in (track, other)):
                 continue
-            kept, left = (other, track) if other.index >= 0 or track.index < 0 else (track, other)
+            kept, left = sorted((other, track), key=lambda each: (each.index < 0, -each.frames))
             assert kept.evidence is not None and left.evidence is not None
             kept.evidence.join(left.evidence)
             kept.sighting, kept.size, kept.empty = other.sighting, other.size, 0

@@ -42,8 +42,8 @@ are found by the package's detector and followed by tracks of our own. First sce
 Values are in percent, with 95 % bootstrap intervals over scenes; "less the truth" is the difference from the same
 agent that is told what its camera sees, paired by episode (results/README.md). "eyes": the camera's picture, in pixels,
 and its angle; today the detector's are {eyes}, and rows of others were played with earlier agents. A dash: not played.
-An episode has one of two busy cores, or less. perceived.csv has every episode; they were played at several commits.
-Written at
+An episode has one of two busy cores, or less. perceived.csv has every episode; they were played at several commits,
+with the weights of the time. Written at
 {machine}.
 
 | task | agent | eyes | Value | less the truth | Step | Damage | s an episode | episodes |

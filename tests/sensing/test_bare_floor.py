@@ -67,7 +67,7 @@ def test_floor_below_a_table_does_not_end_the_table(top: float) -> None:
 
 
 def test_floor_farther_off_ends_nothing() -> None:
-    """Neither does floor beside what stands: a thing that moves less than BESIDE cells keeps its old trace there."""
+    """A look has too few points there to tell that nothing stands in a cell."""
     far = Block((AGENT[0] + BARE_WITHIN + 0.5, 4.8, 0.0), (AGENT[0] + BARE_WITHIN + 0.9, 5.2, 0.8), STRUCTURE)
     seen = empty_map()
     look(seen, 0, far)

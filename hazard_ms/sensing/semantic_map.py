@@ -1,9 +1,8 @@
 """Everything that an agent has seen so far: a grid of the floor, and a memory of things.
 
-The grid holds the height, whether a cell was explored, the uppermost thing and the levels of the hazards. It is centred
-on the agent's start and does not know the room. It is written from depth images alone: every pixel becomes a point of
-the world and marks the cell below it. Arrays are [Y, X]: `height[y, x]` belongs to the square of edge `cell` whose
-south-west corner is `origin + cell * (x, y)`. As in the original, points 2.5 m above the floor or higher are dropped.
+The grid is centred on the agent's start and does not know the room. It is written from depth images: every pixel is a
+point of the world and marks the cell below it. Arrays are [Y, X]: `height[y, x]` belongs to the square of edge `cell`
+whose south-west corner is `origin + cell * (x, y)`. As in the original, points from 2.5 m above the floor are dropped.
 """
 
 from __future__ import annotations
@@ -27,14 +26,9 @@ CEILING = 2.5  # points at this height or higher are dropped [m] (HAZARD utils/m
 # a flat angle, so all rows of the lower half are used, where the floor is, and GRID / 2 of the upper half.
 GRID = 128
 LINTELS = 1.95  # the same where doors divide a place [m] [ours]: lintels, 2.03 m high, would block them in the map
-EYESHOT = 4.0  # distance around a scene's area up to which things are remembered [m] [ours]
+BARRIER = 1.0  # height of the obstacle that barred floor is: higher than steps, lower than walls [m] [ours]
 FRESH = 30  # frames for which the traces of furniture that floats are kept [ours]
 OWN_RADIUS = 0.45  # radius of the robot with its arm tucked: without labels, points within it are dropped [m]
-
-
-def cells_for(size: tuple[float, float], cell: float = MAP_CELL) -> int:
-    """The number of cells along each side of a map that holds an area of `size` [m], wherever the agent starts."""
-    return max(FEWEST_CELLS, 2 * round((max(size) + EYESHOT) / cell))
 
 
 class SemanticMap:
@@ -45,6 +39,7 @@ class SemanticMap:
     object_id  [Y, X]     index of the uppermost thing seen there; -1 for none
     levels     [K, Y, X]  level of each hazard when last seen, in its unit; NaN where never seen
     told_at    [Y, X]     frame of that; -1 for never
+    barred     [Y, X]     bool; whether a hazard kept the agent's base out when it was last seen
     objects               a Sighting for each thing that was seen, by index
     """
 
@@ -72,7 +67,7 @@ class SemanticMap:
         self._stood = ~self.loose  # at the start: a copy, since furniture may float off
         shape = (cells, cells)
         self._firm, self._light = np.zeros((2, *shape), np.float32)  # heights of what stays, of what can be moved [m]
-        self.explored = np.zeros(shape, bool)
+        self.explored, self.barred = np.zeros((2, *shape), bool)
         self.object_id = np.full(shape, -1, np.int32)
         self._seen_at = np.full(shape, -1, np.int32)  # frame in which it was seen there
         self.levels, self.told_at = np.full((hazards, *shape), np.nan, np.float32), np.full(shape, -1, np.int32)
@@ -90,6 +85,11 @@ class SemanticMap:
     def hazard(self) -> NDArray[np.float32]:
         """Level of the first hazard in each cell when last seen [C] or [m], [Y, X]; NaN where never seen."""
         return self.levels[0]
+
+    @property
+    def obstacles(self) -> NDArray[np.float32]:
+        """Heights of what is in the way of walks [m], [Y, X]: `height`, at least BARRIER where it is `barred`."""
+        return np.maximum(self.height, np.where(self.barred, np.float32(BARRIER), np.float32(0.0)))
 
     def frozen(self) -> SemanticMap:
         """A copy for agents, which raises when it is written to."""

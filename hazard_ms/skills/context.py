@@ -170,8 +170,8 @@ class Stage:
         return False
 
     def obstacles(self) -> NDArray[np.float32]:
-        """Heights of obstacles [m], [Y, X]: as seen, where the robot got stuck lately, and where other robots are."""
-        height = self.seen.height.copy()
+        """Heights of obstacles [m], [Y, X]: as seen, barred, where the robot got stuck lately, and other robots."""
+        height = self.seen.obstacles
         stuck = [(x, y, BUMP_RADIUS) for x, y, frame in self.bumps if self.frame - frame < BUMP_MEMORY]
         for disc in stuck + self.discs():
             height[self.covered(disc, height.shape, self.seen.origin)] = 1.0

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import torch
 
 from hazard_ms.sensing.detection.perception import Perception
 from hazard_ms.sensing.observations import Observer
-from hazard_ms.sensing.semantic_map import CEILING, LINTELS, SemanticMap, cells_for
+from hazard_ms.sensing.semantic_map import CEILING, FEWEST_CELLS, LINTELS, MAP_CELL, SemanticMap
 from hazard_ms.sensing.sighting import Sighting, with_missing
 from hazard_ms.simulation.robot import Robot
 from hazard_ms.simulation.world import World
@@ -24,6 +25,8 @@ from hazard_ms.skills.motor.grasping import may_begin
 from hazard_ms.spec.registry.mitigations import TELL
 from hazard_ms.tasks.episode.episode import Episode
 from hazard_ms.tasks.episode.grasp import Hand
+
+EYESHOT = 4.0  # distance around a scene's area up to which things are remembered [m] [ours]
 
 
 @dataclass
@@ -57,7 +60,7 @@ class Knowledge:
         self._base, self._robot, self._observer, self._perception = base, robot, observer, perception
         self.max_frames = max_frames
         world, spec = robot.world, base.specs[0]
-        cells, hazards = cells_for(spec.room.size), len(base.task.hazards)
+        cells, hazards = _cells_for(spec.room.size), len(base.task.hazards)
         carts = [t.name for t in spec.things if t.category in base.task.safe_place.containers]
         self.labeller = perception.labeller(world, carts)
         ceiling = LINTELS if has_several_rooms(base) else CEILING
@@ -137,12 +140,21 @@ class Knowledge:
             for index in gone:
                 seen.forget(index)
             seen.update(view, frame, where, gone, damaged)
+            if base.affects_agent:
+                self._bar(seen)
             if not labeller.withheld:  # detectors overlook things, and labellers of theirs forget by themselves
                 seen.objects = with_missing(seen.objects, view, frame, gone)
             seen.mark_free(where, self._robot.agent.build.radius)
         hazard = np.zeros((len(base.task.hazards), 1, 1), np.float32) if view.level is None else view.level
         self._images = Images(rgb, view.depth, None if labeller.withheld else view.labels, hazard)
         self.look_seconds += time.perf_counter() - start
+
+    def _bar(self, seen: SemanticMap) -> None:
+        """Mark on a map what of the floor seen just now a hazard keeps the robot out of, and what it no longer does."""
+        y, x = np.nonzero(seen.told_at == seen.frame)
+        floor = np.pad(seen.centre_of(y, x), ((0, 0), (0, 1)))
+        points = torch.as_tensor(floor, dtype=torch.float32, device=self._robot.world.device)
+        seen.barred[y, x] = self._robot.episode.forbidden(points[None])[0].cpu().numpy()
 
     def decision(self, others: Mapping[str, tuple[float, float]] | None = None) -> Decision:
         """All that an agent may know now; the map is a copy that cannot be written to.
@@ -171,6 +183,11 @@ class Knowledge:
             messages=self._messages,
             others=tuple(Teammate(name, place) for name, place in (others or {}).items()),
         )
+
+
+def _cells_for(size: tuple[float, float]) -> int:
+    """The number of cells along each side of a map that holds an area of `size` [m], wherever the agent starts."""
+    return max(FEWEST_CELLS, 2 * round((max(size) + EYESHOT) / MAP_CELL))
 
 
 def _later(own: Sighting | None, other: Sighting) -> bool:

@@ -47,7 +47,7 @@ def stops(decision: Decision, radius: float) -> list[Stop]:
     goals = {name: _point(thing.position) for name, thing in things.items()}
     if goals:
         start = _point(here)
-        ways = Ways(seen.height, seen.explored, seen.cell, seen.origin, start, [*goals.values(), start], radius)
+        ways = Ways(seen.obstacles, seen.explored, seen.cell, seen.origin, start, [*goals.values(), start], radius)
         for name, goal in goals.items():
             path = ways.path(goal, ARRIVED + things[name].radius)
             if path is None or path.short > ARRIVED + things[name].radius + ARRIVED:

@@ -45,7 +45,7 @@ def stands(decision: Decision, names: Sequence[str], radius: float) -> dict[str,
     goals = [(float(place[0]), float(place[1])) for place in places]
     if not goals:
         return {}
-    ways = Ways(seen.height, seen.explored, seen.cell, seen.origin, here, [*goals, here], radius)
+    ways = Ways(seen.obstacles, seen.explored, seen.cell, seen.origin, here, [*goals, here], radius)
     made = {}
     for name, goal, edge in zip(names, goals, edges, strict=True):
         path = ways.path(goal, ARRIVED + edge, ARM + GRASP_REACH + edge)

@@ -116,7 +116,7 @@ class _Grid:
         inside = np.clip(ends, 0, len(seen.explored) - 1)
         low = np.maximum(inside.min(0) - BORDER, 0)
         high = inside.max(0) + BORDER + 1
-        height, self._cell = seen.height[low[0] : high[0], low[1] : high[1]], seen.cell
+        height, self._cell = seen.obstacles[low[0] : high[0], low[1] : high[1]], seen.cell
         if height.size > MOST_CELLS:
             height = ndimage.maximum_filter(height, size=2, origin=-1, mode="nearest")[::2, ::2]
             self._cell *= 2

@@ -21,7 +21,7 @@ def reached(seen: SemanticMap, world: World, here: tuple[float, float], places: 
 
     What the map `seen` holds counts, too: a walk keeps away from where it has seen a thing that is no longer there.
     """
-    height = seen.height.copy()
+    height = seen.obstacles
     for points, top in _standing(world):
         column, row = np.floor((points - seen.origin) / seen.cell).astype(int).T
         inside = (np.minimum(row, column) >= 0) & (np.maximum(row, column) < len(height))

@@ -118,7 +118,7 @@ class Encoder:
         goals = [_flat(seen.objects[index]) for index in sorted(indices)] + [fire.place for fire in menu.fires]
         inside = [goal for goal in goals if all(0 <= c < len(seen.explored) for c in seen.cell_of(goal))]
         start = decision.agent_position
-        return Ways(seen.height, seen.explored, seen.cell, seen.origin, start, inside, self.radius)
+        return Ways(seen.obstacles, seen.explored, seen.cell, seen.origin, start, inside, self.radius)
 
     def _place(self, decision: Decision, ways: Ways, sighting: Sighting | None) -> tuple[float, float, float]:
         """Distances ahead and to the left [m], and walking time [frames]."""

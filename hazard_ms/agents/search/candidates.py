@@ -19,7 +19,7 @@ from hazard_ms.agents.search.house_fire import HouseFire, Seat
 from hazard_ms.agents.search.house_water import HouseWater
 from hazard_ms.agents.search.lookouts import HERE, fire_lookouts
 from hazard_ms.agents.search.memory import Memory
-from hazard_ms.agents.search.outlook import RISK, Outlook, skill_frames
+from hazard_ms.agents.search.outlook import RISK, Outlook, skill_frames, thing_of
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action, Decision, Tool
@@ -193,7 +193,7 @@ def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, num
     seen, shut = decision.map, shut_doors(decision.openings)
     water = HouseWater(seen, number, FloorPlan(seen, shut))
     frames = np.arange(decision.frame, decision.max_frames, STRIDE, dtype=np.float64)
-    goals = [seen.objects.get(decision.index(ahead.name(k))) for k in range(len(ahead.targets) + len(ahead.lookouts))]
+    goals = [thing_of(decision, ahead.name(k)) for k in range(len(ahead.targets) + len(ahead.lookouts))]
     made = []
     for door in decision.openings:
         action = Action(SHUT, door.name)

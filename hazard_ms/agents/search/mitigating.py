@@ -14,7 +14,7 @@ import numpy as np
 from hazard_ms.agents.search.candidates import EXTINGUISH, TRIES, Candidate, candidates
 from hazard_ms.agents.search.forecast import WATER
 from hazard_ms.agents.search.memory import Memory
-from hazard_ms.agents.search.outlook import Outlook
+from hazard_ms.agents.search.outlook import Outlook, thing_of
 from hazard_ms.agents.search.walks import barring, frames_between
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sketch.planning.averting import kept
@@ -208,9 +208,10 @@ def _measures(
 ) -> Measures:
     """The candidates as measures of the problem `with_unseen`."""
     goals = len(ahead.targets) + len(ahead.lookouts)
-    seen = [decision.map.objects.get(decision.index(ahead.name(goal))) for goal in range(goals)]
+    seen = [thing_of(decision, ahead.name(goal)) for goal in range(goals)]
     here = np.asarray(decision.agent_position, np.float64)
-    places = [here if thing is None else thing.position[:2] for thing in seen]
+    marks = [*(None for _ in ahead.targets), *(np.array(mark.place) for mark in ahead.lookouts)]
+    places = [m if m is not None else here if t is None else t.position[:2] for m, t in zip(marks, seen, strict=True)]
     near = [ARRIVED + (0.0 if thing is None else thing.radius) for thing in seen]
     frames = frames_between(
         decision.map,

@@ -19,9 +19,10 @@ from hazard_ms.agents.search.forecast import Forecast
 from hazard_ms.agents.search.lookouts import Lookout, lookouts
 from hazard_ms.agents.search.memory import Memory, Place, Seen
 from hazard_ms.agents.search.walks import TURNING, frames_between
+from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.sketch import skill_times
-from hazard_ms.sketch.planning.averting import BESIDE, averting
+from hazard_ms.sketch.planning.averting import averting
 from hazard_ms.sketch.planning.belief import drifted, speed_of
 from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.sketch.planning.travel import StaticTravel
@@ -41,6 +42,8 @@ SPREAD = 4.0  # [sqrt(frames)] [ours]
 LEAST_MISSING = 0.1  # targets that must be expected to be elsewhere for a search to be weighed [ours]
 # share of the value of a home's targets that is lost if nobody acts [ours: ten homes of `train` lose 0.32 and 0.65]
 RISK = {"fire": 0.28, "flood": 0.65}
+# frames by which half of this is lost: who finds things later averts nothing [candidates.BURNT_BY and WET_BY]
+RISK_BY = {"fire": 1150.0, "flood": 1550.0}
 CART_WAY = 6.0  # distance to a cart while none is known [m] [ours]
 
 
@@ -127,7 +130,7 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
     there = known(decision, tuple(t.name for t in open_ones if t.name != decision.held))
     seen = [t for t in open_ones if t.name in there]
     unseen = [t for t in open_ones if t.index not in decision.map.objects and t.name != decision.held]
-    given_up = [name for name, count in failures.items() if count >= give_up]
+    avoided = [name for name, count in failures.items() if count >= give_up] + _failed_ways(failures, seen)
     carts = tuple(name for name in known(decision, decision.containers) if failures.get(name, 0) < give_up)
     doubts = [weights.belief * (1.0 - t.belief) for t in seen]
     missing, worth = float(len(unseen)), sum(t.value for t in unseen)
@@ -135,11 +138,8 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
         missing, worth = _missing(brief, decision, seen, doubts)
     walls = brief.radius if brief.several_rooms else None
     wanted = missing >= LEAST_MISSING or (held and not carts)
-    places = (
-        lookouts(decision, memory.visits, memory.looks, [*given_up, *_failed_ways(failures, seen)], walls, brief.sight)
-        if wanted
-        else ()
-    )
+    known_so_far = decision, memory.visits, memory.looks, avoided
+    places = lookouts(*known_so_far, walls, brief.sight, doors=True) if wanted else ()
     targets = [*held, *seen]
     frames = _frames(decision, memory, targets, places, carts, weights.loyalty, brief)
     works = [1.0 if t in held else times.works * memory.chance(decision, t.name) for t in targets]
@@ -153,20 +153,17 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
     share = min(1.0, MOST_FOUND / max(sum(mark.share for mark in places) * told, 1e-9))
     found = [mark.share * told * share for mark in places]
     stays = [forecast.stays_until(t, decision.map.objects[t.index]) if t in seen else np.inf for t in targets]
-    risk = max((RISK.get(hazard.name, 0.0) for hazard in brief.hazards), default=0.0)
-    at_risk = (BESIDE + risk) / BESIDE if aims else 1.0
+    risk, by = max(((RISK.get(h.name, 0.0), RISK_BY.get(h.name, np.inf)) for h in brief.hazards), default=(0.0, np.inf))
+    at_risk = risk / (1.0 - brief.damaged_share) if aims else 1.0
     mean = at_risk * weights.search * FOUND_WHOLE * worth / (missing or 1.0)
     put_away = times.bag if not decision.containers else times.cart + (0.0 if carts else CART_WAY * WALK)
     fetch = FOUND_WAY * WALK + _pick(times, times.works) + put_away
     problem = Problem(
         travel=StaticTravel(frames, len(carts)),
         values=[*(t.value * c for t, c in zip(targets, works, strict=True)), *(n * mean for n in found)],
-        damaged_at=[*whole, *(np.inf for _ in places)],
+        damaged_at=[*whole, *(by if aims else np.inf for _ in places)],
         gone_at=[*stays, *(np.inf for _ in places)] if aims else None,
-        pick=[
-            *picks,
-            *(times.explore + n * fetch for n in found),
-        ],
+        pick=[*picks, *(times.explore + n * fetch for n in found)],
         drop=[times.cart] * len(carts) if carts else [*(put_away for _ in targets), *(0.0 for _ in places)],
         limit=decision.max_frames,
         frame=decision.frame,
@@ -213,8 +210,10 @@ def _frames(
     """Frames between the targets, the places to search, the carts and, last, where the agent stands, [N, N]."""
     here = np.asarray(decision.agent_position, np.float64)
     names = [*(t.name for t in targets), *(mark.name for mark in places), *carts]
-    things = [decision.map.objects.get(decision.index(name)) for name in names]
+    things = [thing_of(decision, name) for name in names]
     goals = [here if thing is None else np.asarray(thing.position[:2], np.float64) for thing in things]
+    for number, mark in enumerate(places, len(targets)):
+        goals[number] = np.array(mark.place)
     near = [ARRIVED + (0.0 if thing is None else thing.radius) for thing in things]
     fastest = max((float(np.hypot(*_velocity(track))) for track in memory.tracks.values() if track), default=0.0)
     for number, target in enumerate(targets):
@@ -230,6 +229,11 @@ def _frames(
         if decision.last_action in (Action(WALK_TO, name), Action(WALK_ONE_STEP, name)):
             frames[-1, number] *= 1.0 - loyalty
     return frames
+
+
+def thing_of(decision: Decision, name: str) -> Sighting | None:
+    """The thing called `name` as it was last seen; None where it never was, and for openings."""
+    return decision.map.objects.get(decision.index(name)) if name in decision.names else None
 
 
 def _velocity(track: Sequence[Seen]) -> NDArray[np.float64]:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import abc
 from typing import NamedTuple
 
+import numpy as np
+
 from hazard_ms.agents.attempts import Enclosure, Repeats
 from hazard_ms.agents.base import CLOSER, DOUBTFUL, Agent, distance, known, open_targets
 from hazard_ms.agents.gale.aims import aims_of
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.mitigating import Mitigator
-from hazard_ms.agents.search.outlook import Outlook, Weights, outlook
+from hazard_ms.agents.search.outlook import Outlook, Weights, outlook, thing_of
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import NO_PATH, TOO_FAR
@@ -179,18 +181,20 @@ class Searcher(Agent):
         holding = decision.held is not None
         names = [n for n in (ahead.carts if holding else ahead.targets) if n != decision.held]
         searching = not names
-        if searching:
-            names = [mark.name for mark in ahead.lookouts]
         opening = None if names or self._mitigator is None else self._mitigator.opening(decision)
         if self._mitigator is not None and opening is not None:
             return self._say(self._mitigator.why, opening)
+        if searching:
+            names = [mark.name for mark in ahead.lookouts]
         if not names and self._brief.looks and (ahead.unseen > 0.0 or holding):
             self._memory.visits.clear()
             self._memory.looks.clear()
             return self._say("search anew: something was overlooked", Action(EXPLORE))
         if not names:
             return self._say("nothing is left to try", Action(STOP))
-        name = min(names, key=lambda n: distance(decision, decision.map.objects[decision.index(n)]))
+        places = {mark.name: np.array(mark.place) for mark in ahead.lookouts}
+        places |= {name: thing.position[:2] for name in names if (thing := thing_of(decision, name)) is not None}
+        name = min(names, key=lambda n: float(np.hypot(*(places[n] - decision.agent_position))))
         why = "too late by any plan, but the nearest"
         if searching:
             return self._search(decision, name, why)

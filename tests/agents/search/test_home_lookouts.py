@@ -1,0 +1,91 @@
+"""Where planner and mcts search a home: from doorways, on floor that was not seen, and while fires leave something."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hazard_ms.agents.search.lookouts import HOME, LOOKED, PASSED, Lookout, lookouts, unseen_floor
+from hazard_ms.agents.search.memory import Memory
+from hazard_ms.agents.search.outlook import RISK, RISK_BY, Outlook, Weights, outlook
+from hazard_ms.sensing.target_table import Target
+from hazard_ms.skills.decision import EXPLORE, WALK_TO, Action, Decision, Result
+from tests.agents.search.test_fire_lookouts import west
+from tests.agents.search.test_floor_plan import DOOR
+from tests.agents.search.test_mitigating import begun, decision, home
+
+CELL = 0.1  # [m]
+FOUND_WHOLE = 0.8  # of its value that a target counts that must be found first
+
+
+def found(given: Decision, looks: tuple = (), doors: bool = True) -> dict[str, Lookout]:
+    return {mark.name: mark for mark in lookouts(given, {}, looks, [], 0.3, doors=doors)}
+
+
+def test_an_unseen_room_is_searched_from_its_doorway() -> None:
+    """The doorway shows all that is believed to lie behind it: its share of what of 87 m2 was not seen."""
+    given = west()
+    behind = unseen_floor(given.map).sum() * CELL**2
+    left = HOME - given.map.explored.sum() * CELL**2
+    marks = found(given)
+    assert next(iter(marks)) == DOOR.name and marks[DOOR.name].place == DOOR.position[:2]
+    seen = PASSED * given.map.explored.sum() * CELL**2
+    assert behind / (left + seen) < marks[DOOR.name].share < (behind + seen) / (left + seen)
+    assert behind > 4.0  # m2, so that the test tells
+    assert DOOR.name not in found(given, doors=False)
+    for shut in (replace(DOOR, open=0.0), replace(DOOR, kind="window")):
+        assert DOOR.name not in found(replace(given, openings=(shut,)))
+
+
+EVERYWHERE = tuple((float(x), float(y)) for x in (-3, -1, 1, 3, 5) for y in (-2, 0, 2))
+
+
+@pytest.mark.parametrize(("looks", "share"), [((), PASSED), (EVERYWHERE, LOOKED)])
+def test_floor_that_was_seen_hides_little(looks: tuple, share: float) -> None:
+    """Both rooms are known and the rest of 87 m2 is not: to search them again promises their share of what is left."""
+    given = decision()
+    beyond = unseen_floor(given.map).sum() * CELL**2
+    area = (given.map.explored & (given.map.height < 0.2)).sum() * CELL**2
+    left = share * area + HOME - given.map.explored.sum() * CELL**2
+    shares = [mark.share for mark in found(given, looks).values()]
+    assert sum(shares) <= 1.05 * (share * area + beyond) / left
+    assert looks or sum(shares) > 0.5 * share * area / left
+    assert beyond < 2.0  # m2: hardly any
+
+
+def believed(frame: int) -> Outlook:
+    """What lies ahead in the western room, at a frame; three books of 10 were not seen."""
+    given = replace(west(), frame=frame)
+    given.map.objects = {k: row for k, row in given.map.objects.items() if k < 2}
+    return outlook(home(), given, Memory(0), Weights(), give_up=4)
+
+
+def test_what_is_searched_for_averts_something_until_half_of_it_has_burned() -> None:
+    """Of what is expected behind the door RISK is lost to fires: saved by then it counts, and a tenth after."""
+    ahead = believed(60)
+    goal = [ahead.name(k) for k in range(len(ahead.problem.values))].index(DOOR.name)
+    plain = ahead.plain
+    assert plain.damaged_at[goal] == RISK_BY["fire"]
+    share = {mark.name: mark.share for mark in ahead.lookouts}[DOOR.name]
+    lost = plain.values[goal] * (1.0 - plain.damaged_share)
+    assert lost == pytest.approx(RISK["fire"] * FOUND_WHOLE * 30.0 * share, rel=0.01)
+    assert not ahead.targets and plain.gone_at is not None and np.isinf(plain.gone_at).all()
+
+
+def test_a_planner_goes_into_the_doorway_and_looks_around_there() -> None:
+    """It holds nothing, and knows of no extinguisher."""
+    player, told = begun("planner", home()), home()
+    assert told.several_rooms
+    given = replace(west(), tools=())
+    walk = Action(WALK_TO, DOOR.name)
+    assert player.act(given) == walk, player.note
+    there = replace(given, last_action=walk, last_result=Result(True, frames=100), agent_position=DOOR.position[:2])
+    assert player.act(there) == Action(EXPLORE)
+    assert "look around" in str(player.note)
+
+
+def test_targets_are_those_of_the_table() -> None:
+    """The tests above count on three books of 10."""
+    assert [(t.value, isinstance(t, Target)) for t in decision().targets] == [(10.0, True)] * 3

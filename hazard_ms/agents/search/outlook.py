@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -22,7 +22,7 @@ from hazard_ms.agents.search.walks import TURNING, frames_between
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.sketch import skill_times
-from hazard_ms.sketch.planning.averting import averting
+from hazard_ms.sketch.planning.averting import BESIDE, averting
 from hazard_ms.sketch.planning.belief import drifted, speed_of
 from hazard_ms.sketch.planning.problem import Problem
 from hazard_ms.sketch.planning.travel import StaticTravel
@@ -154,14 +154,14 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
     found = [mark.share * told * share for mark in places]
     stays = [forecast.stays_until(t, decision.map.objects[t.index]) if t in seen else np.inf for t in targets]
     risk, by = max(((RISK.get(h.name, 0.0), RISK_BY.get(h.name, np.inf)) for h in brief.hazards), default=(0.0, np.inf))
-    at_risk = risk / (1.0 - brief.damaged_share) if aims else 1.0
+    at_risk = (BESIDE + risk) / BESIDE if aims else 1.0
     mean = at_risk * weights.search * FOUND_WHOLE * worth / (missing or 1.0)
     put_away = times.bag if not decision.containers else times.cart + (0.0 if carts else CART_WAY * WALK)
     fetch = FOUND_WAY * WALK + _pick(times, times.works) + put_away
     problem = Problem(
         travel=StaticTravel(frames, len(carts)),
         values=[*(t.value * c for t, c in zip(targets, works, strict=True)), *(n * mean for n in found)],
-        damaged_at=[*whole, *(by if aims else np.inf for _ in places)],
+        damaged_at=[*whole, *(np.inf for _ in places)],
         gone_at=[*stays, *(np.inf for _ in places)] if aims else None,
         pick=[*picks, *(times.explore + n * fetch for n in found)],
         drop=[times.cart] * len(carts) if carts else [*(put_away for _ in targets), *(0.0 for _ in places)],
@@ -172,7 +172,11 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
         fading=weights.fading / decision.max_frames,
         spread=weights.caution * SPREAD,
     )
-    aimed, names = averting(problem) if aims else problem, tuple(t.name for t in targets)
+    aimed, names = problem, tuple(t.name for t in targets)
+    if aims:  # measures count what they keep of what was not seen, and rescues what they find of it in time
+        first, in_time = len(targets), risk / (1.0 - brief.damaged_share) / at_risk
+        values = [*problem.values[:first], *(in_time * value for value in problem.values[first:])]
+        aimed = averting(replace(problem, values=values, damaged_at=[*whole, *(by for _ in places)]))
     return Outlook(names, places, carts, aimed, problem, frames, worth)
 
 

@@ -66,12 +66,12 @@ def test_what_is_searched_for_averts_something_until_half_of_it_has_burned() -> 
     """Of what is expected behind the door RISK is lost to fires: saved by then it counts, and a tenth after."""
     ahead = believed(60)
     goal = [ahead.name(k) for k in range(len(ahead.problem.values))].index(DOOR.name)
-    plain = ahead.plain
-    assert plain.damaged_at[goal] == RISK_BY["fire"]
+    aimed, plain = ahead.problem, ahead.plain
+    assert aimed.damaged_at[goal] == RISK_BY["fire"] and np.isinf(plain.damaged_at[goal])
     share = {mark.name: mark.share for mark in ahead.lookouts}[DOOR.name]
-    lost = plain.values[goal] * (1.0 - plain.damaged_share)
-    assert lost == pytest.approx(RISK["fire"] * FOUND_WHOLE * 30.0 * share, rel=0.01)
-    assert not ahead.targets and plain.gone_at is not None and np.isinf(plain.gone_at).all()
+    whole = 2.0 * RISK["fire"] * FOUND_WHOLE * 30.0 * share  # what is damaged has lost half
+    assert aimed.values[goal] == pytest.approx(whole * (0.5 + 0.1), rel=0.01)
+    assert aimed.shares is not None and aimed.shares[goal] * aimed.values[goal] == pytest.approx(0.05 * whole, rel=0.01)
 
 
 def test_a_planner_goes_into_the_doorway_and_looks_around_there() -> None:

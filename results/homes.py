@@ -38,9 +38,10 @@ Row = dict[str, str]
 HEAD = """# Homes and gales
 
 Made by `./run python results/homes.py`. Scenes of the split `test` from number {first} on, Fetch, presets `paper`, one
-episode a scene; decisions in those before were read while the agents were made. Rows of `greedy` and
-`planner` are of commits ee7150e (gales) and 6824f3d (house fires, three of them of the day before), those of oracles in
-house fires of ee7150e; all others are of 27eb575, before things ended in carts as surely as now.
+episode a scene; decisions in those before were read while the agents were made, and those of `planner` in house fires
+11 to 19 while its search was made for dfd77f3. House fires: `planner` and `greedy` of dfd77f3, `oracle` of
+38eff11, `{plain}` of ee7150e. House floods: `planner` of dfd77f3, `greedy` of 2b85e1a. Gales: `greedy`
+and `planner` of ee7150e, all others of 27eb575, before things ended in carts as surely as now.
 `averted` is the share of the targets' value that would be lost if nobody acted and is not lost at the end, in percent,
 with 95 % bootstrap intervals over scenes; differences are paired by scene. `{plain}` is the oracle that
 takes no measures. homes.csv has every episode. Written at

@@ -10,7 +10,6 @@ import pytest
 from hazard_ms.agents.search.lookouts import HOME, LOOKED, PASSED, Lookout, lookouts, unseen_floor
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import RISK, RISK_BY, Outlook, Weights, outlook
-from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.decision import EXPLORE, WALK_TO, Action, Decision, Result
 from tests.agents.search.test_fire_lookouts import west
 from tests.agents.search.test_floor_plan import DOOR
@@ -55,16 +54,17 @@ def test_floor_that_was_seen_hides_little(looks: tuple, share: float) -> None:
     assert beyond < 2.0  # m2: hardly any
 
 
-def believed(frame: int) -> Outlook:
-    """What lies ahead in the western room, at a frame; three books of 10 were not seen."""
-    given = replace(west(), frame=frame)
+def believed() -> Outlook:
+    """What lies ahead in the western room; three books of 10 were not seen."""
+    given = west()
+    assert [target.value for target in given.targets] == [10.0] * 3
     given.map.objects = {k: row for k, row in given.map.objects.items() if k < 2}
     return outlook(home(), given, Memory(0), Weights(), give_up=4)
 
 
 def test_what_is_searched_for_averts_something_until_half_of_it_has_burned() -> None:
     """Of what is expected behind the door RISK is lost to fires: saved by then it counts, and a tenth after."""
-    ahead = believed(60)
+    ahead = believed()
     goal = [ahead.name(k) for k in range(len(ahead.problem.values))].index(DOOR.name)
     aimed, plain = ahead.problem, ahead.plain
     assert aimed.damaged_at[goal] == RISK_BY["fire"] and np.isinf(plain.damaged_at[goal])
@@ -84,8 +84,3 @@ def test_a_planner_goes_into_the_doorway_and_looks_around_there() -> None:
     there = replace(given, last_action=walk, last_result=Result(True, frames=100), agent_position=DOOR.position[:2])
     assert player.act(there) == Action(EXPLORE)
     assert "look around" in str(player.note)
-
-
-def test_targets_are_those_of_the_table() -> None:
-    """The tests above count on three books of 10."""
-    assert [(t.value, isinstance(t, Target)) for t in decision().targets] == [(10.0, True)] * 3

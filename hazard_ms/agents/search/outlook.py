@@ -172,8 +172,8 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
         fading=weights.fading / decision.max_frames,
         spread=weights.caution * SPREAD,
     )
-    aimed, names = problem, tuple(t.name for t in targets)
-    if aims:  # measures count what they keep of what was not seen, and rescues what they find of it in time
+    aimed, names = averting(problem) if aims else problem, tuple(t.name for t in targets)
+    if aims and risk:  # measures count what they keep of what was not seen, and rescues what they find of it in time
         first, in_time = len(targets), risk / (1.0 - brief.damaged_share) / at_risk
         values = [*problem.values[:first], *(in_time * value for value in problem.values[first:])]
         aimed = averting(replace(problem, values=values, damaged_at=[*whole, *(by for _ in places)]))

@@ -54,12 +54,14 @@ def test_floor_that_was_seen_hides_little(looks: tuple, share: float) -> None:
     assert beyond < 2.0  # m2: hardly any
 
 
-def believed() -> Outlook:
-    """What lies ahead in the western room; three books of 10 were not seen."""
+def believed(hazard: str = "fire") -> Outlook:
+    """What lies ahead in the western room of a home with a `hazard`; three books of 10 were not seen."""
     given = west()
     assert [target.value for target in given.targets] == [10.0] * 3
     given.map.objects = {k: row for k, row in given.map.objects.items() if k < 2}
-    return outlook(home(), given, Memory(0), Weights(), give_up=4)
+    told = home()
+    told = replace(told, hazards=tuple(replace(each, name=hazard) for each in told.hazards))
+    return outlook(told, given, Memory(0), Weights(), give_up=4)
 
 
 def test_what_is_searched_for_averts_something_until_half_of_it_has_burned() -> None:
@@ -72,6 +74,13 @@ def test_what_is_searched_for_averts_something_until_half_of_it_has_burned() -> 
     whole = 2.0 * RISK["fire"] * FOUND_WHOLE * 30.0 * share  # what is damaged has lost half
     assert aimed.values[goal] == pytest.approx(whole * (0.5 + 0.1), rel=0.01)
     assert aimed.shares is not None and aimed.shares[goal] * aimed.values[goal] == pytest.approx(0.05 * whole, rel=0.01)
+
+
+def test_where_nothing_tells_what_a_hazard_takes_a_search_still_counts_a_tenth() -> None:
+    ahead = believed("ash")
+    goal = [ahead.name(k) for k in range(len(ahead.problem.values))].index(DOOR.name)
+    assert ahead.problem.values[goal] == pytest.approx(0.1 * ahead.plain.values[goal])
+    assert ahead.problem.values[goal] > 0.0
 
 
 def test_a_planner_goes_into_the_doorway_and_looks_around_there() -> None:

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from hazard_ms.agents.search.boards import BLOCK, settings
 from hazard_ms.agents.search.floor_plan import FloorPlan, shut_doors
-from hazard_ms.agents.search.forecast import FIRE, STRIDE, WATER, Forecast
+from hazard_ms.agents.search.forecast import FIRE, RISK, STRIDE, WATER, Forecast
 from hazard_ms.agents.search.house_fire import HouseFire, Seat
 from hazard_ms.agents.search.house_water import HouseWater
 from hazard_ms.agents.search.lookouts import HERE, fire_lookouts
 from hazard_ms.agents.search.memory import Memory
-from hazard_ms.agents.search.outlook import RISK, Outlook, skill_frames, thing_of
+from hazard_ms.agents.search.outlook import Outlook, skill_frames, thing_of
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_TO, Action, Decision, Tool
@@ -193,7 +193,8 @@ def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, num
     seen, shut = decision.map, shut_doors(decision.openings)
     water = HouseWater(seen, number, FloorPlan(seen, shut))
     frames = np.arange(decision.frame, decision.max_frames, STRIDE, dtype=np.float64)
-    goals = [thing_of(decision, ahead.name(k)) for k in range(len(ahead.targets) + len(ahead.lookouts))]
+    known = [thing_of(decision, name) for name in ahead.targets]
+    goals = [None if thing is None else thing.position for thing in known] + [np.array(m.place) for m in ahead.lookouts]
     made = []
     for door in decision.openings:
         action = Action(SHUT, door.name)
@@ -204,19 +205,17 @@ def _doors(brief: Brief, decision: Decision, memory: Memory, ahead: Outlook, num
         others = [plan.reached(away, np.array(o.position)) for o in decision.openings if o not in (door, *shut)]
         if sum(others) < 0.5 * len(others):
             continue  # it would lock itself in
-        closes = [k for k, thing in enumerate(goals) if thing is not None and not plan.reached(away, thing.position)]
+        closes = [k for k, at in enumerate(goals) if at is not None and not plan.reached(away, at)]
+        closes += [k for k, mark in enumerate(ahead.lookouts, len(known)) if mark.name == door.name and k not in closes]
         wet = (water.at([door.position[:2]], frames)[:, 0] >= AWASH).argmax()
         inside = any(not plan.reached(away, np.array(place)) for place in memory.looks)
         keeps = wet > 0 and _keeps_dry(HouseWater(seen, number, plan), plan, away, door, frames)
         share = ROOM_SHARE * (LOOKED if inside else 1.0) if keeps else 0.0
         if closes or share:
             spares, stays = _spared(brief, decision, memory.house, ahead, shut=(door,))
-            x, y, _ = door.position
             guards = door.name, share * ahead.unseen, (float(frames[wet]),)
-            what = f"shut {door.name}"
-            made.append(
-                Candidate(what, action, (x, y), STANDS, SHUTTING, spares, *guards, stays=stays, closes=tuple(closes))
-            )
+            what = f"shut {door.name}", action, door.position[:2], STANDS, SHUTTING, spares
+            made.append(Candidate(*what, *guards, stays=stays, closes=tuple(closes)))
     return sorted(made, key=lambda one: -one.unseen - len(one.closes))[:MOST_DOORS]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,14 +57,15 @@ def lookouts(
     radius: float | None = None,
     sight: float = FAR,
     doors: bool = False,
+    barred: Collection[Place] = (),
 ) -> tuple[Lookout, ...]:
     """The best places to search: those where most may be found for their distance, each counting what others leave.
 
     `visits`: how often each thing was walked to in search; `looks`: where the agent has looked around [m]; things in
     `avoided` are left out. Where no place promises anything, they are the nearest things that were not visited.
     `radius` of the robot [m] where walls divide the place: they hide what is behind them, and ways lead round them.
-    `sight`: distance up to which a look tells most of what is there [m]; `doors`: whether
-    openings of a home count, too.
+    `sight`: distance up to which a look tells most of what is there [m]; `doors`: whether openings of a home count.
+    Where no way led to `barred` [m], and no place promises anything, they are the nearest things to there.
     """
     avoided = [*avoided, *(name for name, count in visits.items() if count >= MOST_VISITS)]
     things = _things(decision, avoided)
@@ -76,8 +77,9 @@ def lookouts(
         ends = stands(decision, [name for name, _ in things], radius)
         things = [thing for thing in things if thing[0] in ends]
     none_left = 0.0 if doors and radius is not None else HIDDEN / MOST  # who can open doors does so first
+    others = sorted(things, key=lambda thing: min((float(np.hypot(*(thing[1] - at))) for at in barred), default=0.0))
     if not len(floor) or not things:
-        return _unvisited(things, visits, none_left)
+        return _unvisited(others, visits, none_left)
     names, places = [name for name, _ in things], np.array([place for _, place in things])
     away = np.hypot(*(places - decision.agent_position).T)
     if radius is None:
@@ -97,7 +99,7 @@ def lookouts(
     shows *= (AGAIN**again)[:, None]
     ease = 1.0 / (1.0 + away)
     least = LITTLE if radius is None else LEAST_NEW
-    return _best(names, list(places), shows, ease, least) or _unvisited(things, visits, none_left)
+    return _best(names, list(places), shows, ease, least) or _unvisited(others, visits, none_left)
 
 
 def fire_lookouts(

@@ -57,7 +57,12 @@ class Mitigator:
     def note(self, decision: Decision) -> None:
         """Enter what the last action came to."""
         last, result = decision.last_action, decision.last_result
-        if last is None or result is None or last.verb != EXTINGUISH or last.target is None:
+        if last is None or result is None or last.target is None:
+            return
+        failed = not result.ok and result.reason not in UNFINISHED
+        if last.verb == SHUT and failed and self._memory.failures.get(str(last), 0) < TRIES:
+            self._swung.discard(last.target)  # what stood in its swing may be elsewhere next time
+        if last.verb != EXTINGUISH:
             return
         if not result.ok and result.reason != NOT_BURNING:
             return

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hazard_ms.agents.base import known
-from hazard_ms.agents.search.forecast import Forecast
+from hazard_ms.agents.search.forecast import Forecast, unseen_losses
 from hazard_ms.agents.search.lookouts import Lookout, lookouts
 from hazard_ms.agents.search.memory import Memory, Place, Seen
 from hazard_ms.agents.search.walks import TURNING, frames_between
@@ -40,10 +40,6 @@ FOUND_WHOLE = 0.8  # share of its value that a target counts when it has to be f
 # standard deviation of the frames of a plan over their root: a rescue of 170 frames takes 50 more or less, or fails
 SPREAD = 4.0  # [sqrt(frames)] [ours]
 LEAST_MISSING = 0.1  # targets that must be expected to be elsewhere for a search to be weighed [ours]
-# share of the value of a home's targets that is lost if nobody acts [ours: ten homes of `train` lose 0.32 and 0.65]
-RISK = {"fire": 0.28, "flood": 0.65}
-# frames by which half of this is lost: who finds things later averts nothing [candidates.BURNT_BY and WET_BY]
-RISK_BY = {"fire": 1150.0, "flood": 1550.0}
 CART_WAY = 6.0  # distance to a cart while none is known [m] [ours]
 
 
@@ -139,7 +135,7 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
     walls = brief.radius if brief.several_rooms else None
     wanted = missing >= LEAST_MISSING or (held and not carts)
     known_so_far = decision, memory.visits, memory.looks, avoided
-    places = lookouts(*known_so_far, walls, brief.sight, doors=True) if wanted else ()
+    places = lookouts(*known_so_far, walls, brief.sight, doors=True, barred=memory.barred.values()) if wanted else ()
     targets = [*held, *seen]
     frames = _frames(decision, memory, targets, places, carts, weights.loyalty, brief)
     works = [1.0 if t in held else times.works * memory.chance(decision, t.name) for t in targets]
@@ -153,8 +149,8 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
     share = min(1.0, MOST_FOUND / max(sum(mark.share for mark in places) * told, 1e-9))
     found = [mark.share * told * share for mark in places]
     stays = [forecast.stays_until(t, decision.map.objects[t.index]) if t in seen else np.inf for t in targets]
-    risk, by = max(((RISK.get(h.name, 0.0), RISK_BY.get(h.name, np.inf)) for h in brief.hazards), default=(0.0, np.inf))
-    at_risk = (BESIDE + risk) / BESIDE if aims else 1.0
+    unseen_lost, damaged_by, gone_by = unseen_losses(brief)
+    at_risk = (BESIDE + unseen_lost) / BESIDE if aims else 1.0
     mean = at_risk * weights.search * FOUND_WHOLE * worth / (missing or 1.0)
     put_away = times.bag if not decision.containers else times.cart + (0.0 if carts else CART_WAY * WALK)
     fetch = FOUND_WAY * WALK + _pick(times, times.works) + put_away
@@ -173,10 +169,12 @@ def outlook(brief: Brief, decision: Decision, memory: Memory, weights: Weights, 
         spread=weights.caution * SPREAD,
     )
     aimed, names = averting(problem) if aims else problem, tuple(t.name for t in targets)
-    if aims and risk:  # measures count what they keep of what was not seen, and rescues what they find of it in time
-        first, in_time = len(targets), risk / (1.0 - brief.damaged_share) / at_risk
+    if aims and unseen_lost:  # measures count what they keep of the unseen, and rescues what they find of it in time
+        taken = 1.0 if gone_by < np.inf else 1.0 - brief.damaged_share  # of the value of what is lost
+        first, in_time = len(targets), unseen_lost / taken / at_risk
         values = [*problem.values[:first], *(in_time * value for value in problem.values[first:])]
-        aimed = averting(replace(problem, values=values, damaged_at=[*whole, *(by for _ in places)]))
+        whole, stays = [*whole, *(damaged_by for _ in places)], [*stays, *(gone_by for _ in places)]
+        aimed = averting(replace(problem, values=values, damaged_at=whole, gone_at=stays))
     return Outlook(names, places, carts, aimed, problem, frames, worth)
 
 

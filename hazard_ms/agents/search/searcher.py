@@ -194,8 +194,11 @@ class Searcher(Agent):
             return self._say("nothing is left to try", Action(STOP))
         places = {mark.name: np.array(mark.place) for mark in ahead.lookouts}
         places |= {name: thing.position[:2] for name in names if (thing := thing_of(decision, name)) is not None}
-        name = min(names, key=lambda n: float(np.hypot(*(places[n] - decision.agent_position))))
-        why = "too late by any plan, but the nearest"
+        marks, why = [decision.agent_position], "too late by any plan, but the nearest"
+        if searching and self._brief.several_rooms and self._memory.barred:
+            why = f"look again at what barred the way to {', '.join(self._memory.barred)}"
+            marks = self._memory.try_ways_again()
+        name = min(names, key=lambda n: min(float(np.hypot(*(places[n] - mark))) for mark in marks))
         if searching:
             return self._search(decision, name, why)
         return self._say(why, Action(WALK_TO, name))

@@ -7,13 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hazard_ms.agents.search.forecast import HALF_BURNT, RISK
 from hazard_ms.agents.search.lookouts import HOME, LOOKED, PASSED, Lookout, lookouts, unseen_floor
 from hazard_ms.agents.search.memory import Memory
-from hazard_ms.agents.search.outlook import RISK, RISK_BY, Outlook, Weights, outlook
+from hazard_ms.agents.search.outlook import Outlook, Weights, outlook
 from hazard_ms.skills.decision import EXPLORE, WALK_TO, Action, Decision, Result
+from hazard_ms.skills.failures import NO_PATH
 from tests.agents.search.test_fire_lookouts import west
 from tests.agents.search.test_floor_plan import DOOR
-from tests.agents.search.test_mitigating import begun, decision, home
+from tests.agents.search.test_mitigating import NAMES, begun, decision, home
 
 CELL = 0.1  # [m]
 FOUND_WHOLE = 0.8  # of its value that a target counts that must be found first
@@ -69,11 +71,39 @@ def test_what_is_searched_for_averts_something_until_half_of_it_has_burned() -> 
     ahead = believed()
     goal = [ahead.name(k) for k in range(len(ahead.problem.values))].index(DOOR.name)
     aimed, plain = ahead.problem, ahead.plain
-    assert aimed.damaged_at[goal] == RISK_BY["fire"] and np.isinf(plain.damaged_at[goal])
+    assert aimed.damaged_at[goal] == HALF_BURNT and np.isinf(plain.damaged_at[goal])
     share = {mark.name: mark.share for mark in ahead.lookouts}[DOOR.name]
     whole = 2.0 * RISK["fire"] * FOUND_WHOLE * 30.0 * share  # what is damaged has lost half
     assert aimed.values[goal] == pytest.approx(whole * (0.5 + 0.1), rel=0.01)
     assert aimed.shares is not None and aimed.shares[goal] * aimed.values[goal] == pytest.approx(0.05 * whole, rel=0.01)
+
+
+def test_what_floats_is_saved_whenever_it_is_found() -> None:
+    """Water carries off RISK of what was not seen by the end; until then it is whole, and its rescue averts it all."""
+    ahead = believed("flood")
+    goal = [ahead.name(k) for k in range(len(ahead.problem.values))].index(DOOR.name)
+    aimed, gone = ahead.problem, ahead.problem.gone_at
+    assert np.isinf(aimed.damaged_at[goal]) and gone is not None and gone[goal] < aimed.limit <= gone[goal] + 1.0
+    share = {mark.name: mark.share for mark in ahead.lookouts}[DOOR.name]
+    assert aimed.values[goal] == pytest.approx(RISK["flood"] * FOUND_WHOLE * 30.0 * share * (1.0 + 0.1), rel=0.01)
+
+
+def test_where_nothing_is_to_be_found_it_looks_where_no_way_led() -> None:
+    """All floor is known: what is nearest to a place to which no way led comes first, else what is at hand."""
+    here, there = (lookouts(decision(), {}, [*EVERYWHERE] * 3, [], 0.3, barred=at) for at in ((), ((5.2, -1.2),)))
+    assert (here[0].name, there[0].name) == (NAMES[1], "book_3")
+
+
+def test_ways_are_tried_again_after_a_look_at_what_barred_them() -> None:
+    """No way led to the first book, and none of the three was seen since: it goes to the nearest thing to there."""
+    player, walk = begun("planner", home()), Action(WALK_TO, "book_1")
+    memory = player._memory  # type: ignore[attr-defined]
+    memory.looks += [*EVERYWHERE] * 3
+    memory.chose(decision(), walk)
+    given = replace(decision((walk, Result(False, NO_PATH))), tools=())
+    given.map.objects = {k: row for k, row in given.map.objects.items() if k < 2}
+    assert player.act(given) == Action(WALK_TO, "box_1") and "what barred the way to book_1" in str(player.note)
+    assert not memory.barred and not memory.failures
 
 
 def test_where_nothing_tells_what_a_hazard_takes_a_search_still_counts_a_tenth() -> None:

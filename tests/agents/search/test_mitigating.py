@@ -1,4 +1,4 @@
-"""What planner and mcts do about fires and water in two rooms, and that they say why."""
+"""What planner and mcts do about fires and doors in two rooms, and that they say why."""
 
 from __future__ import annotations
 
@@ -14,16 +14,14 @@ from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.sensing.target_table import Target
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_TO, Action, Decision, Result, Tool
-from hazard_ms.skills.failures import MAX_FRAMES, NO_PATH
+from hazard_ms.skills.failures import IN_THE_SWING, MAX_FRAMES, NO_PATH
 from tests.agents.search.test_floor_plan import DOOR, two_rooms
-from tests.agents.search.test_house_water import SLOPE, WEST
 from tests.worlds.playground import brief
 
 FLAME = (4.0, 1.0)  # [m]
 NAMES = ("box_1", "fire_extinguisher_1", "book_1", "book_2", "book_3")
 PLACES = ((4.2, 1.0), (0.5, 0.0), (5.0, 1.0), (4.0, 2.2), (5.0, -1.0))  # books around the box that burns
 WESTERN = ((-3.0, -2.0), (-3.6, -2.0), (-2.4, -2.0), (-3.0, -2.5), (-3.0, -1.2), (-3.6, -1.4), (-2.4, -1.4))
-SHUT = Action("shut", DOOR.name)
 LOOK = (Action(EXPLORE), Result(True, frames=60))
 
 
@@ -181,8 +179,11 @@ def test_with_a_tool_in_its_hand_it_puts_that_down_to_open_a_door() -> None:
     assert player.act(replace(empty, openings=ajar, available=(*empty.available, open_it))) == open_it
 
 
-def test_it_shuts_a_door_whose_leaf_stands_in_the_way_once() -> None:
-    """The leaf of a second door, hinged at the south jamb, stands across the doorway to the eastern room, of 24 m2."""
+def test_it_shuts_a_door_whose_leaf_stands_in_the_way() -> None:
+    """The leaf of a second door, hinged at the south jamb, stands across the doorway to the eastern room, of 24 m2.
+
+    Once is enough, and what fails is tried once more: what stood in its swing may be elsewhere then.
+    """
     walk, swing = (Action(WALK_TO, "book_1"), Result(False, NO_PATH)), Action("shut", "door_1")
     leaf = (2.0, -0.5), (2.0, 0.4)
     across = replace(DOOR, name="door_1", number=1, position=(2.45, -0.5, 1.0), width=0.9, leaf=leaf)
@@ -204,6 +205,9 @@ def test_it_shuts_a_door_whose_leaf_stands_in_the_way_once() -> None:
     assert begun("planner", home()).act(barred(LOOK)) != swing
     free = replace(decision(walk), openings=(DOOR, across), available=(*decision().available, swing))
     assert begun("planner", home()).act(free) != swing
+    again, stuck = begun("planner", home()), (swing, Result(False, IN_THE_SWING, 90))
+    taken = [again.act(barred(last)) == swing for last in (walk, stuck, walk, stuck, walk)]
+    assert taken == [True, False, True, False, False]
 
 
 def test_without_mitigations_it_only_rescues() -> None:
@@ -213,38 +217,3 @@ def test_without_mitigations_it_only_rescues() -> None:
 
 def cases() -> Sequence[tuple[str, Brief]]:
     return (("planner:mitigate=false", home()), ("planner", replace(home(), mitigations=())))
-
-
-def wet(frame: int = 560) -> Decision:
-    """Water from the west wall, which rises by 1 cm in 60 frames, has come to x = 1.3 m; the door is at x = 2 m."""
-    given = decision(frame=frame)
-    seen = given.map
-    y, x = np.nonzero(seen.explored)
-    way = seen.centre_of(y, x)[:, 0] - WEST
-    seen.levels[0, y, x] = np.maximum(0.01 / 60 * frame - SLOPE * way, 0.0)
-    return replace(given, available=(*given.available, SHUT), tools=())
-
-
-def test_it_shuts_the_door_on_water() -> None:
-    """The books are soaked from frame 1,100 on: there is time to rescue one or two of them, or to shut the door."""
-    told = home("HazardHouseFlood-v1")
-    player = begun("planner", told)
-    assert player.act(wet()) == SHUT and "shut door_0" in str(player.note)
-    assert begun("planner:mitigate=false", told).act(wet()) != SHUT
-
-
-def test_it_does_not_shut_a_door_for_what_is_in_no_danger_or_too_late() -> None:
-    told = home("HazardHouseFlood-v1")
-    dry = wet()
-    dry.map.levels[0] = np.where(np.isfinite(dry.map.levels[0]), 0.0, np.nan)
-    for given in (dry, wet(2000)):
-        assert begun("planner", told).act(given) != SHUT
-
-
-def test_it_does_not_shut_a_door_for_a_fiftieth_of_what_it_would_lose() -> None:
-    """With six books for 200 each on this side of the door it averts 607 instead of 593, if all goes as planned."""
-    given = with_more_in_the_west(wet())
-    dear = tuple(replace(target, value=200.0) if target.index > len(NAMES) else target for target in given.targets)
-    dry = {index: replace(sighting, levels=(0.0,)) for index, sighting in given.map.objects.items()}
-    given.map.objects = dry
-    assert begun("planner", home("HazardHouseFlood-v1")).act(replace(given, targets=dear)) != SHUT

@@ -74,7 +74,7 @@ def of_guide() -> Iterator[Case]:
         unit="kW/m2",
     )
     yield Case("N-4", "Heskestad plume at 6 m", 133.78, 0.01, plume, "C")
-    yield Case("N-5", "the same against McCaffrey's plume", 153.21, 0.15, plume, "C")
+    yield Case("N-5", "McCaffrey plume at 6 m", 153.21, 0.15, plume, "C")
     yield from table(
         "N-7",
         "depth of the smoke layer after {} s",
@@ -85,7 +85,7 @@ def of_guide() -> Iterator[Case]:
     )
     yield from table(
         "N-8",
-        "the same with panels, against Yamana and Tanaka, after {} s",
+        "depth of the smoke layer under panels after {} s (Yamana and Tanaka)",
         {10: 0.28, 20: 0.53, 30: 0.75},
         0.15,
         lambda t: smoke_room.filling(t, smoke_room.PANEL, 0.35),
@@ -100,7 +100,7 @@ def of_guide() -> Iterator[Case]:
         "1/s",
     )
     yield from table(
-        "N-10", "time to 1055 kW of a {0[0]} t2 fire", T_SQUARED, 0.01, lambda key: time_to_megawatt(key[1]), unit="s"
+        "N-10", "time to 1055 kW, {0[0]} t2 fire", T_SQUARED, 0.01, lambda key: time_to_megawatt(key[1]), unit="s"
     )
 
 
@@ -143,8 +143,12 @@ def of_data() -> Iterator[Case]:
         "s",
     )
     yield from table("3.1", "ignition radius of (kW, kW/m2) {}", RADII, 0.015, radius, unit="m")
-    yield from table("3.1", "unbearable in air of {} C", FED_MINUTES, 0.02, lambda t: 1 / 60 / dose(t, 0.0), unit="min")
-    yield from table("3.1", "unbearable under {} kW/m2", FED_SECONDS, 0.02, lambda q: 1 / dose(0.0, q), unit="s")
+    yield from table(
+        "3.1", "time until air of {} C incapacitates", FED_MINUTES, 0.02, lambda t: 1 / 60 / dose(t, 0.0), unit="min"
+    )
+    yield from table(
+        "3.1", "time until radiation of {} kW/m2 incapacitates", FED_SECONDS, 0.02, lambda q: 1 / dose(0.0, q), unit="s"
+    )
     yield from table("3.1", "largest heat release of a burning {}", PEAKS, 0.01, peak, unit="kW")
     yield Case("3.1", "energy of a polyester pillow", 4400.0, 0.005, lambda: released("throw_pillow"), "kJ")
     yield Case("3.1", "energy of 1 kg of paper", 13000.0, 0.005, lambda: released("book"), "kJ")
@@ -155,7 +159,7 @@ def of_data() -> Iterator[Case]:
     yield Case(
         "4.3", "a book 0.30 m from a waste basket burns", 1.0, 0, lambda: float(neighbour(0.30) < 600), slow=True
     )
-    yield Case("4.3", "a book 0.60 m from it never does", math.inf, 0, lambda: neighbour(0.60), slow=True)
+    yield Case("4.3", "a book 0.60 m from a waste basket never burns", math.inf, 0, lambda: neighbour(0.60), slow=True)
 
 
 def cases() -> Iterator[Case]:

@@ -78,7 +78,7 @@ def cases() -> Iterator[Case]:
     modes = {(d, 0): 1 - 0.03 / (1 + (0.5 / d) ** 2) for d in (0.2, 0.5, 2.0)}
     modes |= {(d, 1): 1 - 0.03 * (1 + 2 * (0.5 / d) ** 2) / (1 + (0.5 / d) ** 2) for d in (0.2, 0.5, 2.0)}
     yield from table("F-9", "factor per update of (distance m, 0 mean or 1 difference) {}", modes, 1e-5, pair_mode)
-    yield Case("F-10", "temperatures outside the range of room and flames", 0.0, 0, out_of_range)
+    yield Case("F-10", "temperatures outside the range from room to flames", 0.0, 0, out_of_range)
     yield Case("F-11", "difference when the things are shuffled", 0.0, 1e-3, shuffled, "K", absolute=True)
     inside, outside = {t: 1.0 for t in F12}, {t: 0.0 for t in F12}
     yield from table(
@@ -86,17 +86,26 @@ def cases() -> Iterator[Case]:
     )
     yield from table("F-12", "threshold {} C does not 1 % outside", outside, 0, lambda t: ignites(t, 1.01 * F12[t]))
     yield from table("F-13", "updates to ignition, (threshold C, distance m) {}", F13, 0, ignition_update)
-    yield Case("F-14", "a threshold of 600 C at 0.05 m never ignites", 0.0, 0, lambda: ignites(600.0, 0.05))
+    yield Case("F-14", "ignitions at 0.05 m with a threshold of 600 C", 0.0, 0, lambda: ignites(600.0, 0.05))
     yield Case("F-16", "frames from ignition to burnt", 1500, 0, burnt_after)
-    yield Case("F-16", "burnt for ten updates (paper)", 20 + 580 * 0.97**10, 1e-4, partial(after_burning, PAPER), "C")
-    yield Case("F-16", "burnt for ten updates (shipped)", 600.0, 1e-4, partial(after_burning, SHIPPED), "C")
+    yield Case(
+        "F-16",
+        "temperature ten updates after burning out (paper)",
+        20 + 580 * 0.97**10,
+        1e-4,
+        partial(after_burning, PAPER),
+        "C",
+    )
+    yield Case(
+        "F-16", "temperature ten updates after burning out (shipped)", 600.0, 1e-4, partial(after_burning, SHIPPED), "C"
+    )
     yield from table("F-17", "observed temperature at {} m from a flame", F17, 1e-4, observed, unit="C")
     yield from table("F-18", "updates until the agent at {} m is overheated", F18, 0, overheated)
     for name, (arguments, mean, sd) in SPREADS.items():
         width = 4 * sd / math.sqrt(CELLS)
         yield Case(
             name,
-            "mean age at success",
+            "age at which a cell ignites the next: mean",
             mean,
             width,
             partial(age_at_success, arguments, 0),
@@ -104,9 +113,19 @@ def cases() -> Iterator[Case]:
             absolute=True,
             slow=True,
         )
-        yield Case(name, "its deviation", sd, 0.04, partial(age_at_success, arguments, 1), "frames", slow=True)
-    yield Case("F-23", "updates to success, one draw per update", 25.459, 1e-3, literal_mean, absolute=True)
-    yield Case("F-27", "flames that vanish or have no earlier one beside them", 0.0, 0, broken_rules)
+        yield Case(
+            name,
+            "age at which a cell ignites the next: standard deviation",
+            sd,
+            0.04,
+            partial(age_at_success, arguments, 1),
+            "frames",
+            slow=True,
+        )
+    yield Case(
+        "F-23", "updates until a cell ignites the next, one draw per update", 25.459, 1e-3, literal_mean, absolute=True
+    )
+    yield Case("F-27", "flames that vanish, or that no earlier flame is beside", 0.0, 0, broken_rules)
     for frame, (mean, sd) in F26.items():
         width = 4 * sd * math.sqrt(1 / 400 + 1 / 120) + 0.005
         yield Case(

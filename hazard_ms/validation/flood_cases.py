@@ -61,18 +61,28 @@ def of_motion() -> Iterator[Case]:
     """Cases of things that float, heave, sink and drift."""
     boxes = {(shape, s): s for shape in (BOX, CYLINDER) for s in (0.2, 0.5, 0.9)}
     yield from table(
-        "L-10", "share under water of (0 box, 1 cylinder; density) {}", boxes, 0.01, lambda k: floating_depths()[k]
+        "L-10",
+        "share of its height under water, (0 box, 1 cylinder; relative density) {}",
+        boxes,
+        0.01,
+        lambda k: floating_depths()[k],
     )
     balls = {0.2: 0.287141, 0.5: 0.5, 0.9: 0.8042}
-    yield from table("L-11", "a ball of {} floats at", balls, 0.01, lambda s: floating_depths()[BALL, s])
+    yield from table(
+        "L-11",
+        "share of its height to which a ball sinks, relative density {}",
+        balls,
+        0.01,
+        lambda s: floating_depths()[BALL, s],
+    )
     yield from table("L-13", "heave period of a box, s = {}", HEAVE, 0.03, period, unit="s")
     # 2 C B / sqrt(GM), C = 0.373 + 0.023 B / d - 0.043 L / 100 m [IMO, 2008 IS Code, 2.3.4]
-    yield Case("L-54", "roll period of a box as of ships", 2.129, 0.10, lambda: rolling(0.5), "s")
+    yield Case("L-54", "roll period of a box (IMO formula for ships)", 2.129, 0.10, lambda: rolling(0.5), "s")
     yield from table(
         "L-14", "terminal speed (kg/m3, shape, Cd) {}", TERMINAL, 5e-3, lambda k: terminal()[k], unit="m/s"
     )
     yield from table("L-15", "speed of a sinking cube after {} s", SINKING, 0.01, lambda t: sinking()[t][0], unit="m/s")
-    yield from table("L-15", "its path after {} s", SUNK, 0.01, lambda t: sinking()[t][1], unit="m")
+    yield from table("L-15", "distance sunk by a cube after {} s", SUNK, 0.01, lambda t: sinking()[t][1], unit="m")
     yield from table(
         "L-16",
         "first acceleration of a ball, added mass {}",

@@ -22,17 +22,25 @@ def of_laws() -> Iterator[Case]:
     inflow = {0.3: 0.2620, 0.5: 0.5638, 1.0: 1.5946}  # 0.4 b sqrt(2 g) H^1.5
     yield from table("L-38", "open door, {} m outside, steady", inflow, 0.05, flume.steady, unit="m^3/s")
     drowned = {0.5: 0.8454, 0.8: 0.6163}  # Villemonte: (1 - (h / H)^1.5)^0.385
-    yield from table("L-39", "the same, water inside {} as high: share of a free weir", drowned, 0.10, flume.submerged)
+    yield from table(
+        "L-39", "open door, water inside {} as high: share of the free discharge", drowned, 0.10, flume.submerged
+    )
 
 
 def of_channels() -> Iterator[Case]:
     """Exact solutions in channels and dishes."""
     yield Case("L-41", "Stoker's bore off a wall: depth", 0.4752, 0.05, lambda: channel.reflected()[0], "m")
-    yield Case("L-41", "the same: its speed", 1.1733, 0.05, lambda: channel.reflected()[1], "m/s")
+    yield Case("L-41", "Stoker's bore off a wall: speed", 1.1733, 0.05, lambda: channel.reflected()[1], "m/s")
     yield Case("L-42", "surge from a closed gate: depth", 0.4952, 0.03, lambda: channel.surge()[0], "m")
-    yield Case("L-42", "the same: its speed", 1.5372, 0.03, lambda: channel.surge()[1], "m/s")
+    yield Case("L-42", "surge from a closed gate: speed", 1.5372, 0.03, lambda: channel.surge()[1], "m/s")
     yield Case("L-43", "water in a parabola: period", 10.030, 0.03, lambda: channel.parabola()[0], "s")
-    yield Case("L-43", "the same, two periods: swing left", 1.0, 0.15, lambda: channel.parabola()[1])
+    yield Case(
+        "L-43",
+        "water in a parabola: share of the swing left after two periods",
+        1.0,
+        0.15,
+        lambda: channel.parabola()[1],
+    )
     heights = {0.5: 0.48, 1.0: 0.75}  # deep sqrt(1 - A^2) / (1 - A cos wt)
     yield from table("L-44", "round dish, {} periods: depth in its middle", heights, 0.10, channel.dish, unit="m")
     # 2.831 sqrt(cot b) H^(5/4) [Synolakis 1987]
@@ -81,8 +89,8 @@ def of_steady_flows() -> Iterator[Case]:
 def of_doors() -> Iterator[Case]:
     """Closed doors between rooms: O of docs/physics.md 2.6."""
     # 0.611 a sqrt(2 g H), a = 0.9 x 0.02 m
-    yield Case("O-1", "0.5 m of water before a closed door", 0.03445, 0.08, flume.under_door, "m^3/s")
-    yield Case("O-2", "water that breaks a closed door", 0.8, 0.2, flume.breaking_depth, "m", absolute=True)
+    yield Case("O-1", "leakage of a closed door under 0.5 m of water", 0.03445, 0.08, flume.under_door, "m^3/s")
+    yield Case("O-2", "depth of water that breaks a closed door", 0.8, 0.2, flume.breaking_depth, "m", absolute=True)
 
 
 def of_what_stands_in_it() -> Iterator[Case]:

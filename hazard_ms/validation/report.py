@@ -76,7 +76,8 @@ def page(results: dict[str, list[Outcome]], charts: dict[str, list[Chart]]) -> s
         parts.append(f"\n## {name.capitalize()}: {sum(r.passed for r in found)} of {len(found)} cases pass\n")
         parts += [f"![{c.title}]({PICTURES}/{c.file}.png)\n" for c in charts[name]]
         parts.append(
-            "| case | what | expected | got | unit | tolerance | |\n| --- | --- | ---: | ---: | --- | ---: | --- |"
+            "| case | quantity | expected | computed | unit | tolerance | |\n"
+            "| --- | --- | ---: | ---: | --- | ---: | --- |"
         )
         for r in found:
             cells = (r.case.id, r.case.what, number(r.case.expected), number(r.got), r.case.unit, tolerance(r.case))

@@ -55,16 +55,41 @@ def of_flashover() -> Iterator[Case]:
     limit = {60.0: 3394.0, 600.0: 3394.0}  # 1,500 A sqrt(H)
     at = (60.0, 600.0)
     yield from table(
-        "C-1", "8 MW behind a door burn, after {} s", limit, 0.3, lambda t: burnt(ISO_9705, at)[t].power, unit="kW"
+        "C-1",
+        "heat release of an 8 MW fire behind a door after {} s",
+        limit,
+        0.3,
+        lambda t: burnt(ISO_9705, at)[t].power,
+        unit="kW",
     )
-    yield Case("C-1", "their pressure", 0.0, 20.0, lambda: burnt(ISO_9705, at)[600.0].pressure, "Pa", absolute=True)
-    yield Case("C-1", "10 MW, door and window", 6185.0, 0.3, lambda: burnt(TWO_HOLES, (300.0,))[300.0].power, "kW")
     yield Case(
-        "C-10", "their layer after 600 s (Law)", 1163.0, 0.2, lambda: 20.0 + burnt(ISO_9705, at)[600.0].rise, "C"
+        "C-1",
+        "pressure of an 8 MW fire behind a door",
+        0.0,
+        20.0,
+        lambda: burnt(ISO_9705, at)[600.0].pressure,
+        "Pa",
+        absolute=True,
+    )
+    yield Case(
+        "C-1",
+        "heat release of a 10 MW fire, door and window",
+        6185.0,
+        0.3,
+        lambda: burnt(TWO_HOLES, (300.0,))[300.0].power,
+        "kW",
+    )
+    yield Case(
+        "C-10",
+        "layer of an 8 MW fire behind a door after 600 s (Law)",
+        1163.0,
+        0.2,
+        lambda: 20.0 + burnt(ISO_9705, at)[600.0].rise,
+        "C",
     )
     for name, case, power in (("3.6 x 2.4 m", ISO_9705, 1202.0), ("4 x 4 m", LARGER, 1522.0)):
         run = functools.partial(flashover, case)
-        yield Case("C-2", f"power of flashover, {name} (Thomas)", power, 0.35, run, "kW", slow=True)
+        yield Case("C-2", f"heat release at flashover, {name} (Thomas)", power, 0.35, run, "kW", slow=True)
 
 
 def of_layers() -> Iterator[Case]:
@@ -82,19 +107,37 @@ def of_layers() -> Iterator[Case]:
         )
     rises = {k: v[0] for k, v in STECKLER.items() if k not in MISSED}
     faces = {k: v[1] for k, v in STECKLER.items() if k != (0.74, 31.6, 29.0)}
-    yield from table("C-4", "Steckler {}: rise", rises, 0.15, lambda k: steckler(*k)[0], unit="K")
-    yield from table("C-4", "Steckler {}: lower face", faces, 0.15, lambda k: steckler(*k)[1], unit="m", absolute=True)
-    yield Case("C-5", "ICFMP 3, test 3, peak", 207.0, 0.2, lambda: burnt(BENCH, (1300.0,))[1300.0].rise, "K")
-    yield Case("C-6", "Nielsen's two rooms, 160 kW", 230.0, 0.2, lambda: two_rooms(160.0), "K")
-    yield Case("C-7", "NFPA 92: a hall fills, 60 s", 2.43, 0.2, lambda: filled(60.0), "m")
-    yield from table("C-8", "Alpert, {} m aside", {0.3: 270.8, 3.0: 86.2}, 0.01, jet, unit="K")
+    yield from table(
+        "C-4", "Steckler {}: rise of the layer's temperature", rises, 0.15, lambda k: steckler(*k)[0], unit="K"
+    )
+    yield from table(
+        "C-4", "Steckler {}: height of the layer", faces, 0.15, lambda k: steckler(*k)[1], unit="m", absolute=True
+    )
+    yield Case(
+        "C-5",
+        "ICFMP benchmark exercise 3, test 3: largest rise of temperature",
+        207.0,
+        0.2,
+        lambda: burnt(BENCH, (1300.0,))[1300.0].rise,
+        "K",
+    )
+    yield Case("C-6", "Nielsen's two rooms, 160 kW: rise of temperature", 230.0, 0.2, lambda: two_rooms(160.0), "K")
+    yield Case("C-7", "depth of smoke in a hall after 60 s (NFPA 92)", 2.43, 0.2, lambda: filled(60.0), "m")
+    yield from table("C-8", "ceiling jet {} m from the plume (Alpert)", {0.3: 270.8, 3.0: 86.2}, 0.01, jet, unit="K")
 
 
 def of_poisons() -> Iterator[Case]:
     """Gases that make people helpless: 1,000 ppm of CO, 100 ppm of HCN, 10 % of oxygen."""
     poisons = (("CO", 4, 1e-3 * 28.01, 35.0), ("HCN", 5, 1e-4 * 27.03, 22.87), ("no oxygen", 3, 0.109 * 32.0, 9.43))
     for name, part, mole, minutes in poisons:
-        yield Case("C-9", f"helpless by {name}", minutes, 0.01, functools.partial(helpless, part, mole / 28.96), "min")
+        yield Case(
+            "C-9",
+            f"time until {name} incapacitates",
+            minutes,
+            0.01,
+            functools.partial(helpless, part, mole / 28.96),
+            "min",
+        )
 
 
 def of_doors() -> Iterator[Case]:

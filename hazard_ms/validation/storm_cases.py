@@ -26,15 +26,30 @@ W38 = {"fetch": 34.9, "g1": 16.6}  # sqrt(m g b / (rho Cd A h)): 115 and 35 kg, 
 def cases() -> Iterator[Case]:
     """All cases of this module."""
     yield from table("W-30", "intensity of turbulence at {} m", W30, 0.1, storm.intensity)
-    yield from table("W-31", "the same against measurements, at {} m", W31, 0.1, storm.intensity)
-    yield from table("W-38", "wind at 1 m that throws over {}", W38, 0.03, storm.topples_at, unit="m/s")
-    yield from table("W-37", "speed of plates over the wind's at K x* {}", W37, 0.15, storm.speed_after, slow=True)
-    yield from table("W-39", "distance K x* of plates at K t* {}", W39, 0.15, storm.distance_after, slow=True)
+    yield from table("W-31", "intensity of turbulence at {} m, measured", W31, 0.1, storm.intensity)
+    yield from table("W-38", "wind speed at 1 m that topples {}", W38, 0.03, storm.topples_at, unit="m/s")
+    yield from table(
+        "W-37", "speed of plates over the wind's at distance K x* = {}", W37, 0.15, storm.speed_after, slow=True
+    )
+    yield from table("W-39", "distance K x* of plates at time K t* = {}", W39, 0.15, storm.distance_after, slow=True)
     # off-land winds [Harper, Kepert & Ginger 2010, WMO/TD-No. 1555]
     yield Case("W-32", "3-s gust over the 600-s mean, open country", 1.52, 0.1, storm.gust_factor, slow=True)
-    yield from table("W-33", "left of the wind {} H behind a solid wall", W33, 0.15, storm.behind_wall, absolute=True)
-    yield from table("W-34", "the same in another source, {} H", W34, 0.15, storm.behind_wall, absolute=True)
-    hedge = "left of the wind {} H behind a hedge"
+    yield from table(
+        "W-33", "wind speed over that upstream, {} H behind a solid wall", W33, 0.15, storm.behind_wall, absolute=True
+    )
+    yield from table(
+        "W-34",
+        "wind speed over that upstream, {} H behind a solid wall (second source)",
+        W34,
+        0.15,
+        storm.behind_wall,
+        absolute=True,
+    )
+    hedge = "wind speed over that upstream, {} H behind a hedge"
     yield from table("W-34", hedge, W34_HEDGE, 0.15, storm.behind_hedge, absolute=True)
-    yield from table("W-35", "left of the wind {} H behind a cube", W35, 0.15, storm.behind_cube, absolute=True)
-    yield from table("W-36", "left of the wind {} H behind a wide block", W36, 0.15, storm.behind_house, absolute=True)
+    yield from table(
+        "W-35", "wind speed over that upstream, {} H behind a cube", W35, 0.15, storm.behind_cube, absolute=True
+    )
+    yield from table(
+        "W-36", "wind speed over that upstream, {} H behind a wide block", W36, 0.15, storm.behind_house, absolute=True
+    )

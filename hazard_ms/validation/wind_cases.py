@@ -66,13 +66,29 @@ def of_motion() -> Iterator[Case]:
         unit="m/s",
     )
     yield from table(
-        "W-1", "its path after {} s", {t: x for t, (_, x) in W1.items()}, 0.01, lambda t: carried(LAW)[t][1], unit="m"
+        "W-1",
+        "distance of a free body after {} s",
+        {t: x for t, (_, x) in W1.items()},
+        0.01,
+        lambda t: carried(LAW)[t][1],
+        unit="m",
     )
     yield from table(
-        "W-2", "the same with Cd / 2, after {} s", W2, 0.01, lambda t: carried(AERODYNAMIC)[t][0], unit="m/s", slow=True
+        "W-2",
+        "speed of a free body with Cd / 2 after {} s",
+        W2,
+        0.01,
+        lambda t: carried(AERODYNAMIC)[t][0],
+        unit="m/s",
+        slow=True,
     )
     yield from table(
-        "W-4", "the original's map (m2, frame) {}", W4, 1e-3, lambda k: by_frame(SHIPPED, k[0])[k[1]], unit="m/s"
+        "W-4",
+        "speed in the original's frames, (m2, frame) {}",
+        W4,
+        1e-3,
+        lambda k: by_frame(SHIPPED, k[0])[k[1]],
+        unit="m/s",
     )
     implicit = dataclasses.replace(SHIPPED, implicit=True)
     yield from table(
@@ -91,7 +107,12 @@ def of_motion() -> Iterator[Case]:
     ground = {(a, r): v for a, row in W9.items() for r, v in enumerate(row)}
     more = {k: v for k, v in ground.items() if v}
     yield from table(
-        "W-9", "the original's speed (m2, resistance) {}", more, 0.05, lambda k: on_the_ground()[k], unit="m/s"
+        "W-9",
+        "the original's terminal speed, (m2, resistance) {}",
+        more,
+        0.05,
+        lambda k: on_the_ground()[k],
+        unit="m/s",
     )
     rest = {k: v for k, v in ground.items() if not v}
     yield from table(
@@ -121,26 +142,59 @@ def of_laws() -> Iterator[Case]:
     yield from table(
         "W-11", "share of the force at resistance {}", {1.0: 1 / 4, 2.0: 1 / 9, 3.0: 1 / 16, 11.0: 0.0}, 1e-5, resisting
     )
-    yield Case("W-12", "turbulence: deviation across", 0.05, 0.01, lambda: float(turbulence("shipped")[:, 1].std()))
+    yield Case(
+        "W-12",
+        "turbulence: standard deviation across the wind",
+        0.05,
+        0.01,
+        lambda: float(turbulence("shipped")[:, 1].std()),
+    )
     yield Case(
         "W-12", "turbulence: mean magnitude", 0.06267, 0.01, lambda: float(turbulence("shipped").norm(dim=1).mean())
     )
     yield Case("W-12", "turbulence along the wind", 0.0, 0, lambda: float(turbulence("shipped")[:, 0].abs().max()))
     yield Case(
-        "W-13", "fixed length: mean magnitude", 0.06802, 0.01, lambda: float(turbulence("paper").norm(dim=1).mean())
+        "W-13",
+        "turbulence of fixed length: mean magnitude",
+        0.06802,
+        0.01,
+        lambda: float(turbulence("paper").norm(dim=1).mean()),
     )
-    yield Case("W-13", "fixed length: largest", 0.0866, 1e-3, lambda: float(turbulence("paper").norm(dim=1).max()))
     yield Case(
-        "W-14", "torque over force: deviation across", 0.05 * 0.2, 0.01, lambda: float(twist()[:, 1:].std()), "m"
+        "W-13",
+        "turbulence of fixed length: largest magnitude",
+        0.0866,
+        1e-3,
+        lambda: float(turbulence("paper").norm(dim=1).max()),
+    )
+    yield Case(
+        "W-14",
+        "torque over force: standard deviation across the wind",
+        0.05 * 0.2,
+        0.01,
+        lambda: float(twist()[:, 1:].std()),
+        "m",
     )
     yield Case("W-14", "torque along the wind", 0.0, 0, lambda: float(twist()[:, 0].abs().max()), "m")
     yield from table(
-        "W-15", "sideways deviation, {} frames a second", {100: W15, 25: W15}, 0.02, wandering, unit="m/s", slow=True
+        "W-15",
+        "standard deviation of sideways speed, {} frames a second",
+        {100: W15, 25: W15},
+        0.02,
+        wandering,
+        unit="m/s",
+        slow=True,
     )
-    yield from table("W-16", "force on what has settled, layer {}", {0: 0.0, 1: 0.0}, 0, in_cart, unit="N")
+    yield from table(
+        "W-16", "force on what has come to rest in a cart, layer {}", {0: 0.0, 1: 0.0}, 0, in_cart, unit="N"
+    )
     lost = RHO_A * 3.7 * 1.0 / 1e-4
-    yield Case("W-17", "share of the slip that a feather loses", lost / (1 + lost), 1e-5, lambda: slip_lost(LAW))
-    yield Case("W-17", "the same with the original's step", 1.0, 1e-6, lambda: slip_lost(SHIPPED))
+    yield Case(
+        "W-17", "share of its slip that a feather loses in a step", lost / (1 + lost), 1e-5, lambda: slip_lost(LAW)
+    )
+    yield Case(
+        "W-17", "share of its slip that a feather loses in the original's step", 1.0, 1e-6, lambda: slip_lost(SHIPPED)
+    )
     yield Case(
         "W-20",
         "variance of 3-s means over U^2",

@@ -70,7 +70,9 @@ def ajar(degrees: int) -> float:
 
 def cases() -> Iterator[Case]:
     """All cases of this module."""
-    yield from table("E-6", "pressure that holds a door of {} in (NFPA 92)", NFPA_92, 0.03, pressure, unit="in H2O")
-    yield from table("E-7", "water {} m deep presses a door", REST, 0.01, press, unit="N")
-    yield from table("E-8", "its handle, opened into water {} m deep", HANDLE, 0.01, pull, unit="N")
-    yield from table("E-9", "water through a door turned by {} degrees", AJAR, 0.02, ajar, unit="m3/s")
+    yield from table(
+        "E-6", "pressure that holds a door {} in wide shut (NFPA 92)", NFPA_92, 0.03, pressure, unit="in H2O"
+    )
+    yield from table("E-7", "force of water {} m deep on a door", REST, 0.01, press, unit="N")
+    yield from table("E-8", "force on its handle to open a door into water {} m deep", HANDLE, 0.01, pull, unit="N")
+    yield from table("E-9", "discharge through a door turned by {} degrees", AJAR, 0.02, ajar, unit="m3/s")

@@ -12,7 +12,7 @@ from hazard_ms.agents.search.house_fire import HouseFire
 from hazard_ms.sensing.detection.track import DRIFT
 from hazard_ms.sensing.sighting import Sighting
 from hazard_ms.skills.decision import EXPLORE, PICK_UP, WALK_ONE_STEP, WALK_TO, Action, Decision
-from hazard_ms.skills.failures import NO_PATH, NOT_A_TARGET, TOO_FAR, UNFINISHED
+from hazard_ms.skills.failures import NOT_A_TARGET, TOO_FAR, UNFINISHED
 from hazard_ms.spec.registry.mitigations import MITIGATIONS
 
 PROGRESS = 0.2  # a walk that got it this far is not a failure, even if it did not arrive [m]
@@ -40,7 +40,7 @@ class Memory:
         self.missed: dict[str, list[tuple[Place, Place]]] = {}  # failed pick-ups: where it stood then, and the thing
         self.visits: dict[str, int] = {}  # to things in search
         self.looks: list[Place] = []  # where it looked around
-        self.barred: dict[str, Place] = {}  # where that is to which no way led
+        self.barred: dict[str, Place] = {}  # where the ways end to what no way led to
         self.tracks: dict[str, list[Seen]] = {}  # frame and place of the sightings of each target
         self._legs: dict[str, int] = {}
         self._before: tuple[Action, Place] | None = None  # the last action, and where it began
@@ -79,9 +79,6 @@ class Memory:
             unfinished = result.reason in UNFINISHED
             self.failures[str(action)] = self.failures.get(str(action), 0) + (not (unfinished and came))
             return
-        if action.verb == WALK_TO and result.reason == NO_PATH:
-            openings = {o.name: (o.position[0], o.position[1]) for o in decision.openings}
-            self.barred[name] = self._lay or openings.get(name, start)
         if action.verb in (WALK_TO, WALK_ONE_STEP) and came:
             self._legs[name] = self._legs.get(name, 0) + 1
             if self._legs[name] % LEGS:
@@ -92,7 +89,7 @@ class Memory:
             self.missed.setdefault(name, []).append((stood, self._lay or stood))
 
     def try_ways_again(self) -> list[Place]:
-        """Forget to what no way led, since what floats about may have freed it, and return where that is [m]."""
+        """Forget to what no way led, since what floats about may have freed it, and return where the ways end [m]."""
         places = [*self.barred.values()]
         for name in self.barred:
             self.failures.pop(name, None)

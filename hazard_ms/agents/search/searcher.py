@@ -10,9 +10,10 @@ import numpy as np
 from hazard_ms.agents.attempts import Enclosure, Repeats
 from hazard_ms.agents.base import CLOSER, DOUBTFUL, Agent, distance, known, open_targets
 from hazard_ms.agents.gale.aims import aims_of
-from hazard_ms.agents.search.memory import Memory
+from hazard_ms.agents.search.memory import Memory, place_of
 from hazard_ms.agents.search.mitigating import Mitigator
 from hazard_ms.agents.search.outlook import Outlook, Weights, outlook, thing_of
+from hazard_ms.agents.search.walks import way_end
 from hazard_ms.skills.brief import Brief
 from hazard_ms.skills.decision import DROP, EXPLORE, PICK_UP, STOP, WALK_ONE_STEP, WALK_TO, Action, Decision
 from hazard_ms.skills.failures import NO_PATH, TOO_FAR
@@ -64,6 +65,7 @@ class Searcher(Agent):
     def act(self, decision: Decision) -> Action:
         """The next action: put away what it holds, else what the rest of the rescue begins with."""
         self._memory.note(decision)
+        self._note_barred(decision)
         if self._mitigator is not None:
             self._mitigator.note(decision)
         if self._gale is not None:
@@ -126,6 +128,17 @@ class Searcher(Agent):
         if not near and not there and self._doubtful(decision, name) and ahead.way(begin.goal) > CLOSER:
             return self._say(f"closer first: {begin.why}", Action(WALK_ONE_STEP, name))
         return self._say(begin.why, Action(PICK_UP if near else WALK_TO, name))
+
+    def _note_barred(self, decision: Decision) -> None:
+        """Enter where the last way ends if something bars it."""
+        last, result, seen = decision.last_action, decision.last_result, decision.map
+        if not self._brief.several_rooms or last is None or last.target is None or last.verb != WALK_TO:
+            return
+        at = {o.name: (o.position[0], o.position[1]) for o in decision.openings}
+        goal = place_of(decision, last.target) or at.get(last.target)
+        if result is not None and result.reason == NO_PATH and goal is not None:
+            end = way_end(seen, decision.agent_position, goal, decision.openings, self._brief.radius)
+            self._memory.barred[last.target] = end
 
     def _waiting(self, decision: Decision) -> Action | None:
         """A look around where no way leads anywhere: after a time, what it ran into bars no more ways."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.sparse import csgraph
 
-from hazard_ms.agents.search.floor_plan import AJAR
+from hazard_ms.agents.search.floor_plan import AJAR, FloorPlan, shut_doors
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sketch.travel.ways import WALK
@@ -17,6 +17,8 @@ from hazard_ms.skills.motor.navigation import AT_MOST, BORDER, LOW, OBSTACLE_COS
 from hazard_ms.skills.sightlines import behind
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Place = tuple[float, float]  # [m], world frame
 STEPS = 1.05  # length of a way by steps to the eight neighbours, over that of straight pieces: mean of all directions
 TURNING = 20.0  # frames of a walk that go into turns, starts and stops: about 120 degrees of turns [ours]
 NO_DETOUR = 40.0  # frames by which two ways of telling the length of a walk may differ [ours]
@@ -81,6 +83,20 @@ def barring(
     return turned[best] if freed[best] >= LEAST_FREED else None
 
 
+def way_end(seen: SemanticMap, here: Place, goal: Place, openings: Sequence[KnownOpening], radius: float) -> Place:
+    """Where the way from `here` to a `goal` [m] ends that something bars, `radius` of the robot [m].
+
+    It is the place that the robot gets to from which the way past walls is shortest, or else the goal itself.
+    """
+    over = _reached(seen, seen.obstacles <= LOW, here, radius)
+    points, plan = seen.centre_of(*np.nonzero(over & seen.explored)), FloorPlan(seen, shut_doors(openings))
+    left = plan.at(plan.ways_from(goal), points)
+    if not np.isfinite(left).any():
+        return goal
+    x, y = points[int(np.argmin(left))]
+    return float(x), float(y)
+
+
 def _line(
     seen: SemanticMap, start: Array, end: Array, shares: tuple[float, float], beside: Sequence[float]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -94,16 +110,20 @@ def _line(
     return y[inside], x[inside]
 
 
-def _floor(seen: SemanticMap, low: NDArray[np.bool_], here: tuple[float, float], radius: float) -> int:
+def _floor(seen: SemanticMap, low: Mask, here: Place, radius: float) -> int:
     """The number of seen cells that a robot `here` [m] gets over where it may drive over what is `low`, [Y, X]."""
+    return int((seen.explored & _reached(seen, low, here, radius)).sum())
+
+
+def _reached(seen: SemanticMap, low: Mask, here: Place, radius: float) -> Mask:
+    """The cells that a robot `here` [m] gets over where it may drive over what is `low`, [Y, X]."""
     fits = ndimage.distance_transform_edt(low) * seen.cell >= radius - seen.cell / 2  # as walks have it
     parts, _ = ndimage.label(fits)
     y, x = np.nonzero(fits)
     if not len(y):
-        return 0
+        return np.zeros_like(low)
     nearest = int(np.argmin(np.hypot(*(seen.centre_of(y, x) - here).T)))
-    over = ndimage.distance_transform_edt(parts != parts[y[nearest], x[nearest]]) * seen.cell <= radius
-    return int((seen.explored & over).sum())
+    return np.asarray(ndimage.distance_transform_edt(parts != parts[y[nearest], x[nearest]]) * seen.cell <= radius)
 
 
 class _Grid:

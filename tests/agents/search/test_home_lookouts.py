@@ -12,7 +12,7 @@ from hazard_ms.agents.search.lookouts import HOME, LOOKED, PASSED, Lookout, look
 from hazard_ms.agents.search.memory import Memory
 from hazard_ms.agents.search.outlook import Outlook, Weights, outlook
 from hazard_ms.skills.decision import EXPLORE, WALK_TO, Action, Decision, Result
-from hazard_ms.skills.failures import NO_PATH
+from hazard_ms.skills.failures import MAX_FRAMES, NO_PATH
 from tests.agents.search.test_fire_lookouts import west
 from tests.agents.search.test_floor_plan import DOOR
 from tests.agents.search.test_mitigating import NAMES, begun, decision, home
@@ -99,11 +99,21 @@ def test_ways_are_tried_again_after_a_look_at_what_barred_them() -> None:
     player, walk = begun("planner", home()), Action(WALK_TO, "book_1")
     memory = player._memory  # type: ignore[attr-defined]
     memory.looks += [*EVERYWHERE] * 3
-    memory.chose(decision(), walk)
+    memory.barred["book_1"], memory.failures["book_1"] = (5.0, 1.0), 1
     given = replace(decision((walk, Result(False, NO_PATH))), tools=())
     given.map.objects = {k: row for k, row in given.map.objects.items() if k < 2}
     assert player.act(given) == Action(WALK_TO, "box_1") and "what barred the way to book_1" in str(player.note)
     assert not memory.barred and not memory.failures
+
+
+@pytest.mark.parametrize("reason", [NO_PATH, MAX_FRAMES])
+def test_it_notes_where_barred_ways_end(reason: str) -> None:
+    """Of two rooms without anything in the doorway between them the way past walls leads all the way to the book."""
+    player, walk = begun("planner", home()), Action(WALK_TO, "book_1")
+    player.act(decision((walk, Result(False, reason))))
+    barred = player._memory.barred  # type: ignore[attr-defined]
+    assert [*barred] == (["book_1"] if reason == NO_PATH else [])
+    assert all(np.hypot(*np.subtract(place, (5.0, 1.0))) < 0.2 for place in barred.values())
 
 
 def test_where_nothing_tells_what_a_hazard_takes_a_search_still_counts_a_tenth() -> None:

@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from hazard_ms.agents.search import walks
-from hazard_ms.agents.search.walks import LONGEST_DETOUR, NO_DETOUR, TURNING, barring, detours, frames_between
+from hazard_ms.agents.search.walks import LONGEST_DETOUR, NO_DETOUR, TURNING, barring, detours, frames_between, way_end
 from hazard_ms.sensing.door_memory import KnownOpening
 from hazard_ms.sensing.semantic_map import SemanticMap
 from hazard_ms.sketch.travel.ways import RADIUS, WALK
+from tests.agents.search.test_floor_plan import DOOR, two_rooms
 
 
 def open_floor(half: float = 4.0) -> SemanticMap:
@@ -150,3 +152,21 @@ def test_a_door_that_is_the_way_on_is_not_shut() -> None:
     points = seen.centre_of(y, x)
     seen.explored[y, x] = (points > (-1.0, 1.1)).all(-1) & (points < (2.0, 4.1)).all(-1)
     assert barring(seen, (2.0, 0.0), [door], RADIUS) is None
+
+
+def test_a_barred_way_ends_before_what_bars_it() -> None:
+    """A board floats in the doorway at x = 2 m: a robot gets no farther, though walls are nearer to the goal.
+
+    With the door shut no way leads there at all.
+    """
+    seen, goal = two_rooms(), (3.0, 2.5)
+    outer = ndimage.binary_dilation(seen.explored, np.ones((5, 5), bool)) & ~seen.explored
+    seen.tell(np.where(outer, 1.93, seen.height).astype(np.float32), seen.explored | outer)
+    y, x = np.nonzero(seen.explored)
+    there = (np.abs(seen.centre_of(y, x) - (2.0, 0.0)) < (0.15, 0.6)).all(-1)
+    height = seen.height.copy()
+    height[y[there], x[there]] = 0.3
+    seen.tell(height, seen.explored)
+    end = way_end(seen, (-3.0, 2.5), goal, (DOOR,), RADIUS)
+    assert end[0] == pytest.approx(2.0 - 0.15, abs=0.1) and abs(end[1]) < 0.6
+    assert way_end(seen, (-3.0, 2.5), goal, (replace(DOOR, open=0.0),), RADIUS) == goal

@@ -39,9 +39,10 @@ HEAD = """# Homes and gales
 
 Made by `./run python results/homes.py`. Scenes of the split `test` from number {first} on, Fetch, presets `paper`, one
 episode a scene; decisions in those before were read while the agents were made, and those of `planner` in house fires
-11 to 19 while its search was made for dfd77f3. House fires: `planner` and `greedy` of dfd77f3, `oracle` of
-38eff11, `{plain}` of ee7150e. House floods: `planner` of dfd77f3, `greedy` of 2b85e1a. Gales: `greedy`
-and `planner` of ee7150e, all others of 27eb575, before things ended in carts as surely as now.
+11 to 19 while its search was made for dfd77f3, and in house floods 11 to 13, 15, 16 and 20 for 563fcc0. House fires:
+`planner` and `greedy` of dfd77f3, `oracle` of 38eff11, `{plain}` of ee7150e, others of 563fcc0. House
+floods: `greedy` of 2b85e1a in 11 to 20, all else of 563fcc0. Gales: `greedy` and `planner` of ee7150e, all others of
+27eb575, before things ended in carts as surely as now.
 `averted` is the share of the targets' value that would be lost if nobody acted and is not lost at the end, in percent,
 with 95 % bootstrap intervals over scenes; differences are paired by scene. `{plain}` is the oracle that
 takes no measures. homes.csv has every episode. Written at

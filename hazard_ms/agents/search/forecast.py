@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 
 class Unseen(NamedTuple):
-    """What the hazards of a home take of things that were never seen."""
+    """The share of things never seen that the hazards of a home take, and by when."""
 
     lost: float  # share of their value that is lost if nobody acts
     damaged_by: float  # frame by which half of what is damaged is; inf: nothing is
@@ -41,7 +41,7 @@ class Unseen(NamedTuple):
 
 
 def unseen_losses(brief: Brief) -> Unseen:
-    """What is lost of things never seen: fires burn them; water carries them off, whence they can still be saved."""
+    """The losses of things never seen: fires burn them; water carries them off, whence they can still be saved."""
     names = [hazard.name for hazard in brief.hazards]
     if WATER in names:
         return Unseen(RISK[WATER], np.inf, brief.max_frames - 1.0)

@@ -84,7 +84,7 @@ def barring(
 
 
 def way_end(seen: SemanticMap, here: Place, goal: Place, openings: Sequence[KnownOpening], radius: float) -> Place:
-    """Where the way from `here` to a `goal` [m] ends that something bars, `radius` of the robot [m].
+    """The place [m] at which a barred way from `here` to a `goal` [m] ends, `radius` of the robot [m].
 
     It is the place that the robot gets to from which the way past walls is shortest, or else the goal itself.
     """
